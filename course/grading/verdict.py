@@ -1,0 +1,153 @@
+"""What a check found, what a submission scored: the types every report and export is made from.
+
+A finding keeps its words and its values apart: ``message`` and ``help`` never contain a number that a
+hidden check must not reveal, so ``for_student`` can redact by dropping fields and nothing else has to know.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Any
+
+import msgspec
+
+__all__ = ["CheckResult", "Divergence", "Finding", "Problem", "Status", "Tolerance", "Verdict", "for_student"]
+
+
+class Status(StrEnum):
+    """How a check, or a whole submission, ended."""
+
+    PASS = "pass"
+    FAIL = "fail"
+    ERROR = "error"  # the student's code raised
+    TIMEOUT = "timeout"
+    MEMORY = "memory"
+    CRASH = "crash"
+    SKIP = "skip"  # a check it depends on did not pass
+    UNGRADABLE = "ungradable"
+    GRADER_ERROR = "grader_error"  # our fault, never a student's zero
+
+
+class Visibility(StrEnum):
+    PUBLIC = "public"
+    HIDDEN = "hidden"
+
+
+class Tolerance(msgspec.Struct, frozen=True, omit_defaults=True):
+    """How far a value may be off, and where that number comes from."""
+
+    rel: float | None = None
+    abs: float | None = None
+    source: str = ""
+
+
+class Divergence(msgspec.Struct, frozen=True):
+    """The first place where a trajectory left the reference. ``t`` in s."""
+
+    t: float
+    step: int
+    quantity: str
+
+
+class Finding(msgspec.Struct, frozen=True):
+    """What was measured, what was expected and why, and what to do about it.
+
+    Attributes:
+        message: what is wrong, in words without values.
+        help: what to do, in words without values.
+        diagnosis: which mistake it looks like, as a stable code; None if none is recognised.
+        input, expected, actual: plain values that show it.
+        units: unit of expected and actual; "1" where there is none.
+    """
+
+    message: str
+    help: str = ""
+    diagnosis: str | None = None
+    input: dict[str, Any] | None = None
+    expected: Any = None
+    actual: Any = None
+    units: str = ""
+    tolerance: Tolerance | None = None
+    first_divergence: Divergence | None = None
+
+
+class CheckResult(msgspec.Struct, frozen=True, kw_only=True):
+    """One check's outcome; the fields of ``checks[]`` in ``course.check/1``, in that order."""
+
+    id: str
+    title: str
+    task: str
+    status: Status
+    visibility: Visibility
+    points: float
+    max_points: float
+    input: dict[str, Any] | None = None
+    expected: Any = None
+    actual: Any = None
+    units: str = ""
+    tolerance: Tolerance | None = None
+    first_divergence: Divergence | None = None
+    diagnosis: str | None = None
+    message: str = ""
+    help: str = ""
+    traceback: str | None = None
+    stdout: str | None = None
+    blocked_by: str | None = None
+    duration_ms: float = 0.0
+
+
+class Problem(msgspec.Struct, frozen=True):
+    """Why a submission has no verdict: a stable code, a sentence, and the fix."""
+
+    code: str
+    message: str
+    help: str = ""
+
+
+class Verdict(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything one grading of one submission found.
+
+    Attributes:
+        state: "graded", "ungradable" or "grader_error".
+        isolation: protection level the student's code ran at: "L3", "L2" or "L1".
+        error: why it is ungradable, or what broke in the grader; None when graded.
+        warnings: things worth a sentence that cost no points.
+    """
+
+    exercise: str
+    scope: str
+    state: str
+    score: float
+    max_score: float
+    passed: bool
+    checks: tuple[CheckResult, ...]
+    isolation: str
+    error: Problem | None = None
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def all_pass(self) -> bool:
+        """True if it was graded and every check passed."""
+        return self.state == "graded" and all(check.status is Status.PASS for check in self.checks)
+
+
+def for_student(result: CheckResult) -> CheckResult:
+    """A check's result as its student may see it.
+
+    A public check is shown whole. A hidden one keeps title, message, advice, diagnosis and points; input,
+    expected and actual values, tolerance, divergence, traceback and output are dropped. Every export that
+    a student may read goes through here.
+    """
+    if result.visibility is Visibility.PUBLIC:
+        return result
+    return msgspec.structs.replace(
+        result,
+        input=None,
+        expected=None,
+        actual=None,
+        units="",
+        tolerance=None,
+        first_divergence=None,
+        traceback=None,
+        stdout=None,
+    )

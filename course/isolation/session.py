@@ -1,0 +1,327 @@
+"""The trusted end of one worker: sends calls, answers callbacks, holds the deadline, believes nothing.
+
+Nothing here waits on a stranger without a deadline, nothing un-pickles, and whatever arrives out of turn
+ends the worker instead of the grader.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from course.isolation import wire
+from course.isolation.failures import IsolationError, StudentFailure
+from course.physics import systems
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from course.isolation.spawn import Handle, Spawner
+
+__all__ = ["Connection", "LoadRefusedError", "RemoteFunction"]
+
+Kind = wire.Kind
+_RECV = 1 << 16
+_MAX_NESTING = 8
+_TICK_S = 0.1  # how often a blocked read looks at the clock; it ends by the deadline plus this
+_SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
+
+
+class LoadRefusedError(Exception):
+    """The submission could not be loaded at all.
+
+    Attributes:
+        stage: "syntax", "import", "timeout" or "crash".
+        failure: what happened, as far as it is known.
+        text: the offending line, for a syntax error.
+    """
+
+    def __init__(self, stage: str, failure: StudentFailure, text: str = "") -> None:
+        super().__init__(stage, str(failure))
+        self.stage = stage
+        self.failure = failure
+        self.text = text
+
+
+class RemoteFunction:
+    """A function of the student's that came as a value; calling it calls into the worker."""
+
+    __slots__ = ("_connection", "number")
+
+    def __init__(self, connection: Connection, number: int) -> None:
+        self._connection = connection
+        self.number = number
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        return self._connection.call(self, *args, **kwargs)
+
+
+class Connection:
+    """One worker with one submission loaded.
+
+    Args:
+        spawner: starts the worker.
+        files: the submission: file name to content.
+        main: the file whose functions are called.
+        deadline: ``time.monotonic()`` value by which loading must be done.
+
+    Raises:
+        LoadRefusedError: the submission cannot be loaded.
+        IsolationError: the worker could not be started or locked down.
+    """
+
+    def __init__(self, spawner: Spawner, files: Mapping[str, bytes], main: str, deadline: float) -> None:
+        self._files = files
+        self._main = main
+        self._codec = wire.Codec(self)
+        self._buffer = b""
+        self._lent: list[Callable[..., Any]] = []
+        self._nesting = 0
+        self.deadline = deadline
+        self.alive = True
+        self.cpu_s = 0.0
+        self._handle: Handle = spawner.spawn()
+        self._sock = self._handle.sock
+        _set_tick(self._sock)
+        try:
+            self.functions = self._load()
+        except BaseException:
+            self.close()
+            raise
+
+    # -- names: how functions and right-hand sides appear here ----------------------------------------
+
+    def lower(self, value: Any) -> wire.Reference | wire.Rhs | wire.Seed | None:
+        if type(value) in _SYSTEM_TYPES:
+            return wire.Rhs(type(value).__name__, value.params())
+        if isinstance(value, RemoteFunction):
+            return wire.Reference(value.number, mine=True)
+        numpy = sys.modules["numpy"]
+        if isinstance(value, numpy.random.Generator):
+            return wire.Seed(int(value.integers(2**62)))
+        if callable(value):
+            self._lent.append(value)
+            return wire.Reference(len(self._lent) - 1, mine=False)
+        return None
+
+    def raise_(self, value: wire.Reference | wire.Rhs | wire.Seed) -> Any:
+        if isinstance(value, wire.Reference):
+            return self._lent[value.number] if value.mine else RemoteFunction(self, value.number)
+        if isinstance(value, wire.Rhs):
+            try:
+                return systems.SYSTEMS[value.name](**value.params)
+            except Exception as error:  # any parameters may arrive: whatever the constructor says of them
+                raise wire.WireError(f"a right-hand side that cannot be built: {type(error).__name__}") from None
+        raise wire.WireError("a seed from the worker")
+
+    # -- calls ----------------------------------------------------------------------------------------
+
+    def call(self, function: str | RemoteFunction, *args: Any, **kwargs: Any) -> Any:
+        """What ``function`` returns, as plain values (tuples as lists).
+
+        Raises:
+            StudentFailure: it raised, ran out of time, died, or returned what cannot cross.
+        """
+        return self._ask(Kind.CALL, [function, list(args), kwargs, False], function)
+
+    def inspect(self, function: str, *args: Any) -> tuple[Any, list[Any], bool]:
+        """Like ``call``, and also the arguments as the call left them and whether the result shares their memory."""
+        answer = self._ask(Kind.CALL, [function, list(args), {}, True], function)
+        match answer:
+            case [value, list() as after, bool() as shared] if len(after) == len(args):
+                return value, after, shared
+        raise self._breach("an inspection in another form")
+
+    def march(self, step: str, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
+        """Positions and velocities of ``n`` steps, or the worker's word on why a step was unusable."""
+        return self._ask(Kind.MARCH, [step, rhs, q0, v0, float(t0), float(h), int(n)], step)
+
+    def output(self) -> str:
+        """What the submission printed so far."""
+        return self._handle.output() if self.alive else ""
+
+    def close(self) -> None:
+        """End the worker."""
+        if self.alive:
+            self.alive = False
+            self.cpu_s = self._handle.finish().cpu_s
+
+    # -- the conversation -----------------------------------------------------------------------------
+
+    def _ask(self, kind: wire.Kind, request: list[Any], function: str | RemoteFunction) -> Any:
+        name = function if isinstance(function, str) else "your function"
+        if isinstance(function, str) and function not in self.functions:
+            raise StudentFailure.missing(function)
+        if not self._nesting:
+            self._lent.clear()
+        try:
+            frame = self._codec.encode(kind, request)
+        except wire.UnsupportedValueError as error:
+            raise IsolationError(f"a check passes {error} to {name}") from None
+        self._send(frame)
+        return self._await_result()
+
+    def _await_result(self) -> Any:
+        while True:
+            kind, value = self._receive()
+            if kind == Kind.RESULT:
+                return value
+            if kind == Kind.RAISED:
+                raise self._raised(value)
+            if kind == Kind.CALLBACK:
+                self._answer_callback(value)
+            else:
+                raise self._breach(f"a message of kind {kind}")
+
+    def _answer_callback(self, value: Any) -> None:
+        match value:
+            case [function, list() as args, dict() as kwargs] if callable(function) and any(
+                function is lent for lent in self._lent
+            ):
+                pass
+            case _:
+                raise self._breach("a callback in another form")
+        if self._nesting >= _MAX_NESTING:
+            raise self._breach("functions that call each other across the grader too deeply")
+        self._nesting += 1
+        try:
+            answer = self._codec.encode(Kind.REPLY, function(*args, **kwargs))
+        except (StudentFailure, IsolationError):
+            raise
+        except Exception as error:  # noqa: BLE001 - anything may be passed; the caller hears what was wrong with it
+            answer = self._codec.encode(Kind.REPLY_RAISE, f"{type(error).__name__}: {error}"[:500])
+        finally:
+            self._nesting -= 1
+        self._send(answer)
+
+    def _load(self) -> frozenset[str]:
+        try:
+            self._send(wire.Codec().encode(Kind.LOAD, [dict(self._files), self._main]))
+            kind, value = self._receive()
+        except StudentFailure as failure:
+            raise LoadRefusedError(failure.kind, failure) from None
+        if kind == Kind.LOADED and isinstance(value, list):
+            return frozenset(name for name in value if isinstance(name, str))
+        if kind == Kind.REFUSED and isinstance(value, dict):
+            if value.get("stage") == "lockdown":
+                raise IsolationError(f"a worker could not be locked down: {value.get('message')}")
+            stage = "syntax" if value.get("stage") == "syntax" else "import"
+            raise LoadRefusedError(stage, self._raised(value), _text(value.get("text")))
+        raise LoadRefusedError("crash", self._breach("an answer of another form"))
+
+    def _raised(self, value: Any) -> StudentFailure:
+        """The exception a worker reports, with nothing taken for granted about the report."""
+        if not isinstance(value, dict):
+            return self._breach("an exception in another form")
+        kind = _text(value.get("type"))
+        message = _text(value.get("message"))
+        if kind == "UnsupportedValue":
+            return StudentFailure("protocol", type=kind, message=message)
+        frames = [
+            (frame[1], _text(frame[2]))
+            for frame in value.get("frames") or []
+            if isinstance(frame, list) and len(frame) == 3 and frame[0] in self._files and isinstance(frame[1], int)
+        ]
+        line = frames[-1][0] if frames else None
+        if isinstance(value.get("line"), int):
+            line = value["line"]
+        bases = [_text(base) for base in value.get("bases") or [] if isinstance(base, str)]
+        return StudentFailure(
+            "memory" if "MemoryError" in bases else "error",
+            type=kind,
+            message=message,
+            line=line,
+            traceback="\n".join(self._quoted(number, function) for number, function in frames),
+            bases=bases,
+        )
+
+    def _quoted(self, line: int, function: str) -> str:
+        source = self._files[self._main].decode("utf-8", "replace").splitlines()
+        text = source[line - 1].strip() if 0 < line <= len(source) else ""
+        return f"{self._main}:{line} in {function}\n    {text}".rstrip()
+
+    # -- frames ---------------------------------------------------------------------------------------
+
+    def _send(self, frame: bytes) -> None:
+        view = memoryview(frame)
+        while view:
+            try:
+                view = view[self._sock.send(view) :]
+            except (BlockingIOError, TimeoutError):
+                self._check_deadline()
+            except OSError:
+                raise self._ended() from None
+
+    def _receive(self) -> tuple[int, Any]:
+        buffer = self._buffer
+        while len(buffer) < wire.HEADER.size:
+            buffer += self._read(_RECV)
+        length, kind = wire.HEADER.unpack_from(buffer)
+        if not 0 < length <= wire.MAX_FRAME:
+            raise self._breach("a frame of impossible length")
+        end = wire.HEADER.size + length - 1
+        if len(buffer) < end:
+            rest = bytearray(buffer)
+            while len(rest) < end:
+                rest += self._read(min(end - len(rest), 1 << 20))
+            buffer = bytes(rest)
+        self._buffer = buffer[end:]
+        if time.monotonic() > self.deadline:
+            raise self._timeout()  # a worker that keeps calling back never lets a read block
+        try:
+            return kind, self._codec.decode(buffer[wire.HEADER.size : end])
+        except wire.WireError as error:
+            raise self._breach(str(error)) from None
+
+    def _read(self, size: int) -> bytes:
+        while True:
+            try:
+                chunk = self._sock.recv(size)
+            except (BlockingIOError, TimeoutError):
+                self._check_deadline()
+                continue
+            except OSError:
+                raise self._ended() from None
+            if not chunk:
+                raise self._ended()
+            self._check_deadline()
+            return chunk
+
+    def _check_deadline(self) -> None:
+        if time.monotonic() > self.deadline:
+            raise self._timeout()
+
+    def _timeout(self) -> StudentFailure:
+        self.close()
+        return StudentFailure("timeout", message="it ran out of time")
+
+    def _breach(self, what: str) -> StudentFailure:
+        self.close()
+        return StudentFailure("protocol", type="ProtocolBreach", message=f"the process sent {what}")
+
+    def _ended(self) -> StudentFailure:
+        """The process is gone without an answer."""
+        self.alive = False
+        end = self._handle.finish()
+        self.cpu_s = end.cpu_s
+        how = f"signal {end.signal}" if end.signal else f"exit code {end.code}"
+        return StudentFailure("crash", type=how, message=f"its process ended by itself ({how})")
+
+
+def _text(value: Any, limit: int = 2000) -> str:
+    return value[:limit] if isinstance(value, str) else ""
+
+
+def _set_tick(sock: Any) -> None:
+    """Blocking reads and writes that return every ``_TICK_S``, without a poll before each of them."""
+    import socket
+
+    if sys.platform == "win32":
+        sock.settimeout(_TICK_S)
+        return
+    sock.setblocking(True)
+    tick = struct.pack("@ll", 0, int(_TICK_S * 1e6))
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, tick)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, tick)

@@ -1,0 +1,421 @@
+"""The bytes between a grader and the process that runs a stranger's code.
+
+A frame is a 4-byte little-endian length, one byte that says what kind of message it is, and one value. A
+value is one of None, bool, int64, float64, str, list, dict with str keys, an array of float64, int64, bool
+or complex128, a right-hand side by name, a seed, or a callable by reference; nothing else can be said, so
+nothing can be un-pickled. One tag byte opens each value::
+
+    N  T  F      None, True, False            l  list    u32 count, values
+    i  int64     8 bytes                      d  dict    u32 count, (u32 length, UTF-8) and value each
+    f  float64   8 bytes                      a  array   dtype byte, ndim byte, u32 each, raw little-endian
+    s  str       u32 length, UTF-8            c  callable held by the receiver     u32
+    y  bytes     u32 length (grader to        w  callable held by the sender       u32
+                 worker only)                 p  right-hand side: a str and a dict
+                                              g  random generator: its seed, int64
+
+This file runs on both sides and is copied next to a stranger's code, so it imports the standard library and
+numpy and nothing of this course. Whatever arrives is a claim by an untrusted sender: every length is
+checked before it is believed, and the one exception that leaves this file is ``WireError``.
+"""
+
+from __future__ import annotations
+
+import enum
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = [
+    "HEADER",
+    "MAX_ARRAY_BYTES",
+    "MAX_DEPTH",
+    "MAX_DIMENSIONS",
+    "MAX_FRAME",
+    "MAX_VALUES",
+    "MAX_VALUE_BYTES",
+    "Codec",
+    "Kind",
+    "Reference",
+    "Rhs",
+    "Seed",
+    "UnsupportedValueError",
+    "WireError",
+]
+
+MAX_VALUE_BYTES = 1 << 20  # everything of a frame that is not array data
+MAX_ARRAY_BYTES = 64 << 20  # all arrays of a frame together
+MAX_FRAME = MAX_VALUE_BYTES + MAX_ARRAY_BYTES
+MAX_DEPTH = 32
+MAX_DIMENSIONS = 8
+MAX_VALUES = 200_000  # decoding one costs about half a microsecond: a hostile frame costs at most 0.1 s
+
+HEADER = struct.Struct("<IB")
+_U32 = struct.Struct("<I")
+_I64 = struct.Struct("<q")
+_F64 = struct.Struct("<d")
+_DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
+_WIDEN = {"f": 0, "i": 1, "u": 1, "b": 2, "c": 3}
+
+
+class Kind(enum.IntEnum):
+    """What a frame is about. The first group goes to the worker, the second comes from it."""
+
+    LOAD = 1  # [files, module name]
+    CALL = 2  # [function, args, kwargs, inspect]
+    MARCH = 3  # [step, rhs, q0, v0, t0, h, n]
+    REPLY = 4  # value of a callback
+    REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
+    LOADED = 16  # [names of functions]
+    REFUSED = 17  # {stage, type, message, line, text}
+    RESULT = 18  # value
+    RAISED = 19  # {type, message, line, function, frames}
+    CALLBACK = 20  # [callable, args, kwargs]
+
+
+class WireError(Exception):
+    """What arrived is not a frame this protocol has."""
+
+
+class UnsupportedValueError(Exception):
+    """A value that cannot cross; the message names its type in words for the student."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rhs:
+    """A named right-hand side and its plain parameters, built where it is evaluated."""
+
+    name: str
+    params: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Seed:
+    """A random generator, as the seed it is built from on the other side."""
+
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A callable by number. ``mine``: the receiver holds it and has said so before."""
+
+    number: int
+    mine: bool
+
+
+class Names(Protocol):
+    """How one side turns what it holds into references and back."""
+
+    def lower(self, value: Any) -> Reference | Rhs | Seed | None:
+        """What stands for ``value`` on the wire, or None if it cannot cross."""
+
+    def raise_(self, value: Reference | Rhs | Seed) -> Any:
+        """What a reference, right-hand side or seed that arrived stands for here."""
+
+
+class Codec:
+    """Encodes and decodes frames for one side of one connection.
+
+    Args:
+        names: resolves callables, right-hand sides and seeds; None refuses them.
+        accept_bytes: whether a bytes value may arrive (only a worker accepts it: the submission's files).
+    """
+
+    def __init__(self, names: Names | None = None, *, accept_bytes: bool = False) -> None:
+        self._names = names
+        self._accept_bytes = accept_bytes
+
+    def encode(self, kind: Kind, value: Any) -> bytes:
+        """One frame.
+
+        Raises:
+            UnsupportedValueError: something in ``value`` cannot cross, or it is too large or too deep.
+        """
+        parts: list[bytes] = [b""]
+        arrays = _put(value, parts, self._names, MAX_DEPTH)
+        body = b"".join(parts)
+        if len(body) - arrays > MAX_VALUE_BYTES or arrays > MAX_ARRAY_BYTES:
+            raise UnsupportedValueError("a value that is too large (1 MB of plain values, 64 MB of arrays)")
+        return HEADER.pack(len(body) + 1, kind) + body
+
+    def decode(self, body: bytes) -> Any:
+        """The value of a frame's body (what follows the header).
+
+        Raises:
+            WireError: the body is malformed in any way.
+        """
+        reader = _Reader(body, self._names, self._accept_bytes)
+        try:
+            value = reader.take(MAX_DEPTH)
+        except WireError:
+            raise
+        except (struct.error, ValueError, IndexError, OverflowError, KeyError, TypeError) as error:
+            raise WireError(f"malformed value: {type(error).__name__}") from None
+        if reader.at != len(body):
+            raise WireError(f"{len(body) - reader.at} bytes left over after the value")
+        if len(body) - reader.bulk > MAX_VALUE_BYTES:
+            raise WireError("more than 1 MB of plain values")
+        return value
+
+
+def _put(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
+    """Append the encoding of ``value`` to ``parts``; returns how many bytes of it are array data."""
+    put = _PUT.get(type(value))
+    if put is not None:
+        return put(value, parts, names, depth)
+    return _put_other(value, parts, names, depth)
+
+
+def _put_none(_value: None, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    parts.append(b"N")
+    return 0
+
+
+def _put_bool(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    parts.append(b"T" if value else b"F")
+    return 0
+
+
+def _put_int(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    try:
+        parts.append(b"i" + _I64.pack(value))
+    except struct.error:
+        raise UnsupportedValueError("an integer beyond 64 bits") from None
+    return 0
+
+
+def _put_float(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    parts.append(b"f" + _F64.pack(value))
+    return 0
+
+
+def _put_str(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    raw = value.encode("utf-8", "replace")
+    parts.append(b"s" + _U32.pack(len(raw)) + raw)
+    return 0
+
+
+def _put_bytes(value: bytes, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    parts.append(b"y" + _U32.pack(len(value)) + value)
+    return len(value)
+
+
+def _put_list(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
+    if depth <= 0:
+        raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
+    parts.append(b"l" + _U32.pack(len(value)))
+    arrays = 0
+    for item in value:
+        arrays += _put(item, parts, names, depth - 1)
+    return arrays
+
+
+def _put_dict(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
+    if depth <= 0:
+        raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
+    parts.append(b"d" + _U32.pack(len(value)))
+    arrays = 0
+    for key, item in value.items():
+        if not isinstance(key, str):
+            raise UnsupportedValueError(f"a dict with a key that is not a str but {_name_of(key)}")
+        raw = key.encode("utf-8", "replace")
+        parts.append(_U32.pack(len(raw)) + raw)
+        arrays += _put(item, parts, names, depth - 1)
+    return arrays
+
+
+def _put_array(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
+    code = _WIDEN.get(value.dtype.kind)
+    if code is None:
+        raise UnsupportedValueError(f"an array of dtype {value.dtype}")
+    if value.ndim > MAX_DIMENSIONS:
+        raise UnsupportedValueError(f"an array of {value.ndim} dimensions")
+    raw = value.astype(_DTYPES[code], copy=False).tobytes()
+    parts.append(b"a%c%c" % (code, value.ndim) + b"".join(map(_U32.pack, value.shape)) + raw)
+    return len(raw)
+
+
+def _put_other(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
+    """Everything whose exact type has no entry: numpy scalars, subclasses, callables, strangers."""
+    if isinstance(value, np.ndarray):
+        return _put_array(np.asarray(value), parts, names, depth)
+    if isinstance(value, np.generic):
+        if value.dtype.kind not in _WIDEN:
+            raise UnsupportedValueError(f"a numpy scalar of dtype {value.dtype}")
+        if value.dtype.kind == "c":
+            return _put_array(np.asarray(value), parts, names, depth)
+        return _put(value.item() if value.dtype.itemsize <= 8 else float(value), parts, names, depth)
+    if isinstance(value, complex):
+        return _put_array(np.asarray(complex(value)), parts, names, depth)
+    for base, put in _BASES:
+        if isinstance(value, base):
+            return put(value, parts, names, depth)
+    lowered = names.lower(value) if names is not None else None
+    if isinstance(lowered, Reference):
+        parts.append((b"c" if lowered.mine else b"w") + _U32.pack(lowered.number))
+    elif isinstance(lowered, Rhs):
+        parts.append(b"p")
+        _put_str(lowered.name, parts, None, 1)
+        _put_dict(lowered.params, parts, None, 4)
+    elif isinstance(lowered, Seed):
+        parts.append(b"g" + _I64.pack(lowered.value))
+    else:
+        raise UnsupportedValueError(f"a value of type {_name_of(value)}")
+    return 0
+
+
+def _name_of(value: Any) -> str:
+    return str(type(value).__name__)[:80]
+
+
+_PUT: dict[type, Callable[[Any, list[bytes], Names | None, int], int]] = {
+    float: _put_float,
+    np.float64: _put_float,
+    np.ndarray: _put_array,
+    int: _put_int,
+    list: _put_list,
+    tuple: _put_list,
+    type(None): _put_none,
+    bool: _put_bool,
+    str: _put_str,
+    dict: _put_dict,
+    bytes: _put_bytes,
+}
+#: Subclasses arrive as the plain value they extend; bool before int, since every bool is an int.
+_BASES: tuple[tuple[type, Callable[[Any, list[bytes], Names | None, int], int]], ...] = (
+    (bool, _put_bool),
+    (float, _put_float),
+    (int, _put_int),
+    (str, _put_str),
+    (list, _put_list),
+    (tuple, _put_list),
+    (dict, _put_dict),
+)
+
+_N, _T, _F, _I, _FL, _S, _Y = (ord(tag) for tag in "NTFifsy")
+_L, _D, _A, _C, _W, _P, _G = (ord(tag) for tag in "ldacwpg")
+
+
+class _Reader:
+    """Walks one body; ``at`` is where the next value starts."""
+
+    __slots__ = ("_accept_bytes", "_names", "_values", "at", "body", "bulk")
+
+    def __init__(self, body: bytes, names: Names | None, accept_bytes: bool) -> None:
+        self.body = body
+        self.at = 0
+        self._names = names
+        self._accept_bytes = accept_bytes
+        self._values = MAX_VALUES
+        self.bulk = 0  # bytes of arrays and files so far
+
+    def take(self, depth: int) -> Any:  # noqa: PLR0911 - one return per kind of value
+        at = self.at
+        tag = self.body[at]
+        self.at = at + 1
+        self._values -= 1
+        if self._values < 0:
+            raise WireError(f"more than {MAX_VALUES} values")
+        if tag == _FL:
+            self.at = at + 9
+            return _F64.unpack_from(self.body, at + 1)[0]
+        if tag == _A:
+            return self._array()
+        if tag == _I:
+            self.at = at + 9
+            return _I64.unpack_from(self.body, at + 1)[0]
+        if tag in _CONSTANTS:
+            return _CONSTANTS[tag]
+        if tag == _S:
+            return self._text()
+        if tag in (_L, _D):
+            if depth <= 0:
+                raise WireError(f"nested more than {MAX_DEPTH} deep")
+            return self._list(depth - 1) if tag == _L else self._dict(depth - 1)
+        return self._rare(tag)
+
+    def _rare(self, tag: int) -> Any:
+        if tag == _Y and self._accept_bytes:
+            raw = self._raw()
+            self.bulk += len(raw)
+            return raw
+        if self._names is None:
+            raise WireError(f"unexpected tag {tag}")
+        if tag in (_C, _W):
+            # "c": the receiver (this side) holds it; "w": the sender does.
+            return self._names.raise_(Reference(self._u32(), mine=tag == _C))
+        if tag == _P:
+            name, params = self.take(1), self.take(4)
+            if not isinstance(name, str) or not isinstance(params, dict):
+                raise WireError("a right-hand side in another form")
+            return self._names.raise_(Rhs(name, params))
+        if tag == _G:
+            self.at += 8
+            return self._names.raise_(Seed(_I64.unpack_from(self.body, self.at - 8)[0]))
+        raise WireError(f"unexpected tag {tag}")
+
+    def _u32(self) -> int:
+        at = self.at
+        self.at = at + 4
+        return int(_U32.unpack_from(self.body, at)[0])
+
+    def _raw(self) -> bytes:
+        size = self._u32()
+        raw = self.body[self.at : self.at + size]
+        if len(raw) != size:
+            raise WireError("a length that runs past the end")
+        self.at += size
+        return raw
+
+    def _text(self) -> str:
+        return self._raw().decode("utf-8")
+
+    def _count(self) -> int:
+        count = self._u32()
+        if count > len(self.body) - self.at:
+            raise WireError("more elements than bytes")
+        return count
+
+    def _list(self, depth: int) -> list[Any]:
+        return [self.take(depth) for _ in range(self._count())]
+
+    def _dict(self, depth: int) -> dict[str, Any]:
+        result: dict[str, Any] = {}
+        for _ in range(self._count()):
+            key = self._text()
+            if key in result:
+                raise WireError("a key that appears twice")
+            result[key] = self.take(depth)
+        return result
+
+    def _array(self) -> np.ndarray[Any, Any]:
+        code, ndim = self.body[self.at], self.body[self.at + 1]
+        self.at += 2
+        if code >= len(_DTYPES) or ndim > MAX_DIMENSIONS:
+            raise WireError("an array of unknown dtype or too many dimensions")
+        dtype = _DTYPES[code]
+        shape = tuple(self._u32() for _ in range(ndim))
+        elements = 1
+        padded = 1  # numpy refuses shapes whose non-zero extents overflow even when the array is empty
+        for extent in shape:
+            elements *= extent
+            padded *= max(extent, 1)
+        size = elements * dtype.itemsize
+        self.bulk += size
+        if self.bulk > MAX_ARRAY_BYTES or padded * dtype.itemsize > MAX_ARRAY_BYTES:
+            raise WireError("more than 64 MB of arrays")
+        if self.at + size > len(self.body):
+            raise WireError("an array that runs past the end")
+        raw = np.frombuffer(self.body, np.uint8 if code == 2 else dtype, elements, self.at)
+        self.at += size
+        # A bool array whose bytes are not 0 or 1 would compare in undefined ways: "!= 0" normalises.
+        values = raw != 0 if code == 2 else raw.copy()
+        return values.reshape(shape)
+
+
+_CONSTANTS = {_N: None, _T: True, _F: False}

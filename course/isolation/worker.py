@@ -1,0 +1,352 @@
+"""The process that runs a stranger's code: loads one submission and answers calls.
+
+Everything here shares an address space with code that may be hostile, so nothing here is a secret and
+nothing it says is more than a claim. It imports the standard library, numpy and the two files copied beside
+it (the wire and the right-hand sides), and nothing of this course.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import importlib.machinery
+import io
+import itertools
+import math
+import os
+import sys
+import traceback
+import types
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import socket
+
+if __package__:  # imported as part of the course (type checking, tests); a copy stands alone
+    from course.isolation import wire
+    from course.physics import systems
+else:
+    import systems  # type: ignore[import-not-found,no-redef]
+    import wire  # type: ignore[import-not-found,no-redef]
+
+__all__ = ["CappedText", "Worker"]
+
+Kind = wire.Kind
+
+#: How much of what a submission prints is kept; the rest is dropped without an error.
+MAX_OUTPUT = 64 << 10
+_MAX_NESTING = 8
+_RECV = 1 << 16
+
+
+class CallbackError(ValueError):
+    """What student code sees when the grader's function refuses its arguments."""
+
+
+class CappedText(io.TextIOBase):
+    """A text stream that keeps the first ``MAX_OUTPUT`` characters: printing a lot is not an error."""
+
+    def __init__(self, descriptor: int) -> None:
+        super().__init__()
+        self._descriptor = descriptor
+        self._left = MAX_OUTPUT
+
+    def writable(self) -> bool:
+        return True
+
+    def fileno(self) -> int:
+        return self._descriptor
+
+    def write(self, text: str) -> int:
+        if self._left > 0:
+            kept = str(text)[: self._left]
+            self._left -= len(kept)
+            with contextlib.suppress(OSError):  # a full or closed output must not fail a print
+                os.write(self._descriptor, kept.encode("utf-8", "replace"))
+        return len(text)
+
+
+class ImportNotDeclaredError(ImportError):
+    """A submission imports a package that its exercise does not declare."""
+
+
+class _DeclaredImports:
+    """Refuses top-level packages that are neither the standard library's nor declared.
+
+    This gives a sentence instead of a bare ModuleNotFoundError. It is no protection by itself: at L3 and
+    L2 the files of other packages cannot be read at all.
+    """
+
+    def __init__(self, allowed: frozenset[str]) -> None:
+        self._allowed = allowed
+
+    def find_spec(self, name: str, _path: Any = None, _target: Any = None) -> None:
+        top = name.partition(".")[0]
+        if top not in self._allowed and top not in sys.stdlib_module_names:
+            declared = ", ".join(sorted(self._allowed)) or "none"
+            raise ImportNotDeclaredError(
+                f"this exercise does not allow importing {top!r} (allowed: the standard library, {declared})",
+                name=top,
+            )
+
+
+class Worker:
+    """Answers one grader over one socket until the socket closes.
+
+    Args:
+        sock: connected stream socket.
+        imports: top-level packages the submission may import beside the standard library.
+    """
+
+    def __init__(self, sock: socket.socket, imports: frozenset[str]) -> None:
+        self._sock = sock
+        self._buffer = b""
+        self._codec = wire.Codec(self, accept_bytes=True)
+        self._imports = imports
+        self._module = types.ModuleType("submission")
+        self._held: list[Any] = []  # callables of the student's that the grader may call back
+        self._nesting = 0
+
+    def serve(self) -> None:
+        """Answer until the grader closes the connection."""
+        while True:
+            try:
+                kind, value = self._receive()
+            except EOFError:
+                return
+            self._answer(kind, value)
+
+    # -- names: how references and right-hand sides appear here --------------------------------------
+
+    def lower(self, value: Any) -> Any:
+        if isinstance(value, _Callback):
+            return wire.Reference(value.number, mine=True)
+        if type(value) in _SYSTEM_TYPES:
+            return wire.Rhs(type(value).__name__, value.params())
+        if callable(value):
+            self._held.append(value)
+            return wire.Reference(len(self._held) - 1, mine=False)
+        return None
+
+    def raise_(self, value: Any) -> Any:
+        if isinstance(value, wire.Rhs):
+            return systems.SYSTEMS[value.name](**value.params)
+        if isinstance(value, wire.Seed):
+            return np.random.default_rng(value.value)
+        if value.mine:
+            return self._held[value.number]
+        return _Callback(self, value.number)
+
+    # -- frames ---------------------------------------------------------------------------------------
+
+    def _receive(self) -> tuple[int, Any]:
+        buffer = self._buffer
+        while len(buffer) < wire.HEADER.size:
+            chunk = self._sock.recv(_RECV)
+            if not chunk:
+                raise EOFError
+            buffer += chunk
+        length, kind = wire.HEADER.unpack_from(buffer)
+        end = wire.HEADER.size + length - 1
+        if len(buffer) < end:
+            rest = bytearray(buffer)
+            while len(rest) < end:
+                chunk = self._sock.recv(min(end - len(rest), 1 << 20))
+                if not chunk:
+                    raise EOFError
+                rest += chunk
+            buffer = bytes(rest)
+        self._buffer = buffer[end:]
+        return kind, self._codec.decode(buffer[wire.HEADER.size : end])
+
+    def _send(self, kind: wire.Kind, value: Any) -> None:
+        self._sock.sendall(self._codec.encode(kind, value))
+
+    def _answer(self, kind: int, value: Any) -> None:
+        if kind == Kind.LOAD:
+            self._load(*value)
+            return
+        try:
+            if kind == Kind.CALL:
+                result = self._call(*value)
+            elif kind == Kind.MARCH:
+                result = _march(self._function(value[0]), *value[1:])
+            else:
+                raise wire.WireError(f"unexpected kind {kind}")
+            frame = self._codec.encode(Kind.RESULT, result)
+        except wire.UnsupportedValueError as error:
+            self._send(Kind.RAISED, {"type": "UnsupportedValue", "message": str(error)})
+        except BaseException as error:  # noqa: BLE001 - whatever student code raises is the answer
+            self._send(Kind.RAISED, _described(error))
+        else:
+            self._sock.sendall(frame)
+        if not self._nesting:
+            self._held.clear()
+
+    # -- loading --------------------------------------------------------------------------------------
+
+    def _load(self, files: dict[str, bytes], main: str) -> None:
+        """Write the submission's files to the working folder and run its main module from memory.
+
+        ``compile`` gets the bytes, so byte-order marks, line endings and declared encodings are read as
+        Python itself reads them.
+        """
+        for name, content in files.items():
+            with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
+                handle.write(content)
+        sys.path.insert(0, os.getcwd())  # noqa: PTH109 - pathlib is not worth its import here
+        sys.meta_path.insert(0, _DeclaredImports(self._imports | {name[:-3] for name in files}))
+        try:
+            code = compile(files[main], main, "exec", dont_inherit=True)
+        except (SyntaxError, ValueError, MemoryError, RecursionError, UnicodeError) as error:
+            self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
+            return
+        module = types.ModuleType(main.removesuffix(".py"))
+        module.__file__ = main
+        module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None, origin=main)
+        sys.modules[module.__name__] = module
+        try:
+            exec(code, module.__dict__)
+        except BaseException as error:  # noqa: BLE001 - SystemExit at import is an answer too
+            self._send(Kind.REFUSED, {"stage": "import", **_described(error)})
+            return
+        self._module = module
+        names = [name for name, value in list(vars(module).items()) if callable(value) and type(name) is str]
+        self._send(Kind.LOADED, names[:1000])
+
+    # -- calls ----------------------------------------------------------------------------------------
+
+    def _function(self, spec: Any) -> Any:
+        """A function by name, or one that came as a reference."""
+        return getattr(self._module, spec) if isinstance(spec, str) else spec
+
+    def _call(self, spec: Any, args: list[Any], kwargs: dict[str, Any], inspect: bool) -> Any:
+        function = self._function(spec)
+        args = [self._own(argument) for argument in args]
+        value = function(*args, **{name: self._own(argument) for name, argument in kwargs.items()})
+        if not inspect:
+            return value
+        return [value, args, _shares_memory(value, args)]
+
+    def _own(self, argument: Any) -> Any:
+        """``{"$function": name}`` stands for the submission's own function of that name."""
+        if type(argument) is dict and argument.keys() == {"$function"}:
+            return getattr(self._module, argument["$function"])
+        return argument
+
+    def callback(self, function: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+        """Ask the grader to evaluate one of its functions; may answer calls of its own meanwhile."""
+        self._send(Kind.CALLBACK, [function, args, kwargs])
+        self._nesting += 1
+        try:
+            while True:
+                kind, value = self._receive()
+                if kind == Kind.REPLY:
+                    return value
+                if kind == Kind.REPLY_RAISE:
+                    raise CallbackError(value)
+                if self._nesting > _MAX_NESTING:
+                    raise RecursionError("functions that call each other across the grader too deeply")
+                self._answer(kind, value)
+        finally:
+            self._nesting -= 1
+
+
+class _Callback:
+    """A function of the grader's: calling it asks the grader, and shows nothing of how it answers."""
+
+    __slots__ = ("_worker", "number")
+
+    def __init__(self, worker: Worker, number: int) -> None:
+        self._worker = worker
+        self.number = number
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        return self._worker.callback(self, args, kwargs)
+
+
+_SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
+
+
+def _march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
+    """Take ``n`` steps from (q0, v0) and record each; the loop that the checks of a step share.
+
+    Each step gets copies, so that a step which changes its arguments spoils its own result and not the
+    record.
+
+    Returns:
+        [q, v] of shape (n + 1, d), or {"bad": ..., "step": i} where step i returned something else than
+        two vectors of d numbers.
+    """
+    d = len(q0)
+    q = np.empty((n + 1, d))
+    v = np.empty((n + 1, d))
+    q[0], v[0] = q0, v0
+    for i in range(n):
+        result = step(rhs, t0 + i * h, q[i].copy(), v[i].copy(), h)
+        try:
+            q_next, v_next = result
+            if np.shape(q_next) != (d,) or np.shape(v_next) != (d,):
+                return {"bad": f"shapes {np.shape(q_next)} and {np.shape(v_next)}", "step": i}
+            q[i + 1], v[i + 1] = q_next, v_next
+        except (TypeError, ValueError) as error:
+            return {"bad": f"{type(result).__name__}: {error}"[:200], "step": i}
+    return [q, v]
+
+
+def _arrays(value: Any, depth: int = 4) -> list[np.ndarray[Any, Any]]:
+    if isinstance(value, np.ndarray):
+        return [value]
+    if depth and isinstance(value, list | tuple):
+        return [array for item in value for array in _arrays(item, depth - 1)]
+    return []
+
+
+def _shares_memory(value: Any, args: list[Any]) -> bool:
+    """Whether a returned array is, or is a view of, one of the arguments' arrays."""
+    given = _arrays(args)
+    return any(np.may_share_memory(a, b) for a in _arrays(value) for b in given)
+
+
+def _described(error: BaseException) -> dict[str, Any]:
+    """An exception as plain values: its type, its message and where in the student's code it arose."""
+    try:
+        message = str(error)[:2000]
+    except BaseException:  # noqa: BLE001 - a hostile __str__ must not take the answer away
+        message = "(an exception that cannot be printed)"
+    frames = [
+        [frame.f_code.co_filename[:200], line, frame.f_code.co_name[:100]]
+        for frame, line in itertools.islice(traceback.walk_tb(error.__traceback__), 1000)
+        if not frame.f_code.co_filename.endswith(_OWN_FILES)
+    ]
+    described: dict[str, Any] = {
+        "type": type(error).__name__[:100],
+        "message": message,
+        "frames": frames[-12:],
+        "bases": [base.__name__[:100] for base in type(error).__mro__[:10]],
+    }
+    if isinstance(error, SyntaxError):
+        line = error.lineno
+        described["line"] = line if isinstance(line, int) and math.isfinite(line) else 0
+        described["text"] = str(error.text or "")[:200].rstrip("\n")
+        described["message"] = str(error.msg)[:500]
+    return described
+
+
+_OWN_FILES = ("worker.py", "zygote.py", "wire.py")
+
+
+def run(sock: socket.socket, imports: frozenset[str]) -> None:
+    """Serve one submission over ``sock``; never returns."""
+    sys.stdout = CappedText(1)
+    sys.stderr = CappedText(2)
+    gc.enable()
+    worker = Worker(sock, imports)
+    try:
+        worker.serve()
+    except BaseException:  # noqa: BLE001 - the last words go where the grader looks for them
+        traceback.print_exc()
+        os._exit(1)
+    os._exit(0)

@@ -1,0 +1,149 @@
+"""Solutions to compare with: closed forms where there are any, and a reference for everything else.
+
+``reference`` is good to about twelve digits on the smooth problems of this course and is itself compared
+with the closed forms in the tests.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from course.physics.systems import DampedOscillator, ForcedOscillator, FreeFall, Oscillator, System
+
+    Array = NDArray[np.float64]
+
+__all__ = ["damped_oscillator", "forced_oscillator", "free_fall", "oscillator", "reference"]
+
+_COLUMNS = 10  # extrapolation columns; past ten, round-off wins
+_MAX_HALVINGS = 8
+
+
+def free_fall(system: FreeFall, q0: ArrayLike, v0: ArrayLike, t: float) -> tuple[Array, Array]:
+    """Position (m) and velocity (m/s) after t (s) of free fall; shapes (d,)."""
+    q = np.array(q0, dtype=float)
+    v = np.array(v0, dtype=float)
+    q += v * t
+    q[-1] -= 0.5 * system.g * t * t
+    v[-1] -= system.g * t
+    return q, v
+
+
+def oscillator(system: Oscillator, q0: ArrayLike, v0: ArrayLike, t: float) -> tuple[Array, Array]:
+    """Position and velocity of an undamped spring after t (s); shapes (d,)."""
+    q = np.asarray(q0, dtype=float)
+    v = np.asarray(v0, dtype=float)
+    w = system.omega
+    c, s = math.cos(w * t), math.sin(w * t)
+    return c * q + (s / w) * v, c * v - (w * s) * q
+
+
+def damped_oscillator(
+    system: DampedOscillator, q0: ArrayLike, v0: ArrayLike, t: float
+) -> tuple[Array, Array]:
+    """Position and velocity of an underdamped spring after t (s); shapes (d,).
+
+    Raises:
+        ValueError: the damping is critical or above (rate >= 2 omega).
+    """
+    half = 0.5 * system.rate
+    if not half < system.omega:
+        raise ValueError("This form is for rate < 2 omega only.")
+    w = math.sqrt(system.omega**2 - half**2)
+    q = np.asarray(q0, dtype=float)
+    b = (np.asarray(v0, dtype=float) + half * q) / w
+    c, s, fade = math.cos(w * t), math.sin(w * t), math.exp(-half * t)
+    position = fade * (c * q + s * b)
+    return position, fade * w * (c * b - s * q) - half * position
+
+
+def forced_oscillator(
+    system: ForcedOscillator, q0: ArrayLike, v0: ArrayLike, t: float, t0: float = 0.0
+) -> tuple[Array, Array]:
+    """Position and velocity of a driven spring at time t, from (q0, v0) at time t0 (s); shapes (d,).
+
+    Raises:
+        ValueError: the drive is at resonance, where this form divides by zero.
+    """
+    gap = system.omega**2 - system.drive**2
+    if gap == 0.0:
+        raise ValueError("This form is for a drive off resonance only.")
+    far = system.amplitude / gap
+    w, drive = system.omega, system.drive
+    q = np.asarray(q0, dtype=float) - far * math.cos(drive * t0)
+    v = np.asarray(v0, dtype=float) + far * drive * math.sin(drive * t0)
+    c, s = math.cos(w * (t - t0)), math.sin(w * (t - t0))
+    return (
+        c * q + (s / w) * v + far * math.cos(drive * t),
+        c * v - (w * s) * q - far * drive * math.sin(drive * t),
+    )
+
+
+def reference(
+    system: System, q0: ArrayLike, v0: ArrayLike, times: Sequence[float] | Array, t0: float = 0.0
+) -> tuple[Array, Array]:
+    """Position and velocity at given times, to about twelve digits.
+
+    Each interval is crossed by the midpoint rule with 2, 4, 6, ... substeps, extrapolated to none; an
+    interval that does not converge is halved.
+
+    Args:
+        q0, v0: state at t0 (s), shape (d,).
+        times: rising times after t0, s; shape (n,).
+
+    Returns:
+        q and v, each of shape (n, d).
+
+    Raises:
+        ValueError: the times do not rise from t0, or the solution does not converge (a collision, say).
+
+    Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 1993, section II.9 (GBS).
+    """
+    y = np.concatenate([np.asarray(q0, dtype=float), np.asarray(v0, dtype=float)])
+    d = y.size // 2
+
+    def slope(t: float, y: Array) -> Array:
+        return np.concatenate([y[d:], system(t, y[:d], y[d:])])
+
+    now = t0
+    rows = []
+    for time in map(float, times):
+        if not time >= now:
+            raise ValueError("The times of a reference must rise from its start.")
+        y = _cross(slope, now, y, time - now, _MAX_HALVINGS)
+        rows.append(y)
+        now = time
+    table = np.array(rows).reshape(len(rows), 2 * d)
+    return table[:, :d], table[:, d:]
+
+
+def _cross(slope, t: float, y: Array, span: float, halvings: int) -> Array:  # type: ignore[no-untyped-def]
+    """The solution ``span`` later, by extrapolation; halves the span where that does not converge."""
+    row: list[Array] = []
+    for k in range(1, _COLUMNS + 1):
+        previous, row = row, [_midpoint(slope, t, y, span, 2 * k)]
+        for j, older in enumerate(previous):
+            # Aitken-Neville: the error is a series in (1/n)², so column j cancels its first j terms.
+            row.append(row[j] + (row[j] - older) / ((k / (k - j - 1)) ** 2 - 1.0))
+        if k > 2 and np.max(np.abs(row[-1] - row[-2])) <= 1e-13 * (1.0 + np.max(np.abs(row[-1]))):
+            return row[-1]
+    if halvings == 0:
+        raise ValueError("The reference does not converge here: is there a singularity?")
+    middle = _cross(slope, t, y, 0.5 * span, halvings - 1)
+    return _cross(slope, t + 0.5 * span, middle, 0.5 * span, halvings - 1)
+
+
+def _midpoint(slope, t: float, y: Array, span: float, n: int) -> Array:  # type: ignore[no-untyped-def]
+    """Gragg's smoothed midpoint rule with n substeps (n even)."""
+    h = span / n
+    before, here = y, y + h * slope(t, y)
+    for i in range(1, n):
+        before, here = here, before + 2.0 * h * slope(t + i * h, here)
+    return np.asarray(0.5 * (here + before + h * slope(t + span, here)))

@@ -1,0 +1,197 @@
+"""The four classical ways to step a system forward, as objects over a system and a state.
+
+    ============================  =====  ==========  =================  =======================
+    method                        order  symplectic  evaluations/step   stable on a spring while
+    ============================  =====  ==========  =================  =======================
+    ``ExplicitEuler``             1      no          1                  never
+    ``SemiImplicitEuler``         1      yes         1                  h omega < 2
+    ``VelocityVerlet``            2      yes         2                  h omega < 2
+    ``RK4``                       4      no          4                  h omega < 2 sqrt(2)
+    ============================  =====  ==========  =================  =======================
+
+Order and symplecticity of the Verlet method hold where the acceleration does not depend on the velocity.
+
+    >>> from course.physics.systems import Oscillator
+    >>> start = State.at_rest([1.0])
+    >>> path = trajectory(VelocityVerlet(), Oscillator(omega=2.0), start, h=0.01, n=500)
+    >>> path.t[-1], path.q.shape
+    (5.0, (501, 1))
+
+Source: Hairer, Lubich, Wanner, Acta Numerica 2003 (Verlet); Hairer, Norsett, Wanner, Solving Ordinary
+Differential Equations I, 1993, section II.1 (Runge-Kutta).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, Self
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from course.physics.systems import System
+
+    Array = NDArray[np.float64]
+
+__all__ = [
+    "RK4",
+    "STEPPERS",
+    "ExplicitEuler",
+    "SemiImplicitEuler",
+    "State",
+    "Stepper",
+    "Trajectory",
+    "VelocityVerlet",
+    "trajectory",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where a system is: time t (s), position q (m or rad) and velocity v, each of shape (d,)."""
+
+    t: float
+    q: Array
+    v: Array
+
+    @classmethod
+    def of(cls, q: ArrayLike, v: ArrayLike, t: float = 0.0) -> Self:
+        """A state from anything array-like, copied to float."""
+        return cls(t, np.array(q, dtype=float), np.array(v, dtype=float))
+
+    @classmethod
+    def at_rest(cls, q: ArrayLike, t: float = 0.0) -> Self:
+        """A state with no velocity."""
+        return cls.of(q, np.zeros(np.shape(q)), t)
+
+    def shifted(self, h: float, dq: Array, dv: Array) -> State:
+        """The state h (s) later, displaced by dq and dv."""
+        return State(self.t + h, self.q + dq, self.v + dv)
+
+
+class Stepper(Protocol):
+    """A method that carries a state one step forward; new states never share memory with old ones."""
+
+    order: ClassVar[int]
+    symplectic: ClassVar[bool]
+    evaluations: ClassVar[int]
+
+    def advance(self, system: System, state: State, h: float) -> State:
+        """The state h (s) after ``state``."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class ExplicitEuler:
+    """Order 1, not symplectic: follow the tangent. On a spring the energy grows by 1 + (h omega)² a step."""
+
+    order: ClassVar[int] = 1
+    symplectic: ClassVar[bool] = False
+    evaluations: ClassVar[int] = 1
+
+    def advance(self, system: System, state: State, h: float) -> State:
+        return state.shifted(h, h * state.v, h * system(state.t, state.q, state.v))
+
+
+@dataclass(frozen=True, slots=True)
+class SemiImplicitEuler:
+    """Order 1, symplectic: update one half of the state, then the other with the updated half.
+
+    Attributes:
+        position_first: drift then kick, with the acceleration at the new position and time, instead of
+            kick then drift. Each is the other one run backwards.
+    """
+
+    position_first: bool = False
+
+    order: ClassVar[int] = 1
+    symplectic: ClassVar[bool] = True
+    evaluations: ClassVar[int] = 1
+
+    def advance(self, system: System, state: State, h: float) -> State:
+        if self.position_first:
+            q = state.q + h * state.v
+            return State(state.t + h, q, state.v + h * system(state.t + h, q, state.v))
+        v = state.v + h * system(state.t, state.q, state.v)
+        return State(state.t + h, state.q + h * v, v)
+
+
+@dataclass(frozen=True, slots=True)
+class VelocityVerlet:
+    """Order 2, symplectic and reversible: half a kick, a drift, half a kick (Störmer's method, leapfrog).
+
+    Attributes:
+        drift_first: half a drift, a kick, half a drift instead; one evaluation, taken at mid-step.
+    """
+
+    drift_first: bool = False
+
+    order: ClassVar[int] = 2
+    symplectic: ClassVar[bool] = True
+    evaluations: ClassVar[int] = 2
+
+    def advance(self, system: System, state: State, h: float) -> State:
+        half = 0.5 * h
+        if self.drift_first:
+            q_middle = state.q + half * state.v
+            v = state.v + h * system(state.t + half, q_middle, state.v)
+            return State(state.t + h, q_middle + half * v, v)
+        v_middle = state.v + half * system(state.t, state.q, state.v)
+        q = state.q + h * v_middle
+        return State(state.t + h, q, v_middle + half * system(state.t + h, q, v_middle))
+
+
+@dataclass(frozen=True, slots=True)
+class RK4:
+    """Order 4, not symplectic: four slopes a step, weighted as Simpson's rule weights them."""
+
+    order: ClassVar[int] = 4
+    symplectic: ClassVar[bool] = False
+    evaluations: ClassVar[int] = 4
+
+    def advance(self, system: System, state: State, h: float) -> State:
+        def slopes(stage: State) -> tuple[Array, Array]:
+            return stage.v, system(stage.t, stage.q, stage.v)
+
+        half = 0.5 * h
+        q1, v1 = slopes(state)
+        q2, v2 = slopes(state.shifted(half, half * q1, half * v1))
+        q3, v3 = slopes(state.shifted(half, half * q2, half * v2))
+        q4, v4 = slopes(state.shifted(h, h * q3, h * v3))
+        sixth = h / 6.0
+        return state.shifted(h, sixth * (q1 + 2 * q2 + 2 * q3 + q4), sixth * (v1 + 2 * v2 + 2 * v3 + v4))
+
+
+#: The methods under the names that the command line and the lessons use.
+STEPPERS: dict[str, Stepper] = {
+    "explicit_euler": ExplicitEuler(),
+    "semi_implicit_euler": SemiImplicitEuler(),
+    "velocity_verlet": VelocityVerlet(),
+    "rk4": RK4(),
+}
+
+
+class Trajectory(NamedTuple):
+    """Samples at equal times: t of shape (n + 1,) in s, q and v of shape (n + 1, d)."""
+
+    t: Array
+    q: Array
+    v: Array
+
+
+def trajectory(stepper: Stepper, system: System, start: State, h: float, n: int) -> Trajectory:
+    """Take n steps of h (s) and keep every state, the first included.
+
+    Times are start.t + i h, not a running sum, so they do not drift.
+    """
+    t: Array = start.t + h * np.arange(n + 1, dtype=np.float64)
+    q = np.empty((n + 1, start.q.size))
+    v = np.empty((n + 1, start.q.size))
+    state = start
+    q[0], v[0] = state.q, state.v
+    for i in range(n):
+        state = stepper.advance(system, State(float(t[i]), state.q, state.v), h)
+        q[i + 1], v[i + 1] = state.q, state.v
+    return Trajectory(t, q, v)

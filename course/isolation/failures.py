@@ -1,7 +1,7 @@
 """What goes wrong on the far side of the wire, as the trusted side sees it.
 
-    IsolationError          our side could not provide what it promised: never a student's fault
-    StudentFailure          the student's code, or the process it ran in, gave no value
+IsolationError          our side could not provide what it promised: never a student's fault
+StudentFailure          the student's code, or the process it ran in, gave no value
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import sys
-import time
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from course.isolation import wire
@@ -18,12 +18,14 @@ from course.physics import systems
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from course.isolation.spawn import Handle, Spawner
+    from course.isolation.spawn import Exit, Handle, Spawner
 
 __all__ = ["Connection", "LoadRefusedError", "RemoteFunction"]
 
 Kind = wire.Kind
-_RECV = 1 << 16
+_CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
+_RECV = 1 << 12
+_HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
 _TICK_S = 0.1  # how often a blocked read looks at the clock; it ends by the deadline plus this
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
@@ -79,6 +81,8 @@ class Connection:
         self._buffer = b""
         self._lent: list[Callable[..., Any]] = []
         self._nesting = 0
+        self._refused: AssertionError | None = None
+        self._printed = ""
         self.deadline = deadline
         self.alive = True
         self.cpu_s = 0.0
@@ -112,8 +116,10 @@ class Connection:
         if isinstance(value, wire.Rhs):
             try:
                 return systems.SYSTEMS[value.name](**value.params)
-            except Exception as error:  # any parameters may arrive: whatever the constructor says of them
-                raise wire.WireError(f"a right-hand side that cannot be built: {type(error).__name__}") from None
+            except Exception as error:  # noqa: BLE001 - any parameters may arrive
+                raise wire.WireError(
+                    f"a right-hand side that cannot be built: {type(error).__name__}"
+                ) from None
         raise wire.WireError("a seed from the worker")
 
     # -- calls ----------------------------------------------------------------------------------------
@@ -127,7 +133,7 @@ class Connection:
         return self._ask(Kind.CALL, [function, list(args), kwargs, False], function)
 
     def inspect(self, function: str, *args: Any) -> tuple[Any, list[Any], bool]:
-        """Like ``call``, and also the arguments as the call left them and whether the result shares their memory."""
+        """Like ``call``; also the arguments as it left them, and whether the result shares their memory."""
         answer = self._ask(Kind.CALL, [function, list(args), {}, True], function)
         match answer:
             case [value, list() as after, bool() as shared] if len(after) == len(args):
@@ -140,13 +146,20 @@ class Connection:
 
     def output(self) -> str:
         """What the submission printed so far."""
-        return self._handle.output() if self.alive else ""
+        return self._handle.output() if self.alive else self._printed
 
     def close(self) -> None:
         """End the worker."""
-        if self.alive:
-            self.alive = False
-            self.cpu_s = self._handle.finish().cpu_s
+        self._finish()
+
+    def _finish(self) -> Exit | None:
+        if not self.alive:
+            return None
+        self.alive = False
+        self._printed = self._handle.output()
+        end = self._handle.finish()
+        self.cpu_s = end.cpu_s
+        return end
 
     # -- the conversation -----------------------------------------------------------------------------
 
@@ -156,6 +169,7 @@ class Connection:
             raise StudentFailure.missing(function)
         if not self._nesting:
             self._lent.clear()
+            self._refused = None
         try:
             frame = self._codec.encode(kind, request)
         except wire.UnsupportedValueError as error:
@@ -166,31 +180,38 @@ class Connection:
     def _await_result(self) -> Any:
         while True:
             kind, value = self._receive()
-            if kind == Kind.RESULT:
-                return value
-            if kind == Kind.RAISED:
-                raise self._raised(value)
-            if kind == Kind.CALLBACK:
+            if kind == _CALLBACK:
                 self._answer_callback(value)
+            elif kind in (Kind.RESULT, Kind.RAISED):
+                if self._refused is not None and not self._nesting:
+                    # A function of ours refused what it was given: that is the finding, whatever the
+                    # student's code made of the exception.
+                    refused, self._refused = self._refused, None
+                    raise refused
+                if kind == Kind.RESULT:
+                    return value
+                raise self._raised(value)
             else:
                 raise self._breach(f"a message of kind {kind}")
 
     def _answer_callback(self, value: Any) -> None:
-        match value:
-            case [function, list() as args, dict() as kwargs] if callable(function) and any(
-                function is lent for lent in self._lent
-            ):
-                pass
-            case _:
-                raise self._breach("a callback in another form")
+        try:
+            number, kwargs, *args = value
+            function = self._lent[number]
+            if number < 0 or not (kwargs is None or type(kwargs) is dict):
+                raise TypeError
+        except (TypeError, ValueError, IndexError):
+            raise self._breach("a callback in another form") from None
         if self._nesting >= _MAX_NESTING:
             raise self._breach("functions that call each other across the grader too deeply")
         self._nesting += 1
         try:
-            answer = self._codec.encode(Kind.REPLY, function(*args, **kwargs))
+            answer = self._codec.encode(_REPLY, function(*args, **(kwargs or {})))
         except (StudentFailure, IsolationError):
             raise
-        except Exception as error:  # noqa: BLE001 - anything may be passed; the caller hears what was wrong with it
+        except Exception as error:  # noqa: BLE001 - anything may be passed; the caller hears what was wrong
+            if isinstance(error, AssertionError):
+                self._refused = self._refused or error
             answer = self._codec.encode(Kind.REPLY_RAISE, f"{type(error).__name__}: {error}"[:500])
         finally:
             self._nesting -= 1
@@ -222,7 +243,10 @@ class Connection:
         frames = [
             (frame[1], _text(frame[2]))
             for frame in value.get("frames") or []
-            if isinstance(frame, list) and len(frame) == 3 and frame[0] in self._files and isinstance(frame[1], int)
+            if isinstance(frame, list)
+            and len(frame) == 3
+            and frame[0] in self._files
+            and isinstance(frame[1], int)
         ]
         line = frames[-1][0] if frames else None
         if isinstance(value.get("line"), int):
@@ -245,33 +269,37 @@ class Connection:
     # -- frames ---------------------------------------------------------------------------------------
 
     def _send(self, frame: bytes) -> None:
-        view = memoryview(frame)
-        while view:
+        rest: bytes | memoryview = frame
+        while rest:
             try:
-                view = view[self._sock.send(view) :]
+                sent = self._sock.send(rest)
+                if sent == len(rest):
+                    return
+                rest = memoryview(rest)[sent:]
             except (BlockingIOError, TimeoutError):
                 self._check_deadline()
             except OSError:
                 raise self._ended() from None
 
     def _receive(self) -> tuple[int, Any]:
-        buffer = self._buffer
-        while len(buffer) < wire.HEADER.size:
+        buffer = self._buffer or self._read(_RECV)
+        while len(buffer) < 5:
             buffer += self._read(_RECV)
-        length, kind = wire.HEADER.unpack_from(buffer)
+        length, kind = _HEADER(buffer)
         if not 0 < length <= wire.MAX_FRAME:
             raise self._breach("a frame of impossible length")
-        end = wire.HEADER.size + length - 1
+        end = 4 + length
         if len(buffer) < end:
             rest = bytearray(buffer)
             while len(rest) < end:
                 rest += self._read(min(end - len(rest), 1 << 20))
+                self._check_deadline()  # one that trickles never lets a read block
             buffer = bytes(rest)
         self._buffer = buffer[end:]
-        if time.monotonic() > self.deadline:
+        if monotonic() > self.deadline:
             raise self._timeout()  # a worker that keeps calling back never lets a read block
         try:
-            return kind, self._codec.decode(buffer[wire.HEADER.size : end])
+            return kind, self._codec.decode(buffer[5:end])
         except wire.WireError as error:
             raise self._breach(str(error)) from None
 
@@ -286,11 +314,10 @@ class Connection:
                 raise self._ended() from None
             if not chunk:
                 raise self._ended()
-            self._check_deadline()
             return chunk
 
     def _check_deadline(self) -> None:
-        if time.monotonic() > self.deadline:
+        if monotonic() > self.deadline:
             raise self._timeout()
 
     def _timeout(self) -> StudentFailure:
@@ -303,10 +330,8 @@ class Connection:
 
     def _ended(self) -> StudentFailure:
         """The process is gone without an answer."""
-        self.alive = False
-        end = self._handle.finish()
-        self.cpu_s = end.cpu_s
-        how = f"signal {end.signal}" if end.signal else f"exit code {end.code}"
+        end = self._finish()
+        how = f"signal {end.signal}" if end and end.signal else f"exit code {end.code if end else 0}"
         return StudentFailure("crash", type=how, message=f"its process ended by itself ({how})")
 
 

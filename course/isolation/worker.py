@@ -38,7 +38,9 @@ Kind = wire.Kind
 #: How much of what a submission prints is kept; the rest is dropped without an error.
 MAX_OUTPUT = 64 << 10
 _MAX_NESTING = 8
-_RECV = 1 << 16
+_RECV = 1 << 12
+_HEADER = wire.HEADER.unpack_from
+_CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
 
 
 class CallbackError(ValueError):
@@ -142,14 +144,14 @@ class Worker:
     # -- frames ---------------------------------------------------------------------------------------
 
     def _receive(self) -> tuple[int, Any]:
-        buffer = self._buffer
-        while len(buffer) < wire.HEADER.size:
+        buffer = self._buffer or self._sock.recv(_RECV)
+        while len(buffer) < 5:
             chunk = self._sock.recv(_RECV)
             if not chunk:
                 raise EOFError
             buffer += chunk
-        length, kind = wire.HEADER.unpack_from(buffer)
-        end = wire.HEADER.size + length - 1
+        length, kind = _HEADER(buffer)
+        end = 4 + length
         if len(buffer) < end:
             rest = bytearray(buffer)
             while len(rest) < end:
@@ -159,7 +161,7 @@ class Worker:
                 rest += chunk
             buffer = bytes(rest)
         self._buffer = buffer[end:]
-        return kind, self._codec.decode(buffer[wire.HEADER.size : end])
+        return kind, self._codec.decode(buffer[5:end])
 
     def _send(self, kind: wire.Kind, value: Any) -> None:
         self._sock.sendall(self._codec.encode(kind, value))
@@ -236,22 +238,24 @@ class Worker:
             return getattr(self._module, argument["$function"])
         return argument
 
-    def callback(self, function: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    def callback(self, number: int, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         """Ask the grader to evaluate one of its functions; may answer calls of its own meanwhile."""
-        self._send(Kind.CALLBACK, [function, args, kwargs])
+        self._sock.sendall(self._codec.encode(_CALLBACK, (number, kwargs or None, *args)))
+        kind, value = self._receive()
+        if kind == _REPLY:
+            return value
         self._nesting += 1
         try:
-            while True:
-                kind, value = self._receive()
-                if kind == Kind.REPLY:
-                    return value
+            while kind != Kind.REPLY:
                 if kind == Kind.REPLY_RAISE:
                     raise CallbackError(value)
                 if self._nesting > _MAX_NESTING:
                     raise RecursionError("functions that call each other across the grader too deeply")
                 self._answer(kind, value)
+                kind, value = self._receive()
         finally:
             self._nesting -= 1
+        return value
 
 
 class _Callback:
@@ -264,7 +268,7 @@ class _Callback:
         self.number = number
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        return self._worker.callback(self, args, kwargs)
+        return self._worker.callback(self.number, args, kwargs)
 
 
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())

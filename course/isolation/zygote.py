@@ -142,7 +142,7 @@ def _become_worker(
 
 
 def _keep_only(sock: int, output: int, rules: int) -> None:
-    """Descriptors 0 to 4 become: nothing to read, the output file twice, the socket, the rules; all others close."""
+    """Descriptors 0 to 4 become nothing, the output file twice, the socket, the rules; all others close."""
     import fcntl  # not on Windows, where this never runs
 
     null = os.open(os.devnull, os.O_RDONLY)
@@ -171,9 +171,8 @@ def _request(control: socket.socket) -> tuple[dict[str, Any] | None, list[int]]:
 
 
 def _reply(control: socket.socket, message: dict[str, Any], descriptor: int | None = None) -> None:
-    rights = (
-        [] if descriptor is None else [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", [descriptor]))]
-    )
+    held = array.array("i", [] if descriptor is None else [descriptor])
+    rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, held)] if held else []
     control.sendmsg([json.dumps(message).encode()], rights)
 
 

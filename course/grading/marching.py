@@ -1,0 +1,88 @@
+"""Marching a student's step along a known problem and measuring how far it strays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from course.physics.exact import reference
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from course.physics.systems import System
+
+    Array = NDArray[np.float64]
+
+__all__ = ["CHECKPOINTS", "Marches", "Problem", "march_errors"]
+
+#: Instants at which a trajectory is compared with the reference. Several, because the error of a correct
+#: method can pass through zero at one of them: at half a period from rest semi-implicit Euler shows order 2.
+CHECKPOINTS = 4
+
+
+class Marches(Protocol):
+    """The one thing needed of a submission here."""
+
+    def march(
+        self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """Times (n + 1,), positions and velocities (n + 1, d) of n steps of the student's."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A system, where it starts, and for how long.
+
+    Attributes:
+        name: what a person calls it.
+        q0, v0: state at t0, d numbers each.
+        rate: its own angular frequency, rad/s: velocities are divided by it to be added to positions.
+        span: how long, s.
+        t0: start, s.
+    """
+
+    name: str
+    system: System
+    q0: Sequence[float]
+    v0: Sequence[float]
+    rate: float
+    span: float
+    t0: float = 0.0
+
+    @property
+    def input(self) -> dict[str, Any]:
+        """Plain values that reproduce it, for a finding."""
+        start = {"q0": list(self.q0), "v0": list(self.v0), "t0": self.t0, "span": self.span}
+        return {"problem": self.name, **self.system.params(), **start}
+
+
+def march_errors(
+    submission: Marches, step: str, problem: Problem, counts: Sequence[int]
+) -> tuple[list[float], Array]:
+    """How far a student's step strays from the true motion, for several step sizes.
+
+    Args:
+        step: name of the student's function.
+        counts: numbers of steps to cover the span in; multiples of ``CHECKPOINTS``.
+
+    Returns:
+        Step sizes (s) and, for each, the largest distance in (q, v / rate) over the checkpoints.
+    """
+    times = problem.t0 + problem.span * np.arange(1, CHECKPOINTS + 1) / CHECKPOINTS
+    q_true, v_true = reference(problem.system, problem.q0, problem.v0, times, problem.t0)
+    hs, errors = [], []
+    for n in counts:
+        h = problem.span / n
+        _, q, v = submission.march(step, problem.system, problem.q0, problem.v0, h, n, t0=problem.t0)
+        rows = slice(n // CHECKPOINTS, None, n // CHECKPOINTS)
+        with np.errstate(all="ignore"):
+            off = np.sum((q[rows] - q_true) ** 2 + ((v[rows] - v_true) / problem.rate) ** 2, axis=1)
+            errors.append(float(np.sqrt(np.max(off))))
+        hs.append(h)
+    return hs, np.array(errors)

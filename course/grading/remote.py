@@ -1,0 +1,134 @@
+"""The ``submission`` that checks call: functions of a student's, run in a worker, under deadlines."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from course.grading.values import Inspected, as_march
+from course.isolation.failures import StudentFailure
+from course.isolation.session import Connection, LoadRefusedError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.isolation.spawn import Spawner
+
+__all__ = ["BUDGET_S", "RemoteSubmission"]
+
+#: Wall seconds one submission has in all; checks left over are timeouts.
+BUDGET_S = 60.0
+
+
+class RemoteSubmission:
+    """One submission in a worker. A worker that died is replaced before the next check.
+
+    Args:
+        spawner: starts workers.
+        files: file name to content.
+        main: the file whose functions are checked.
+        timeout: wall seconds per check.
+        seed: seed of the grading run.
+
+    Raises:
+        LoadRefusedError: it cannot be loaded.
+    """
+
+    def __init__(
+        self, spawner: Spawner, files: Mapping[str, bytes], main: str, *, timeout: float, seed: int
+    ) -> None:
+        self.seed = seed
+        self._spawner = spawner
+        self._files = files
+        self._main = main
+        self._timeout = timeout
+        self._end = monotonic() + BUDGET_S
+        self._deadline = min(monotonic() + timeout, self._end)
+        self._printed_before = 0
+        self._connection = self._connect()
+
+    @property
+    def functions(self) -> frozenset[str]:
+        """Names of the functions and classes the module defines."""
+        return self._connection.functions
+
+    # -- for checks -----------------------------------------------------------------------------------
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+        """What the student's function returns, as plain data.
+
+        Args:
+            name: the function.
+            args, kwargs: plain data, arrays, right-hand sides of ``course.physics.systems`` (evaluated
+                beside the student's code), functions (evaluated here, at a cost of some 50 microseconds a
+                call), ``ref(name)``, or generators (which cross as a seed).
+
+        Raises:
+            StudentFailure: it gave no value.
+            CheckFailed: a function given to it refused its arguments.
+        """
+        return self._live().call(name, *args, **kwargs)
+
+    def call_inspect(self, name: str, *args: Any) -> Inspected:
+        """Call it, and say what became of the arguments."""
+        value, after, shared = self._live().inspect(name, *args)
+        return Inspected(value, after, shared)
+
+    def ref(self, name: str) -> Any:
+        """The student's own function, to be passed back as an argument.
+
+        Raises:
+            StudentFailure: there is none of that name.
+        """
+        if name not in self._live().functions:
+            raise StudentFailure.missing(name)
+        return {"$function": name}
+
+    def march(
+        self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
+    ) -> tuple[Any, Any, Any]:
+        """``n`` steps in a row, looped beside the student's code.
+
+        Returns:
+            Times (n + 1,) in s, positions and velocities (n + 1, d).
+
+        Raises:
+            CheckFailed: a step returned something else than two vectors of d numbers.
+        """
+        value = self._live().march(step_name, system, list(q0), list(v0), t0, h, n)
+        q, v = as_march(value, n, len(q0))
+        return t0 + h * np.arange(n + 1), q, v
+
+    # -- for the grader -------------------------------------------------------------------------------
+
+    def begin_check(self) -> None:
+        """Start the clock of one check."""
+        self._deadline = min(monotonic() + self._timeout, self._end)
+        self._connection.deadline = self._deadline
+        self._printed_before = len(self._connection.output()) if self._connection.alive else 0
+
+    def printed(self) -> str:
+        """What the submission printed since the check began."""
+        return self._connection.output()[self._printed_before :]
+
+    def close(self) -> None:
+        """End the worker."""
+        self._connection.close()
+
+    def _connect(self) -> Connection:
+        return Connection(self._spawner, self._files, self._main, self._deadline)
+
+    def _live(self) -> Connection:
+        if monotonic() > self._deadline:
+            raise StudentFailure("timeout", message="it ran out of time")
+        if not self._connection.alive:
+            self._printed_before = 0
+            try:
+                self._connection = self._connect()
+            except (
+                LoadRefusedError
+            ) as error:  # it loaded before: the difference is the submission's own doing
+                raise error.failure from None
+        return self._connection

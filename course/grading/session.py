@@ -1,0 +1,393 @@
+"""Grades submissions of one exercise: checks collected once, a proven sandbox kept warm.
+
+with GradingSession(exercise, catalog, scope="public") as session:
+    verdict = session.grade(Submission({"integrators.py": source}))
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import random
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+from course.errors import MissingCapabilityError
+from course.grading.collected import Check, CollectedChecks
+from course.grading.failures import CheckFailed, finding_of
+from course.grading.remote import RemoteSubmission
+from course.grading.values import plain
+from course.grading.verdict import CheckResult, Finding, Problem, Status, Verdict, Visibility
+from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.probe import open_spawner
+from course.isolation.session import LoadRefusedError
+from course.isolation.spawn import Level
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+__all__ = ["GradingSession", "Scope", "Submission", "grader_version"]
+
+Scope = Literal["public", "full"]
+
+_STATUS = {
+    "error": Status.ERROR,
+    "missing": Status.ERROR,
+    "protocol": Status.CRASH,
+    "timeout": Status.TIMEOUT,
+    "memory": Status.MEMORY,
+    "crash": Status.CRASH,
+}
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What one student handed in for one exercise.
+
+    Attributes:
+        files: file name to content, exactly as handed in.
+    """
+
+    files: Mapping[str, bytes]
+
+    @property
+    def sha256(self) -> str:
+        """Over names and contents, in a fixed order."""
+        digest = hashlib.sha256()
+        for name in sorted(self.files):
+            digest.update(f"{len(name)}:{name}:{len(self.files[name])}:".encode())
+            digest.update(self.files[name])
+        return digest.hexdigest()
+
+
+class GradingSession:
+    """Checks and sandbox of one exercise, ready for any number of submissions.
+
+    Args:
+        exercise: what to grade.
+        catalog: where its files are.
+        scope: "public" for the checks a student has, "full" for the hidden ones too.
+        level: protection level to insist on; None takes the best one that works here.
+        at_least: the weakest level to accept when ``level`` is None.
+        timeout: wall seconds per check.
+        seed: seed of the grading run, for checks that draw their inputs.
+
+    Raises:
+        MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
+        ContentError: a check file is wrong.
+    """
+
+    def __init__(
+        self,
+        exercise: Exercise,
+        catalog: Catalog,
+        *,
+        scope: Scope = "public",
+        level: Level | str | None = None,
+        at_least: Level | str = Level.L1,
+        timeout: float = 10.0,
+        seed: int = 0,
+    ) -> None:
+        self.exercise = exercise
+        self.scope = scope
+        self._timeout = timeout
+        self._seed = seed
+        self._pin = _pinned()
+        self._pin.__enter__()
+        try:
+            self._checks = CollectedChecks(check_files(exercise, catalog, scope))
+            self._spawner = _open(exercise.imports, level, at_least)
+        except BaseException:
+            self._pin.__exit__(None, None, None)
+            raise
+        self.level: str = self._spawner.level.value
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks, in the order they are shown."""
+        return self._checks.checks
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the sandbox; safe to call twice."""
+        self._spawner.close()
+        self._checks.close()
+        self._pin.__exit__(None, None, None)
+
+    def grade(self, submission: Submission, *, only: str | None = None) -> Verdict:
+        """The verdict on one submission.
+
+        Args:
+            only: id of one check to run, with what it requires; the rest is left out of the verdict.
+
+        Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
+        """
+        try:
+            remote = RemoteSubmission(
+                self._spawner,
+                submission.files,
+                self.exercise.module,
+                timeout=self._timeout,
+                seed=self._seed,
+            )
+        except LoadRefusedError as refused:
+            return self._ungradable(_load_problem(refused, self.exercise.module))
+        except IsolationError as error:
+            return self._grader_error(str(error))
+        try:
+            if not any(task.id in remote.functions for task in self.exercise.task):
+                return self._ungradable(_no_functions(self.exercise))
+            results = self._run(remote, only)
+        except IsolationError as error:
+            return self._grader_error(str(error))
+        finally:
+            with contextlib.suppress(IsolationError):
+                remote.close()
+        return self._graded(results)
+
+    # -- checks ---------------------------------------------------------------------------------------
+
+    def _run(self, remote: RemoteSubmission, only: str | None) -> list[CheckResult]:
+        ordered = self._checks.in_order()
+        if only is not None:
+            wanted = _with_required(only, ordered)
+            ordered = [check for check in ordered if check.id in wanted]
+        results: dict[str, CheckResult] = {}
+        for check in ordered:
+            blocking = next(
+                (name for name in check.requires if results[name].status is not Status.PASS), None
+            )
+            results[check.id] = _skipped(check, blocking) if blocking else self._run_one(check, remote)
+        return [results[check.id] for check in self._checks.checks if check.id in results]
+
+    def _run_one(self, check: Check, remote: RemoteSubmission) -> CheckResult:
+        start = perf_counter()
+        remote.begin_check()
+        outcome = self._checks.run(check, remote)
+        duration_ms = (perf_counter() - start) * 1e3
+        if outcome is None:
+            return _result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
+        printed = remote.printed()[:4000] or None
+        match outcome:
+            case IsolationError():
+                raise outcome
+            case CheckFailed():
+                return _found(check, Status.FAIL, outcome.finding, duration_ms, stdout=printed)
+            case StudentFailure():
+                status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
+                traceback = outcome.traceback or None
+                finding = finding_of(outcome)
+                return _found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
+        message = f"The check itself failed: {type(outcome).__name__}: {outcome}"
+        return _result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+
+    # -- verdicts -------------------------------------------------------------------------------------
+
+    def _graded(self, results: list[CheckResult]) -> Verdict:
+        score = sum(result.points for result in results)
+        most = sum(result.max_points for result in results)
+        broken = next((result for result in results if result.status is Status.GRADER_ERROR), None)
+        if broken is not None:
+            problem = Problem(
+                "check_failed", f"{broken.id}: {broken.message}", "Regrade once it is repaired."
+            )
+            return self._verdict("grader_error", score, tuple(results), error=problem)
+        return self._verdict("graded", score, tuple(results), most=most)
+
+    def _ungradable(self, problem: Problem) -> Verdict:
+        return self._verdict("ungradable", 0.0, (), error=problem)
+
+    def _grader_error(self, message: str) -> Verdict:
+        problem = Problem(
+            "isolation_failed", message, "Run `course doctor`, then grade this submission again."
+        )
+        return self._verdict("grader_error", 0.0, (), error=problem)
+
+    def _verdict(
+        self,
+        state: str,
+        score: float,
+        checks: tuple[CheckResult, ...],
+        *,
+        most: float | None = None,
+        error: Problem | None = None,
+    ) -> Verdict:
+        most = sum(check.points for check in self.checks) if most is None else most
+        return Verdict(
+            exercise=self.exercise.id,
+            scope=self.scope,
+            state=state,
+            score=score,
+            max_score=most,
+            # The tolerance is rounding of sums of points, not mercy.
+            passed=state == "graded" and score >= self.exercise.pass_mark * most - 1e-9,
+            checks=checks,
+            isolation=self.level,
+            error=error,
+        )
+
+
+def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tuple[Path, Visibility]]:
+    """The files whose checks a scope runs.
+
+    Raises:
+        MissingCapabilityError: the full scope needs hidden checks, and this installation has none.
+    """
+    files = [(exercise.checks_path, Visibility.PUBLIC)]
+    if scope == "full":
+        graders = catalog.content.graders
+        if graders is None:
+            raise MissingCapabilityError(
+                "This installation has no hidden graders: it is a student's.",
+                help="Grade from a checkout of the course.",
+                code="needs_checkout",
+            )
+        hidden = graders / exercise.id / "checks.py"
+        if hidden.is_file():
+            files.append((hidden, Visibility.HIDDEN))
+    return files
+
+
+def grader_version(exercise: Exercise, catalog: Catalog) -> str:
+    """A digest of everything that decides a score: checks, their helpers, and the machinery."""
+    package = Path(__file__).resolve().parents[1]
+    folders = [Path(exercise.folder), package / "grading", package / "isolation", package / "physics"]
+    if catalog.content.graders is not None:
+        folders.append(catalog.content.graders / exercise.id)
+    digest = hashlib.sha256()
+    for folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if path.suffix in {".py", ".toml", ".ini"} and "__pycache__" not in path.parts:
+                digest.update(
+                    path.relative_to(folder).as_posix().encode() + b"\0" + path.read_bytes() + b"\0"
+                )
+    return digest.hexdigest()[:16]
+
+
+def _open(imports: tuple[str, ...], level: Level | str | None, at_least: Level | str) -> Any:
+    lowest, highest = (Level(at_least), Level.L3) if level is None else (Level(level), Level(level))
+    try:
+        return open_spawner(imports, at_least=lowest, at_most=highest)
+    except IsolationError as error:
+        raise MissingCapabilityError(
+            f"This machine cannot run submissions at protection level {lowest}: {error}.",
+            help="`course doctor` says what would raise the level.",
+            code="protection_level",
+        ) from None
+
+
+@contextlib.contextmanager
+def _pinned() -> Iterator[None]:
+    """Keep this process, and the workers it starts, on one processor.
+
+    Grader and worker take turns and never run at once. On one processor a callback costs about a third of
+    what waking another processor does, and the processor's caches stay warm.
+    """
+    if not hasattr(os, "sched_getaffinity"):
+        yield
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {random.choice(sorted(before))})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def _with_required(only: str, checks: list[Check]) -> set[str]:
+    by_id = {check.id: check for check in checks}
+    wanted, left = set(), [only]
+    while left:
+        name = left.pop()
+        if name not in wanted:
+            wanted.add(name)
+            left += by_id[name].requires
+    return wanted
+
+
+def _result(check: Check, status: Status, **fields: Any) -> CheckResult:
+    return CheckResult(
+        id=check.id,
+        title=check.title,
+        task=check.task,
+        status=status,
+        visibility=check.visibility,
+        points=fields.pop("points", 0.0),
+        max_points=check.points,
+        **fields,
+    )
+
+
+def _found(check: Check, status: Status, finding: Finding, duration_ms: float, **extra: Any) -> CheckResult:
+    return _result(
+        check,
+        status,
+        duration_ms=duration_ms,
+        message=finding.message,
+        help=finding.help,
+        diagnosis=finding.diagnosis,
+        input=plain(finding.input),
+        expected=plain(finding.expected),
+        actual=plain(finding.actual),
+        units=finding.units,
+        tolerance=finding.tolerance,
+        first_divergence=finding.first_divergence,
+        **extra,
+    )
+
+
+def _skipped(check: Check, blocking: str) -> CheckResult:
+    return _result(
+        check,
+        Status.SKIP,
+        blocked_by=blocking,
+        message="Not run: it builds on a check that did not pass.",
+        help="Repair that one first.",
+    )
+
+
+def _load_problem(refused: LoadRefusedError, module: str) -> Problem:
+    failure = refused.failure
+    where = f"{module}, line {failure.line}" if failure.line else module
+    if refused.stage == "syntax":
+        shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
+        return Problem(
+            "syntax_error",
+            f"{where}: Python cannot read this file: {failure.message}{shown}.",
+            "Run `python -m py_compile` on it, or look at that line and the one above it.",
+        )
+    if refused.stage == "timeout":
+        message = f"{module} did not finish loading in time."
+        return Problem(
+            "import_timeout", message, "Move work out of the top level of the file, into functions."
+        )
+    if refused.stage == "import":
+        return Problem(
+            "import_error",
+            f"{where}: loading it raises {failure.type}: {failure.message}.",
+            "A file that is checked must load without errors: try `python -c 'import ...'` on it.",
+        )
+    message = f"{module} ends its process while it is loaded ({failure.message})."
+    return Problem(
+        "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
+    )
+
+
+def _no_functions(exercise: Exercise) -> Problem:
+    names = ", ".join(task.id for task in exercise.task)
+    return Problem(
+        "no_declared_functions",
+        f"{exercise.module} defines none of the functions of this exercise.",
+        f"Keep the names the stub gave: {names}.",
+    )

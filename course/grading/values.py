@@ -1,0 +1,265 @@
+"""Reading what a student's function returned, which may be any plain value at all.
+
+Each ``as_...`` gives the value in the shape a check can use, or raises ``CheckFailed`` with a finding that
+says what came instead. A wrong type, a wrong shape or None is the student's mistake and never an exception
+of ours. NaN and infinity pass through: comparing them is the check's business.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from course.grading.failures import CheckFailed
+from course.grading.verdict import Finding
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+__all__ = [
+    "Inspected",
+    "as_array",
+    "as_bool",
+    "as_integer",
+    "as_list",
+    "as_march",
+    "as_matrix",
+    "as_number",
+    "as_pair",
+    "as_record",
+    "as_text",
+    "as_tuple",
+    "as_vector",
+    "plain",
+]
+
+_SHOWN = 24  # numbers of an array that a finding shows
+
+
+@dataclass(frozen=True, slots=True)
+class Inspected:
+    """What a call left behind.
+
+    Attributes:
+        value: what it returned.
+        args_after: the arguments as they were after the call.
+        shared: True if a returned array shares memory with an argument.
+    """
+
+    value: Any
+    args_after: list[Any]
+    shared: bool
+
+
+def as_number(value: Any, name: str = "the result") -> float:
+    """One real number; a one-element array of no dimension counts, a list of one number does not."""
+    if isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "fiu":
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        _refuse(value, name, "a number")
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def as_integer(value: Any, name: str = "the result") -> int:
+    """One whole number; 4.0 counts as 4."""
+    number = as_number(value, name)
+    if not number.is_integer():
+        _refuse(value, name, "a whole number")
+    return int(number)
+
+
+def as_bool(value: Any, name: str = "the result") -> bool:
+    """True or False; neither 1 nor "yes"."""
+    if isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind == "b":
+        value = value.item()
+    if not isinstance(value, bool | np.bool_):
+        _refuse(value, name, "True or False")
+    return bool(value)
+
+
+def as_text(value: Any, name: str = "the result") -> str:
+    """A str."""
+    if not isinstance(value, str):
+        _refuse(value, name, "a str")
+    return value
+
+
+def as_list(value: Any, name: str = "the result", length: int | None = None) -> list[Any]:
+    """A list or tuple (or the rows of an array), of the given length if one is given."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        value = list(value)
+    if not isinstance(value, list | tuple) or (length is not None and len(value) != length):
+        _refuse(
+            value, name, "a list of the right length", "a list" if length is None else f"a list of {length}"
+        )
+    return list(value)
+
+
+def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") -> Array:
+    """Real numbers of this shape; None in ``shape`` stands for any length. Nested lists count."""
+    array = _real(value)
+    fits = array is not None and array.ndim == len(shape)
+    wanted = (
+        "(" + ", ".join("N" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
+    )
+    if array is None:
+        _refuse(value, name, "an array of numbers", f"numbers of shape {wanted}")
+    if not fits or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True)):
+        raise CheckFailed(
+            Finding(
+                message=f"{_capital(name)} has the wrong shape.",
+                help="Print its `numpy.shape` and compare it with the shape in the README's contract.",
+                diagnosis="WRONG_SHAPE",
+                expected=f"shape {wanted}",
+                actual=f"shape {array.shape}",
+            )
+        )
+    return array
+
+
+def as_vector(value: Any, d: int | None = None, name: str = "the result") -> Array:
+    """Real numbers of shape (d,); of any length if d is None."""
+    return as_array(value, (d,), name)
+
+
+def as_matrix(value: Any, shape: tuple[int | None, int | None], name: str = "the result") -> Array:
+    """Real numbers of shape (rows, columns)."""
+    return as_array(value, shape, name)
+
+
+def as_tuple(value: Any, names: Sequence[str]) -> list[Any]:
+    """What a function that returns several things returned: exactly as many as there are names."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        value = list(value)
+    if not isinstance(value, list | tuple) or len(value) != len(names):
+        _refuse(value, "the result", f"({', '.join(names)})")
+    return list(value)
+
+
+def as_pair(value: Any, d: int, names: tuple[str, str] = ("q_next", "v_next")) -> tuple[Array, Array]:
+    """Two vectors of shape (d,), as the steps return them."""
+    first, second = as_tuple(value, names)
+    return as_vector(first, d, names[0]), as_vector(second, d, names[1])
+
+
+def as_record(value: Any, keys: Sequence[str], name: str = "the result") -> dict[str, Any]:
+    """A dict with exactly these keys; a missing or an extra one is named."""
+    if not isinstance(value, dict):
+        _refuse(value, name, "a dict")
+    missing = [key for key in keys if key not in value]
+    extra = [str(key)[:80] for key in value if key not in keys]
+    if missing or extra:
+        parts = [f"lacks {', '.join(missing)}"] * bool(missing) + ["has keys nobody asked for"] * bool(extra)
+        raise CheckFailed(
+            Finding(
+                message=f"{_capital(name)} {' and '.join(parts)}.",
+                help=f"Return a dict with exactly these keys: {', '.join(keys)}.",
+                diagnosis="WRONG_KEYS",
+                expected=list(keys),
+                actual=[str(key)[:80] for key in list(value)[:40]],
+            )
+        )
+    return value
+
+
+def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
+    """Positions and velocities of a march of n steps, each (n + 1, d), from what the worker said.
+
+    The worker answers either the two arrays or ``{"bad": what came, "step": i}`` for a step that did not
+    return two vectors of shape (d,).
+    """
+    if isinstance(result, dict) and "bad" in result:
+        bad = str(result["bad"])[:200]
+        nothing = bad.startswith("NoneType")
+        raise CheckFailed(
+            Finding(
+                message="Your step returned None." if nothing else _NOT_A_PAIR,
+                help=_NO_RETURN if nothing else "Return two arrays as long as q: `return q_next, v_next`.",
+                diagnosis="RETURNS_NOTHING" if nothing else "NOT_A_PAIR",
+                expected=f"(q_next, v_next), each of shape ({d},)",
+                actual=bad,
+            )
+        )
+    q, v = as_tuple(result, ("q", "v"))
+    return as_array(q, (n + 1, d), "q"), as_array(v, (n + 1, d), "v")
+
+
+def plain(value: Any) -> Any:
+    """``value`` for a finding: numpy becomes lists and numbers, long things are cut, others are named."""
+    if isinstance(value, np.ndarray):
+        return value.tolist() if value.size <= _SHOWN else f"array of shape {value.shape}"
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in list(value.items())[:_SHOWN]}
+    if isinstance(value, list | tuple):
+        more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
+        return [plain(item) for item in value[:_SHOWN]] + more
+    if isinstance(value, bool | int | float) or value is None:
+        return value
+    return value[:200] if isinstance(value, str) else f"({type(value).__name__})"
+
+
+def _real(value: Any) -> Array | None:
+    """``value`` as a float array, or None if it is not real numbers of one regular shape."""
+    if not isinstance(value, np.ndarray | list | tuple | int | float) or isinstance(value, bool):
+        return None
+    try:
+        array = np.asarray(value)
+    except ValueError:  # ragged lists
+        return None
+    if array.size == 0 and array.dtype == object:
+        return None
+    return array.astype(float) if array.dtype.kind in "fiu" else None
+
+
+def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
+    """Fail because ``value`` is not ``wanted``; a wanted size stands in ``expected`` only."""
+    nothing = value is None
+    raise CheckFailed(
+        Finding(
+            message=f"{_capital(name)} is {_kind(value)}, not {wanted}.",
+            help=_NO_RETURN
+            if nothing
+            else "The README's contract says what to return, and what each part is.",
+            diagnosis="RETURNS_NOTHING" if nothing else "WRONG_TYPE",
+            expected=expected or wanted,
+            actual=plain(value),
+        )
+    )
+
+
+def _kind(value: Any) -> str:
+    """What sort of value it is, in words that give none of it away."""
+    return _KINDS.get(type(value), "something else")
+
+
+_KINDS = {
+    type(None): "None",
+    bool: "True or False",
+    int: "a number",
+    float: "a number",
+    str: "a str",
+    list: "a list that does not fit",
+    tuple: "a tuple that does not fit",
+    dict: "a dict",
+    np.ndarray: "an array that does not fit",
+}
+
+
+def _capital(name: str) -> str:
+    return name[:1].upper() + name[1:] if name.startswith("the ") else f"`{name}`"
+
+
+_NOT_A_PAIR = "Your step does not return two arrays of the same shape as q and v."
+_NO_RETURN = "Is a `return` missing? A function without one gives None."

@@ -1,0 +1,146 @@
+"""Finds the protection level of this machine by trying it, never by asking for versions.
+
+A level counts when a canary, run as a submission, can neither read a file it must not see nor open a socket
+nor start a process. Whoever grades gets a spawner that has just proven itself.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+
+from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.session import Connection, LoadRefusedError
+from course.isolation.spawn import Level, Spawner, spawner
+
+__all__ = ["Protection", "open_spawner", "probe"]
+
+_CANARY = b"""
+def canary(path):
+    import os, socket
+    done = []
+    def attempt(name, action):
+        try:
+            action()
+        except BaseException:
+            return
+        done.append(name)
+    attempt("read a file of the grader's", lambda: open(path).read())
+    attempt("list the folder of the grader's file", lambda: os.listdir(os.path.dirname(path)))
+    attempt("open a TCP socket", lambda: socket.socket().bind(("127.0.0.1", 0)))
+    attempt("open a UDP socket", lambda: socket.socket(type=socket.SOCK_DGRAM).sendto(b"x", ("127.0.0.1", 9)))
+    attempt("start a process", lambda: os.fork() or os._exit(0))
+    attempt("signal another process", lambda: os.kill(os.getppid() or 2, 0))
+    attempt("import the course", lambda: __import__("course.physics.integrators"))
+    return done
+"""
+_DEADLINE_S = 20.0
+
+
+@dataclass(frozen=True)
+class Protection:
+    """What this machine can enforce.
+
+    Attributes:
+        level: the strongest level that proved itself.
+        causes: why the stronger ones did not, one sentence each.
+        advice: what would raise the level, one sentence each; never to switch a protection off.
+    """
+
+    level: Level
+    causes: tuple[str, ...]
+    advice: tuple[str, ...]
+
+
+def open_spawner(
+    imports: tuple[str, ...], *, at_least: Level = Level.L1, at_most: Level = Level.L3
+) -> Spawner:
+    """A spawner of the strongest level that proves itself within the bounds.
+
+    Raises:
+        IsolationError: no level within the bounds works here; the message gives each cause.
+    """
+    causes = []
+    for level in reversed(Level):
+        if at_least <= level <= at_most:
+            try:
+                return _proven(level, imports)
+            except IsolationError as error:
+                causes.append(f"{level}: {error}")
+    raise IsolationError("; ".join(causes) or f"no protection level between {at_least} and {at_most}")
+
+
+def probe(imports: tuple[str, ...] = ("numpy",)) -> Protection:
+    """Try every level from the strongest down and say what was found."""
+    causes = []
+    for level in (Level.L3, Level.L2):
+        try:
+            _proven(level, imports).close()
+        except IsolationError as error:
+            causes.append(f"{level} is not available: {error}.")
+        else:
+            return Protection(level, tuple(causes), _advice(level))
+    return Protection(Level.L1, tuple(causes), _advice(Level.L1))
+
+
+def _proven(level: Level, imports: tuple[str, ...]) -> Spawner:
+    """A spawner after one complete life of a canary in it."""
+    if level is not Level.L1 and not sys.platform.startswith("linux"):
+        raise IsolationError("it needs Linux")
+    found = spawner(level, imports)
+    try:
+        if level is not Level.L1:
+            escaped = _escapes(found)
+            if escaped:
+                raise IsolationError(f"a test submission could {', '.join(escaped)}")
+    except BaseException:
+        found.close()
+        raise
+    return found
+
+
+def _escapes(found: Spawner) -> list[str]:
+    with tempfile.TemporaryDirectory(prefix="course-canary-") as folder:
+        secret = Path(folder) / "secret"
+        secret.write_text("secret", "utf-8")
+        # Readable to everyone: only the lockdown must stand between it and the canary.
+        Path(folder).chmod(0o755)
+        secret.chmod(0o644)
+        try:
+            connection = Connection(found, {"canary.py": _CANARY}, "canary.py", monotonic() + _DEADLINE_S)
+            try:
+                done = connection.call("canary", str(secret))
+            finally:
+                connection.close()
+        except (LoadRefusedError, StudentFailure) as error:
+            raise IsolationError(f"a test submission did not run: {error}") from None
+    return [str(item) for item in done] if isinstance(done, list) else ["answer in another form"]
+
+
+def _advice(level: Level) -> tuple[str, ...]:
+    if level is Level.L3:
+        return ()
+    if not sys.platform.startswith("linux"):
+        return ("Grade a class on Linux: there L3 is available. Your own checks are fine as they are.",)
+    if shutil.which("bwrap") is None:
+        return (f"Install bubblewrap for L3: {_install('bubblewrap')}",)
+    if Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns").exists():
+        return ("This system lets only chosen programs use user namespaces; L2 is the level meant for it.",)
+    return ("A container often forbids namespaces; L3 needs the host, or a container that allows them.",)
+
+
+def _install(package: str) -> str:
+    managers = {"apt-get": "sudo apt-get install", "dnf": "sudo dnf install", "pacman": "sudo pacman -S"}
+    for manager, command in {**managers, "zypper": "sudo zypper install", "apk": "doas apk add"}.items():
+        if shutil.which(manager):
+            return f"{command} {package}".replace("sudo ", "" if _is_root() else "sudo ")
+    return f"the package {package}"
+
+
+def _is_root() -> bool:
+    return hasattr(os, "getuid") and os.getuid() == 0

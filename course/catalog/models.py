@@ -16,7 +16,17 @@ from course.ids import ExerciseId, LessonId
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["FORMAT_VERSION", "Exercise", "Hints", "Lesson", "Mutant", "Task"]
+__all__ = [
+    "FORMAT_VERSION",
+    "Exercise",
+    "Hints",
+    "Lesson",
+    "Mutant",
+    "MutantList",
+    "Syllabus",
+    "Task",
+    "TaskHints",
+]
 
 #: Files that declare a newer format are refused: an older program must not half-understand them.
 FORMAT_VERSION = 1
@@ -134,6 +144,27 @@ class Mutant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     misconception: str
     check: str
     diagnosis: str
+
+
+class MutantList(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``mutants.toml`` of an exercise."""
+
+    format_version: int
+    mutant: tuple[Mutant, ...]
+
+
+class Syllabus(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``syllabus.toml``: which course this is, and its lessons in the order they are read.
+
+    Attributes:
+        version: version of the content; empty where it goes with the package and has the package's.
+    """
+
+    format_version: int
+    id: str
+    title: str
+    lessons: tuple[str, ...]
+    version: str = ""
 
 
 class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

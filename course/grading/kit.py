@@ -16,6 +16,7 @@ from __future__ import annotations
 import functools
 import importlib.util
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,7 +60,6 @@ from course.grading.verdict import Divergence, Finding, Tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
     from types import ModuleType
 
     from numpy.typing import ArrayLike, NDArray
@@ -110,6 +110,7 @@ __all__ = [
     "first_divergence",
     "march_errors",
     "plain",
+    "sibling",
 ]
 
 
@@ -223,6 +224,16 @@ def companion(exercise_id: str, module: str) -> ModuleType:
     from course.catalog.locate import content
 
     return _load(content().exercises / exercise_id / f"{module}.py", f"{exercise_id}_{module}")
+
+
+def sibling(file: str, module: str) -> ModuleType:
+    """A module beside a file of checks: ``sibling(__file__, "bundles")``.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+    """
+    path = Path(file).resolve()
+    return _load(path.with_name(f"{module}.py"), f"{path.parent.name}_{module}")
 
 
 @functools.cache

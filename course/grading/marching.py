@@ -61,6 +61,10 @@ class Problem:
         start = {"q0": list(self.q0), "v0": list(self.v0), "t0": self.t0, "span": self.span}
         return {"problem": self.name, **self.system.params(), **start}
 
+    def run(self, n: int) -> tuple[System, Sequence[float], Sequence[float], float, int, float]:
+        """(system, q0, v0, h, n, t0) of a march over the span in n steps."""
+        return self.system, self.q0, self.v0, self.span / n, n, self.t0
+
 
 def march_errors(
     submission: Marches, step: str, problem: Problem, counts: Sequence[int]

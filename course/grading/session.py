@@ -77,6 +77,7 @@ class GradingSession:
         at_least: the weakest level to accept when ``level`` is None.
         timeout: wall seconds per check.
         seed: seed of the grading run, for checks that draw their inputs.
+        processor: picks the processor to stay on; None picks any.
 
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
@@ -93,12 +94,13 @@ class GradingSession:
         at_least: Level | str = Level.L1,
         timeout: float = 10.0,
         seed: int = 0,
+        processor: int | None = None,
     ) -> None:
         self.exercise = exercise
         self.scope = scope
         self._timeout = timeout
         self._seed = seed
-        self._pin = _pinned()
+        self._pin = _pinned(processor)
         self._pin.__enter__()
         try:
             self._checks = CollectedChecks(check_files(exercise, catalog, scope))
@@ -288,7 +290,7 @@ def _open(imports: tuple[str, ...], level: Level | str | None, at_least: Level |
 
 
 @contextlib.contextmanager
-def _pinned() -> Iterator[None]:
+def _pinned(processor: int | None) -> Iterator[None]:
     """Keep this process, and the workers it starts, on one processor.
 
     Grader and worker take turns and never run at once. On one processor a callback costs about a third of
@@ -298,7 +300,9 @@ def _pinned() -> Iterator[None]:
         yield
         return
     before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {random.choice(sorted(before))})
+    available = sorted(before)
+    chosen = random.choice(available) if processor is None else available[processor % len(available)]
+    os.sched_setaffinity(0, {chosen})
     try:
         yield
     finally:

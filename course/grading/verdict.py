@@ -6,12 +6,23 @@ hidden check must not reveal, so ``for_student`` can redact by dropping fields a
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import Any
 
 import msgspec
 
-__all__ = ["CheckResult", "Divergence", "Finding", "Problem", "Status", "Tolerance", "Verdict", "for_student"]
+__all__ = [
+    "CheckResult",
+    "Divergence",
+    "Finding",
+    "Problem",
+    "Status",
+    "Tolerance",
+    "Verdict",
+    "finite",
+    "for_student",
+]
 
 
 class Status(StrEnum):
@@ -151,3 +162,14 @@ def for_student(result: CheckResult) -> CheckResult:
         traceback=None,
         stdout=None,
     )
+
+
+def finite(value: Any) -> Any:
+    """``value`` with the numbers that JSON has not as "nan", "inf" and "-inf"."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(item) for item in value]
+    return value

@@ -1,0 +1,155 @@
+"""The course checks itself.
+
+``audit`` reads every lesson and exercise and grades what must pass and what must fail. It reports all that
+is wrong at once: an author mends a list, not one message after another.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from course.authoring.files import audit_files, blanks_in, find_blanks
+from course.authoring.grading import OpenGrader, grading_session
+from course.authoring.lessons import audit_lesson, audit_syllabus
+from course.authoring.links import LinkChecker
+from course.authoring.proofs import Proof, Prover, plan
+from course.authoring.report import AuditReport, Findings
+from course.authoring.variants import instructors, solutions_folder
+from course.errors import ContentError, NotFoundError
+
+if TYPE_CHECKING:
+    from course.authoring.report import Progress
+    from course.authoring.source import CheckSource
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+__all__ = ["audit"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """An exercise whose files are in order, ready to be graded."""
+
+    exercise: Exercise
+    checks: tuple[CheckSource, ...]
+    proofs: tuple[Proof, ...]
+
+
+def audit(
+    catalog: Catalog,
+    only: str | None = None,
+    *,
+    on_progress: Progress | None = None,
+    open_grader: OpenGrader = grading_session,
+) -> AuditReport:
+    """Check the course, or one lesson or exercise of it.
+
+    Args:
+        catalog: the course; it needs its solutions and hidden graders.
+        only: id of a lesson or an exercise; None for everything.
+        on_progress: told before each step how many of how many are done.
+        open_grader: gives the grader of an exercise.
+
+    Raises:
+        MissingCapabilityError: this installation has no solutions or no hidden graders.
+        NotFoundError: nothing is called ``only``.
+    """
+    started = time.monotonic()
+    instructors(catalog)
+    findings = Findings(catalog.content.root)
+    try:
+        lessons, exercises = _chosen(catalog, only)
+        if only is None:
+            audit_syllabus(catalog, findings)
+    except ContentError as error:
+        findings.add_error(error)
+        return AuditReport(findings.sorted(), seconds=time.monotonic() - started)
+    links = LinkChecker(catalog, findings)
+    for lesson_id in lessons:
+        path = catalog.content.lessons / f"{lesson_id}.md"
+        if path.is_file() and not blanks_in(path, findings):
+            audit_lesson(catalog, lesson_id, findings, links)
+    read = [_read(catalog, exercise_id, findings) for exercise_id in exercises]
+    candidates = [candidate for candidate in read if candidate is not None]
+    graded, isolation = _grade(catalog, candidates, findings, on_progress, open_grader)
+    return AuditReport(
+        problems=findings.sorted(),
+        lessons=lessons,
+        exercises=exercises,
+        checks=sum(len(candidate.checks) for candidate in candidates),
+        graded=graded,
+        isolation=isolation,
+        seconds=time.monotonic() - started,
+    )
+
+
+def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Ids of the lessons and exercises to look at; lesson files that nothing lists yet are among them."""
+    files = {path.stem for path in catalog.content.lessons.glob("*.md")}
+    folders = {path.name for path in catalog.content.exercises.iterdir() if path.is_dir()}
+    folders = {name for name in folders if not name.startswith((".", "__"))}
+    listed = catalog.lesson_ids()
+    lessons = (*listed, *sorted(files - set(listed)))
+    exercises = tuple(sorted(folders))
+    if only is None:
+        return lessons, exercises
+    chosen = tuple(i for i in lessons if i == only), tuple(i for i in exercises if i == only)
+    if not any(chosen):
+        raise NotFoundError(
+            f"Neither a lesson nor an exercise is called {only[:80]!r}.",
+            help=f"There are {', '.join([*lessons, *exercises])}.",
+        )
+    return chosen
+
+
+def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate | None:
+    """Audit the files of an exercise; None if they are not fit for grading."""
+    own = Findings(findings.root)
+    candidate = None
+    try:
+        if not find_blanks(catalog, exercise_id, own):
+            exercise = catalog.read_exercise(exercise_id)
+            _check_readmes(catalog, exercise, own)
+            checks = audit_files(catalog, exercise, own)
+            candidate = _Candidate(exercise, checks, plan(catalog, exercise, own))
+    except ContentError as error:
+        own.add_error(error)
+    findings.problems += own.problems
+    # Checks that lack a marker would only fail again, all at once and less clearly.
+    return None if own.of("check") else candidate
+
+
+def _check_readmes(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
+    links = LinkChecker(catalog, findings)
+    links.check_readme(exercise.readme_path)
+    prose = solutions_folder(catalog, exercise) / "README.md"
+    if prose.is_file():
+        links.check_readme(prose)
+
+
+def _grade(
+    catalog: Catalog,
+    candidates: list[_Candidate],
+    findings: Findings,
+    on_progress: Progress | None,
+    open_grader: OpenGrader,
+) -> tuple[int, str]:
+    """Grade everything that was planned; how many submissions that were, and at which protection level."""
+    total = sum(len(candidate.proofs) for candidate in candidates)
+    done, isolation = 0, ""
+    for candidate in candidates:
+        exercise = candidate.exercise
+        entries = solutions_folder(catalog, exercise) / "mutants.toml"
+        prover = Prover(exercise, candidate.checks, entries, findings)
+        with open_grader(exercise, catalog) as grade:
+            for proof in candidate.proofs:
+                if on_progress:
+                    on_progress(done, total, f"{exercise.id}: {proof.role} {proof.path.name}")
+                prover.prove(proof, grade)
+                done += 1
+        isolation = prover.isolation
+    if on_progress:
+        on_progress(done, total, "")
+    return done, isolation

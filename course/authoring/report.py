@@ -1,0 +1,99 @@
+"""What an audit found: problems that name the file, the line and the fix, and how much was looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from course.errors import ContentError
+
+__all__ = ["AuditProblem", "AuditReport", "Findings", "Progress"]
+
+#: Called with steps done, steps in all, and what is being done now.
+Progress: TypeAlias = "Callable[[int, int, str], None]"
+
+
+@dataclass(frozen=True, slots=True)
+class AuditProblem:
+    """One thing that is wrong.
+
+    Attributes:
+        file: the file at fault, relative to the course's root where it lies below it.
+        line: 1-based, or None where no single line is to blame.
+        code: a stable name of the rule that is broken.
+        message: what is wrong.
+        fix: what to do about it.
+    """
+
+    file: str
+    line: int | None
+    code: str
+    message: str
+    fix: str
+
+    @property
+    def where(self) -> str:
+        """``file:line`` as editors understand it."""
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+
+@dataclass(frozen=True, slots=True)
+class AuditReport:
+    """The outcome of an audit.
+
+    Attributes:
+        problems: sorted by file and line; empty is what one hopes for.
+        lessons, exercises: ids that were looked at.
+        checks: number of checks, public and hidden.
+        graded: number of submissions that were graded to find out.
+        isolation: protection level they ran at; empty if none ran.
+        seconds: how long it took.
+    """
+
+    problems: tuple[AuditProblem, ...]
+    lessons: tuple[str, ...] = ()
+    exercises: tuple[str, ...] = ()
+    checks: int = 0
+    graded: int = 0
+    isolation: str = ""
+    seconds: float = 0.0
+
+    @property
+    def ok(self) -> bool:
+        """True if nothing is wrong."""
+        return not self.problems
+
+
+@dataclass(slots=True)
+class Findings:
+    """Problems as they are collected.
+
+    Args:
+        root: paths below it are reported relative to it.
+    """
+
+    root: Path
+    problems: list[AuditProblem] = field(default_factory=list)
+
+    def add(self, file: Path | str, line: int | None, code: str, message: str, fix: str) -> None:
+        """Note one problem; the same one twice is noted once."""
+        path = Path(file)
+        shown = path.relative_to(self.root).as_posix() if path.is_relative_to(self.root) else str(path)
+        problem = AuditProblem(shown, line, code, message, fix)
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+    def add_error(self, error: ContentError) -> None:
+        """Note what the loader refused."""
+        self.add(error.file, error.line, "content", error.problem, error.help)
+
+    def of(self, *codes: str) -> bool:
+        """True if a problem with one of these codes was noted."""
+        return any(problem.code in codes for problem in self.problems)
+
+    def sorted(self) -> tuple[AuditProblem, ...]:
+        return tuple(sorted(self.problems, key=lambda p: (p.file, p.line or 0, p.code, p.message)))

@@ -1,0 +1,192 @@
+"""Reads Python files of an exercise without running them: signatures, imports, and the checks' markers."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import re
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from course.catalog.reading import read_text
+from course.errors import ContentError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = [
+    "CheckSource",
+    "Signature",
+    "checks_in",
+    "foreign_imports",
+    "parse",
+    "quoted_numbers",
+    "signatures",
+]
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+#: A number with a decimal point or an exponent: what a hidden check's words must not contain.
+DECIMAL = re.compile(r"(?<![\w.])\d+(?:\.\d+(?:[eE][-+]?\d+)?|[eE][-+]?\d+)(?![\w.]*\w)")
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A function's head: ``text`` without annotations, ``annotated`` as it is written."""
+
+    name: str
+    line: int
+    text: str
+    annotated: str
+
+
+@dataclass(frozen=True, slots=True)
+class CheckSource:
+    """A check as its source declares it.
+
+    Attributes:
+        id: the function's name without ``test_``.
+        title: first line of its docstring; empty if there is none.
+        task, points: what its markers say; None where a marker is missing or is not a plain value.
+        requires: ids of the checks it depends on.
+        hidden: True for a grader, False for a public check.
+    """
+
+    id: str
+    path: Path
+    line: int
+    title: str
+    task: str | None
+    points: float | None
+    requires: tuple[str, ...]
+    hidden: bool
+
+
+def parse(path: Path) -> ast.Module:
+    """The syntax tree of a Python file.
+
+    Raises:
+        ContentError: it cannot be read or is not Python.
+    """
+    text = read_text(path)
+    try:
+        return ast.parse(text, filename=str(path))
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        words = getattr(error, "msg", None) or str(error)
+        raise ContentError(
+            path, line, f"this is not valid Python: {words}.", help="Correct the line."
+        ) from None
+
+
+def signatures(tree: ast.Module) -> dict[str, Signature]:
+    """The functions a module defines at its top level, by name; the last definition wins."""
+    found = {}
+    for node in tree.body:
+        if isinstance(node, Function):
+            found[node.name] = Signature(
+                node.name,
+                node.lineno,
+                f"{node.name}({ast.unparse(_without_annotations(node.args))})",
+                f"{node.name}({ast.unparse(node.args)})",
+            )
+    return found
+
+
+def foreign_imports(tree: ast.Module, allowed: tuple[str, ...]) -> Iterator[tuple[int, str]]:
+    """Line and name of each top-level package that is neither allowed nor of the standard library."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = ["." * node.level + (node.module or "")]
+        else:
+            continue
+        for name in names:
+            top = name.split(".")[0]
+            if top not in allowed and top not in sys.stdlib_module_names:
+                yield node.lineno, name
+
+
+def checks_in(path: Path, tree: ast.Module, *, hidden: bool) -> tuple[CheckSource, ...]:
+    """The checks of a file, in order."""
+    return tuple(
+        CheckSource(
+            id=node.name.removeprefix("test_"),
+            path=path,
+            line=node.lineno,
+            title=(ast.get_docstring(node) or "").split("\n")[0].strip(),
+            task=_text(_marker(node, "task")),
+            points=_number(_marker(node, "points")),
+            requires=tuple(
+                value for call in _markers(node, "requires") for arg in call.args if (value := _text([arg]))
+            ),
+            hidden=hidden,
+        )
+        for node in tree.body
+        if isinstance(node, Function) and node.name.startswith("test_")
+    )
+
+
+def quoted_numbers(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Decimal numbers in words that a student reads of a check, hidden or not: line and number.
+
+    Those words are ``message=`` and ``help=`` anywhere, the texts of a ``Diagnosis``, and texts given by
+    position to ``fail`` and ``expect_true``.
+    """
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+        texts: list[ast.expr] = [k.value for k in node.keywords if k.arg in {"message", "help"}]
+        if name == "Diagnosis":
+            texts += [*node.args, *(k.value for k in node.keywords if k.arg in {"looks_like", "advice"})]
+        elif name in {"fail", "expect_true"}:
+            texts += node.args
+        for text in texts:
+            yield from _decimals(text)
+
+
+def _decimals(expression: ast.expr) -> Iterator[tuple[int, str]]:
+    for node in ast.walk(expression):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            for match in DECIMAL.finditer(node.value):
+                yield node.lineno, match[0]
+
+
+def _without_annotations(arguments: ast.arguments) -> ast.arguments:
+    bare = copy.deepcopy(arguments)
+    for node in ast.walk(bare):
+        if isinstance(node, ast.arg):
+            node.annotation = None
+    return bare
+
+
+def _markers(node: Function, name: str) -> Iterator[ast.Call]:
+    """The decorators ``@pytest.mark.<name>(...)`` of a function."""
+    for decorator in node.decorator_list:
+        if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == f"pytest.mark.{name}":
+            yield decorator
+
+
+def _marker(node: Function, name: str) -> list[ast.expr]:
+    return next((call.args for call in _markers(node, name)), [])
+
+
+def _literal(arguments: list[ast.expr]) -> Any:
+    try:
+        return ast.literal_eval(arguments[0]) if arguments else None
+    except ValueError:
+        return None
+
+
+def _text(arguments: list[ast.expr]) -> str | None:
+    value = _literal(arguments)
+    return value if isinstance(value, str) else None
+
+
+def _number(arguments: list[ast.expr]) -> float | None:
+    value = _literal(arguments)
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None

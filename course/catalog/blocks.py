@@ -1,0 +1,342 @@
+"""What a lesson consists of, as frozen types: inline pieces inside blocks.
+
+Every reader of a lesson (terminal, notebook, audit) works from these and never from Markdown. A block knows
+the line it starts on, so that whoever finds fault with it can say where.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = [
+    "Block",
+    "Callout",
+    "CalloutKind",
+    "CodeCell",
+    "Command",
+    "CommandList",
+    "Diagram",
+    "Figure",
+    "Formula",
+    "Heading",
+    "Inline",
+    "Inlines",
+    "LineBreak",
+    "Link",
+    "ListBlock",
+    "Listing",
+    "MathBlock",
+    "Paragraph",
+    "Prediction",
+    "Sources",
+    "Span",
+    "Table",
+    "Text",
+    "Value",
+    "plain_text",
+    "slug",
+    "walk_blocks",
+    "walk_inlines",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """Words."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Words set apart.
+
+    Attributes:
+        style: "emphasis", "strong" or "code"; code holds exactly one Text.
+        children: what is set apart.
+    """
+
+    style: str
+    children: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """Mathematics in a line of prose.
+
+    Attributes:
+        tex: the LaTeX source, without dollars.
+        text: what a terminal shows.
+        spoken: what a screen reader says.
+    """
+
+    tex: str
+    text: str
+    spoken: str
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A link.
+
+    Attributes:
+        target: ``https://…``, ``lesson:ID`` or ``exercise:ID`` with or without ``#heading``, or ``#heading``.
+        children: the words it hangs on.
+    """
+
+    target: str
+    children: Inlines
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A number (or word) that code produces.
+
+    Attributes:
+        text: as the reader sees it, "0.0890".
+        expression: Python that gives it, evaluated where the lesson's code cells ran.
+    """
+
+    text: str
+    expression: str
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class LineBreak:
+    """A line break the author asked for."""
+
+
+Inline = Text | Span | Formula | Link | Value | LineBreak
+Inlines = tuple[Inline, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A section (level 2) or subsection (level 3); level 1 is the lesson's title, from the front matter."""
+
+    line: int
+    level: int
+    inlines: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    line: int
+    inlines: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class ListBlock:
+    """A list; ``start`` is None for bullets and the first number otherwise."""
+
+    line: int
+    start: int | None
+    items: tuple[tuple[Block, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table; ``align`` holds "left", "right" or "center" for each column."""
+
+    line: int
+    header: tuple[Inlines, ...]
+    rows: tuple[tuple[Inlines, ...], ...]
+    align: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CodeCell:
+    """Python that runs, in order, in one namespace for the whole lesson.
+
+    Attributes:
+        source: the code, without a final newline.
+        output: what it printed when it was last recorded; None when nothing is recorded.
+        hidden: run for the numbers it makes and not shown.
+        output_line: line of the recorded output's fence; None when nothing is recorded.
+    """
+
+    line: int
+    source: str
+    output: str | None = None
+    hidden: bool = False
+    output_line: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Text shown as it is and never run."""
+
+    line: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class MathBlock:
+    """Mathematics on lines of its own; the attributes are those of Formula."""
+
+    line: int
+    tex: str
+    text: str
+    spoken: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """A diagram, three times over.
+
+    Attributes:
+        mermaid: for readers that draw it.
+        drawing: for terminals.
+        description: one sentence, for screen readers.
+    """
+
+    line: int
+    mermaid: str
+    drawing: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure that ``course.figures`` draws.
+
+    Attributes:
+        id: its name in the registry.
+        alt: what is to be seen, for someone who cannot.
+        caption: what it shows, the finding first.
+    """
+
+    line: int
+    id: str
+    alt: str
+    caption: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """A question the reader answers before reading on."""
+
+    line: int
+    blocks: tuple[Block, ...]
+
+
+#: Closed on purpose: a label nobody knows is a typing error, not a new kind.
+CalloutKind = str
+CALLOUTS: tuple[CalloutKind, ...] = ("myth", "fact", "analogy", "answer", "remember", "note")
+
+
+@dataclass(frozen=True, slots=True)
+class Callout:
+    """A passage with a role of its own: one of CALLOUTS."""
+
+    line: int
+    kind: CalloutKind
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One command to try, and what it is for (may be empty)."""
+
+    command: str
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class CommandList:
+    """Commands to type, in order."""
+
+    line: int
+    commands: tuple[Command, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sources:
+    """Where the outside facts come from; every item carries a year."""
+
+    line: int
+    items: tuple[Inlines, ...]
+
+
+Block = (
+    Heading
+    | Paragraph
+    | ListBlock
+    | Table
+    | CodeCell
+    | Listing
+    | MathBlock
+    | Diagram
+    | Figure
+    | Prediction
+    | Callout
+    | CommandList
+    | Sources
+)
+
+
+def plain_text(inlines: Inlines) -> str:
+    """The words of a line, marks and links left out."""
+    parts = []
+    for inline in inlines:
+        match inline:
+            case Text(text) | Formula(text=text) | Value(text=text):
+                parts.append(text)
+            case Span(children=children) | Link(children=children):
+                parts.append(plain_text(children))
+            case LineBreak():
+                parts.append(" ")
+    return "".join(parts)
+
+
+def slug(heading: Heading) -> str:
+    """The heading as an anchor: lower-case words joined by hyphens."""
+    words = "".join(char if char.isalnum() else " " for char in plain_text(heading.inlines).lower())
+    return "-".join(words.split())
+
+
+def walk_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:
+    """Every block, outer ones before what they hold, in reading order."""
+    for block in blocks:
+        yield block
+        match block:
+            case Prediction(blocks=inner) | Callout(blocks=inner):
+                yield from walk_blocks(inner)
+            case ListBlock(items=items):
+                for item in items:
+                    yield from walk_blocks(item)
+            case _:
+                pass
+
+
+def walk_inlines(blocks: tuple[Block, ...]) -> Iterator[tuple[Block, Inline]]:
+    """Every inline piece with the innermost block it stands in, in reading order."""
+    for block in walk_blocks(blocks):
+        for line in _lines_of(block):
+            for inline in _flatten(line):
+                yield block, inline
+
+
+def _lines_of(block: Block) -> tuple[Inlines, ...]:
+    match block:
+        case Heading(inlines=line) | Paragraph(inlines=line) | Figure(caption=line):
+            return (line,)
+        case Table(header=header, rows=rows):
+            return (*header, *(cell for row in rows for cell in row))
+        case Sources(items=items):
+            return items
+        case _:
+            return ()
+
+
+def _flatten(inlines: Inlines) -> Iterator[Inline]:
+    for inline in inlines:
+        yield inline
+        if isinstance(inline, Span | Link):
+            yield from _flatten(inline.children)

@@ -1,0 +1,113 @@
+"""Where the course's content lies: beside the code in a checkout, inside the package in a wheel.
+
+The wheel is the student's: it has neither solutions nor hidden graders, and ``Content`` says so by holding
+None for them. ``COURSE_CONTENT=DIR`` selects another course altogether, laid out as
+``DIR/{exercises,lessons,quiz,solutions,graders}``.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from course.errors import InternalError, UsageError
+
+__all__ = ["ENVIRONMENT_VARIABLE", "Content", "content"]
+
+ENVIRONMENT_VARIABLE = "COURSE_CONTENT"
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """The folders one course is made of.
+
+    Attributes:
+        root: the folder that paths in messages are best shown relative to.
+        solutions, graders: None where this installation has none.
+    """
+
+    root: Path
+    exercises: Path
+    lessons: Path
+    quiz: Path
+    solutions: Path | None = None
+    graders: Path | None = None
+
+    @property
+    def is_checkout(self) -> bool:
+        """True where the instructor's side is present, hidden graders above all."""
+        return self.graders is not None
+
+    @property
+    def syllabus(self) -> Path:
+        """The file that names the course and orders its lessons."""
+        return self.lessons / "syllabus.toml"
+
+
+def content() -> Content:
+    """The content that this process is to use.
+
+    Raises:
+        UsageError: ``COURSE_CONTENT`` names something that is not a course.
+        InternalError: the installation has lost its content.
+    """
+    chosen = os.environ.get(ENVIRONMENT_VARIABLE)
+    if chosen:
+        return _chosen(Path(chosen))
+    package = Path(__file__).resolve().parent.parent
+    return _installed(package)
+
+
+def _chosen(folder: Path) -> Content:
+    """The course under a folder somebody named."""
+    folder = folder.expanduser().resolve()
+    if not (folder / "exercises").is_dir() or not (folder / "lessons").is_dir():
+        raise UsageError(
+            f"{ENVIRONMENT_VARIABLE} is {folder}, which holds no course.",
+            help="Name a folder with exercises/ and lessons/ in it, or unset the variable.",
+            code="no_such_content",
+        )
+    return Content(
+        root=folder,
+        exercises=folder / "exercises",
+        lessons=folder / "lessons",
+        quiz=folder / "quiz",
+        solutions=_if_there(folder / "solutions"),
+        graders=_if_there(folder / "graders"),
+    )
+
+
+def _installed(package: Path) -> Content:
+    """The course that came with the package at ``package``.
+
+    The wheel's folder is asked for first: it never exists in a checkout, while the folder beside an
+    installed package is site-packages, where a stranger's ``exercises`` may well lie.
+    """
+    shipped = package / "content"
+    if shipped.is_dir():
+        return Content(
+            root=package,
+            exercises=shipped / "exercises",
+            lessons=package / "lessons",
+            quiz=shipped / "quiz",
+        )
+    root = package.parent
+    if not (root / "pyproject.toml").is_file() or not (root / "exercises").is_dir():
+        raise InternalError(
+            f"The course's exercises are missing from {package}.",
+            help="Install the course again; its files were moved or removed.",
+            code="content_missing",
+        )
+    return Content(
+        root=root,
+        exercises=root / "exercises",
+        lessons=package / "lessons",
+        quiz=root / "quiz",
+        solutions=_if_there(root / "solutions"),
+        graders=_if_there(root / "tests" / "graders"),
+    )
+
+
+def _if_there(folder: Path) -> Path | None:
+    return folder if folder.is_dir() else None

@@ -1,0 +1,185 @@
+"""A verdict on the screen: grouped by task; the message first, then advice, then numbers.
+
+What a student needs to act on comes before what they need to argue with, and the summary comes last, where
+the eye is when a terminal has finished scrolling.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.cli.console import STATUS_STYLE, Console
+from course.cli.numbers import format_input, format_pair, format_points, format_tolerance, format_value, unit
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.catalog.models import Exercise
+    from course.grading.verdict import CheckResult, Verdict
+
+__all__ = ["show_verdict", "summary"]
+
+_DETAIL_INDENT = 4
+_LABEL_WIDTH = 9
+_UNWRITTEN = "NOT_IMPLEMENTED"
+
+
+def show_verdict(
+    console: Console, exercise: Exercise, verdict: Verdict, *, verbose: bool = False, whole: bool = True
+) -> None:
+    """Show every task of a verdict, and the summary.
+
+    Args:
+        verbose: show tracebacks (the student's own lines) and what the student's code printed.
+        whole: all public checks were run, so that there is something to sum up.
+    """
+    if not console.quiet:
+        page = _Page(console, verbose=verbose)
+        for task in exercise.task:
+            checks = [check for check in verdict.checks if check.task == task.id]
+            if checks:
+                page.task(task.title, checks)
+        # Checks of a task that the exercise does not list must not vanish.
+        known = {task.id for task in exercise.task}
+        for check in verdict.checks:
+            if check.task not in known:
+                page.check(check)
+        page.close()
+        for warning in verdict.warnings:
+            console.line(f"Note: {warning}")
+    sentences = summary(exercise, verdict) if whole else _part(verdict)
+    for sentence in sentences:
+        console.line((sentence, "bold green" if verdict.all_pass else "bold"))
+
+
+def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
+    """What it comes to, in one or two sentences."""
+    total = len(verdict.checks)
+    passing = sum(check.status == "pass" for check in verdict.checks)
+    score = f"score {format_points(verdict.score)}/{format_points(verdict.max_score)}"
+    hidden = exercise.hidden_checks
+    later = ""
+    if hidden:
+        later = f"; {hidden} hidden {'check runs' if hidden == 1 else 'checks run'} when you submit"
+    if verdict.all_pass:
+        everything = "The one public check passes" if total == 1 else f"All {total} public checks pass"
+        return [f"{everything}{later}.", _capital(f"{score}.")]
+    mark = exercise.pass_mark * verdict.max_score
+    reached = "reached" if verdict.passed else "not reached yet"
+    return [
+        f"{passing} of {total} public checks pass{'es' * (passing == 1)}{later}.",
+        _capital(f"{score}; the pass mark, {format_points(mark)} ({exercise.pass_mark:.0%}), is {reached}."),
+    ]
+
+
+def _part(verdict: Verdict) -> list[str]:
+    passing = sum(check.status == "pass" for check in verdict.checks)
+    return [f"Checks run: {len(verdict.checks)}; passed: {passing}."]
+
+
+class _Page:
+    """One verdict being shown; remembers what it has said, so as not to say it seven times."""
+
+    def __init__(self, console: Console, *, verbose: bool) -> None:
+        self._console = console
+        self._verbose = verbose
+        self._said: set[str] = set()
+        self._kept_back = False
+
+    def task(self, title: str, checks: Sequence[CheckResult]) -> None:
+        """A heading with the points, and the task's checks."""
+        points = format_points(sum(check.points for check in checks))
+        maximum = format_points(sum(check.max_points for check in checks))
+        self._console.heading(title, f"{points}/{maximum} points")
+        if _all_alike(checks):
+            self._alike(next(check for check in checks if check.status != "skip"))
+        else:
+            for check in checks:
+                self.check(check)
+        if self._console.fancy:
+            self._console.blank()
+
+    def check(self, check: CheckResult) -> None:
+        """One check: its title, and everything about it if it did not pass."""
+        aside = "" if check.status in {"pass", "skip"} else f"  [{check.id}]"
+        self._label(check.status, check.title, aside)
+        if check.status == "pass":
+            return
+        if check.blocked_by:
+            self._text(f"Runs once {check.blocked_by} passes.")
+            return
+        self._text(check.message)
+        self._details(check)
+
+    def close(self) -> None:
+        """Say once how to see what was kept back."""
+        if self._kept_back:
+            self._console.note(("--verbose shows tracebacks and what your code printed.", "dim"))
+
+    def _alike(self, check: CheckResult) -> None:
+        """The same thing keeps every check of the task from running: say it once."""
+        self._label(check.status, check.message)
+        self._details(check)
+
+    def _details(self, check: CheckResult) -> None:
+        if check.help and check.help not in self._said:
+            self._text(check.help)
+        for label, text in _numbers(check):
+            if label != "diagnosis" or check.help not in self._said:
+                self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
+        self._said.add(check.help)
+        if self._verbose:
+            self._traces(check)
+        elif (check.traceback or check.stdout) and check.diagnosis != _UNWRITTEN:
+            self._kept_back = True
+
+    def _traces(self, check: CheckResult) -> None:
+        for name, text in (
+            ("Traceback, your lines only:", check.traceback),
+            ("Your code printed:", check.stdout),
+        ):
+            if text:
+                self._text(name)
+                self._console.block(text.rstrip(), indent=_DETAIL_INDENT + 2)
+
+    def _text(self, text: str) -> None:
+        if text:
+            self._console.line(text, indent=_DETAIL_INDENT)
+
+    def _label(self, status: str, text: str, aside: str = "") -> None:
+        """A status as a word, upper case where something is wrong, so that colour only repeats it."""
+        word = status if status in {"pass", "skip"} else status.upper()
+        self._console.item(word, text, (aside, "dim"), style=STATUS_STYLE.get(status, ""), width=_LABEL_WIDTH)
+
+
+def _all_alike(checks: Sequence[CheckResult]) -> bool:
+    """True if one thing is wrong with every check, as with a function that is not written yet."""
+    ran = [check for check in checks if check.status != "skip"]
+    if len({(check.status, check.message) for check in ran}) != 1 or ran[0].status in {"pass", "fail"}:
+        return False
+    return len(checks) > 1 or ran[0].diagnosis == _UNWRITTEN
+
+
+def _numbers(check: CheckResult) -> list[tuple[str, str]]:
+    """Label and text of every number the check has to show."""
+    rows: list[tuple[str, str]] = []
+    units = check.units
+    actual, expected = format_pair(check.actual, check.expected)
+    if check.actual is not None or check.expected is not None:
+        # A function that raised has no value; what stands in its place is the exception.
+        rows.append(("raised" if check.status == "error" else "measured", f"{actual}{unit(units)}"))
+    if check.expected is not None:
+        within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
+        rows.append(("expected", f"{expected}{unit(units)}{within}"))
+    if check.input:
+        rows.append(("input", format_input(check.input)))
+    if check.first_divergence:
+        place = check.first_divergence
+        rows.append(("first off", f"{place.quantity} at step {place.step}, t = {format_value(place.t)} s"))
+    if check.diagnosis:
+        rows.append(("diagnosis", check.diagnosis))
+    return rows
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

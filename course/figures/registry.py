@@ -1,0 +1,101 @@
+"""Which figures there are, and how one becomes a picture.
+
+A figure is known here by its id, which lessons use: ``![…](figure:integrators-phase)``. The table names the
+builder without importing it, so asking whether a figure exists costs no matplotlib.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, cast
+
+from course.errors import NotFoundError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+__all__ = ["FIGURES", "SCREEN_DPI", "build", "figure_ids", "png", "save"]
+
+#: Figure id -> module under course.figures and the function in it that draws the figure.
+FIGURES: dict[str, tuple[str, str]] = {
+    "integrators-phase": ("integrators", "phase_portraits"),
+    "integrators-energy": ("integrators", "energy_error"),
+    "integrators-order": ("integrators", "error_against_step"),
+    "integrators-stability": ("integrators", "stability"),
+}
+
+#: Figures are 6.5 in wide, the text width of a printed page; this makes 1170 pixels of it.
+SCREEN_DPI = 180
+
+
+def figure_ids() -> tuple[str, ...]:
+    """Every figure there is, sorted."""
+    return tuple(sorted(FIGURES))
+
+
+def build(figure_id: str) -> Figure:
+    """Draw a figure in the course's style.
+
+    Raises:
+        NotFoundError: no figure has this id.
+    """
+    if figure_id not in FIGURES:
+        raise NotFoundError(
+            f"There is no figure {figure_id!r}.",
+            help=f"The figures are {', '.join(figure_ids())}.",
+            code="figure_not_found",
+        )
+    from course.figures.style import house_style
+
+    module, function = FIGURES[figure_id]
+    builder = cast("Callable[[], Figure]", getattr(import_module(f"course.figures.{module}"), function))
+    with house_style():
+        return builder()
+
+
+def png(figure_id: str, *, dpi: int = SCREEN_DPI) -> bytes:
+    """A figure as a PNG file.
+
+    Args:
+        dpi: pixels per inch; a figure is 6.5 in wide.
+
+    Raises:
+        NotFoundError: no figure has this id.
+    """
+    from io import BytesIO
+
+    from course.figures.style import house_style
+
+    figure = build(figure_id)
+    out = BytesIO()
+    with house_style():
+        # Without the name of the writing program the file depends on the picture alone.
+        figure.savefig(out, format="png", dpi=dpi, metadata={"Software": None})
+    return out.getvalue()
+
+
+def save(figure_id: str, folder: Path, *, dpi: int = SCREEN_DPI) -> Path:
+    """Write a figure to ``folder/<id>.png``, making the folder; an older picture of that name is replaced.
+
+    Returns:
+        The path of the picture.
+
+    Raises:
+        NotFoundError: no figure has this id.
+        UsageError: the folder cannot be written to.
+    """
+    picture = png(figure_id, dpi=dpi)
+    path = folder / f"{figure_id}.png"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(picture)
+    except OSError as error:
+        raise UsageError(
+            f"The figure cannot be written to {path}: {error.strerror or error}.",
+            help="Name a folder you may write to: --figures DIR.",
+            code="figures_not_writable",
+        ) from error
+    return path

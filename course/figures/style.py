@@ -1,0 +1,134 @@
+"""One look for every figure: colours that colour-blind readers can tell apart, and never colour alone.
+
+The palette is Okabe and Ito's. Each method of integration has, beside its colour, a line style and a marker
+of its own and, where there is room, its name at the curve, so that a photocopy still tells them apart.
+
+Source: Okabe and Ito, Color Universal Design, 2002 (palette).
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from matplotlib.axes import Axes
+
+__all__ = ["METHODS", "PALETTE", "WIDTH_IN", "MethodLook", "house_style", "new_figure", "note", "title"]
+
+PALETTE = {
+    "black": "#000000",
+    "orange": "#E69F00",
+    "sky": "#56B4E9",
+    "green": "#009E73",
+    "yellow": "#F0E442",
+    "blue": "#0072B2",
+    "vermillion": "#D55E00",
+    "purple": "#CC79A7",
+    "grey": "#6B6B6B",
+}
+
+#: Text width of a printed page.
+WIDTH_IN = 6.5
+
+_RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",  # shipped with matplotlib, so every machine draws the same letters
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.8,
+    "axes.edgecolor": "#333333",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#E2E2E2",
+    "grid.linewidth": 0.6,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "lines.linewidth": 1.6,
+    "lines.markersize": 4.5,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "text.parse_math": True,
+    "mathtext.fontset": "dejavusans",
+    "path.simplify": True,
+    "agg.path.chunksize": 0,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MethodLook:
+    """How one method of integration is drawn everywhere.
+
+    Attributes:
+        color: of its curve, from PALETTE.
+        ink: the same hue, dark enough for letters on white (contrast 4.5 to 1 or more).
+    """
+
+    name: str
+    color: str
+    ink: str
+    line: str
+    marker: str
+
+
+METHODS = {
+    "explicit_euler": MethodLook("explicit Euler", PALETTE["vermillion"], "#B34F00", ":", "v"),
+    "semi_implicit_euler": MethodLook("semi-implicit Euler", PALETTE["blue"], "#0072B2", "--", "o"),
+    "velocity_verlet": MethodLook("velocity Verlet", PALETTE["green"], "#007A58", "-", "s"),
+    "rk4": MethodLook("Runge-Kutta 4", PALETTE["purple"], "#9C4478", "-.", "D"),
+}
+
+
+@contextmanager
+def house_style() -> Iterator[None]:
+    """The course's settings, and nothing of the reader's own matplotlibrc, while a figure is drawn."""
+    # The backend is left alone: figures here bring their own canvas, and setting it would import pyplot.
+    settings: dict[Any, Any] = {
+        key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")
+    }
+    settings.update(_RC)
+    with mpl.rc_context(settings):
+        yield
+
+
+def new_figure(height_in: float, rows: int = 1, columns: int = 1, **grid: Any) -> tuple[Figure, list[Axes]]:
+    """A figure of page width with a grid of axes, row by row, and no window behind it.
+
+    Args:
+        height_in: height, inches.
+        grid: passed on to ``Figure.subplots`` (sharex, sharey, ...).
+    """
+    figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, squeeze=False, **grid)
+    return figure, list(axes.flat)
+
+
+def title(figure: Figure, finding: str) -> None:
+    """Head a figure with what it shows: a sentence, not a topic."""
+    figure.suptitle(finding, x=0.012, ha="left", fontsize=10.5, fontweight="bold")
+
+
+def note(axes: Axes, text: str, at: tuple[float, float], place: tuple[float, float], color: str) -> None:
+    """A remark with a thin line to the point it is about, both in data coordinates."""
+    axes.annotate(
+        text,
+        xy=at,
+        xytext=place,
+        color=color,
+        fontsize=8.5,
+        arrowprops={"arrowstyle": "-", "color": color, "linewidth": 0.8, "shrinkA": 1, "shrinkB": 2},
+    )

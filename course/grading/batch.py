@@ -1,0 +1,248 @@
+"""Grades a class: N grader processes, one coordinator, results as they come.
+
+A grader that dies takes one submission with it at most: that one is tried again, and after the third grader
+it kills it is reported as our fault. A grader that hangs is ended at a deadline no submission can reach.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import selectors
+import subprocess
+import sys
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.errors import CourseError, InternalError
+from course.grading.grader import Answer, Config, Job, read_frame, write_frame
+from course.grading.remote import BUDGET_S
+from course.grading.verdict import Problem, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from course.grading.intake import Entry
+
+__all__ = ["BatchOptions", "Graded", "grade_all"]
+
+_MAX_TRIES = 3
+_TICK_S = 0.5
+
+
+@dataclass(frozen=True)
+class BatchOptions:
+    """How a class is graded.
+
+    Attributes:
+        graders: processes.
+        level: protection level to insist on; None takes the best one not below ``at_least``.
+        timeout: wall seconds per check.
+        seed: seed of the grading run.
+    """
+
+    graders: int = 1
+    level: str | None = None
+    at_least: str = "L2"
+    timeout: float = 10.0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One entry and the verdict on it."""
+
+    entry: Entry
+    verdict: Verdict
+
+
+@dataclass
+class _Work:
+    entry: Entry
+    tries: int = 0
+
+
+@dataclass
+class _Grader:
+    """A grader process and the work it has in hand."""
+
+    number: int
+    process: subprocess.Popen[bytes]
+    work: _Work | None = None
+    since: float = field(default_factory=time.monotonic)
+
+
+def grade_all(entries: Iterable[Entry], options: BatchOptions) -> Iterator[Graded]:
+    """Verdicts on all entries that have a submission or a problem, in the order they are reached.
+
+    Raises:
+        CourseError: no grader can work here at all (protection level, content).
+    """
+    coordinator = _Coordinator(entries, options)
+    try:
+        yield from coordinator.run()
+    finally:
+        coordinator.close()
+
+
+class _Coordinator:
+    def __init__(self, entries: Iterable[Entry], options: BatchOptions) -> None:
+        self._entries = iter(entries)
+        self._options = options
+        self._again: deque[_Work] = deque()
+        self._done: deque[Graded] = deque()
+        self._graders: dict[int, _Grader] = {}
+        self._selector = selectors.DefaultSelector()
+        # Longer than a submission may take by its own deadlines: only a fault of ours gets here.
+        self._hang_s = BUDGET_S + options.timeout + 30.0
+
+    def run(self) -> Iterator[Graded]:
+        for number in range(self._options.graders):
+            if not self._feed(number):
+                break
+        while True:
+            while self._done:
+                yield self._done.popleft()
+            if not any(grader.work for grader in self._graders.values()):
+                if not self._again:
+                    return
+                self._feed(next(iter(self._graders), 0))
+                continue
+            for key, _ in self._selector.select(_TICK_S):
+                self._collect(self._graders[key.data])
+            self._end_hung()
+
+    def close(self) -> None:
+        for grader in self._graders.values():
+            with contextlib.suppress(OSError):
+                if grader.process.stdin:
+                    grader.process.stdin.close()  # it ends at end of file, its sandbox with it
+        for grader in self._graders.values():
+            try:
+                grader.process.wait(0 if grader.work else 5)
+            except subprocess.TimeoutExpired:
+                grader.process.kill()
+                grader.process.wait()
+            if grader.process.stdout:
+                grader.process.stdout.close()
+        self._selector.close()
+
+    # -- work -----------------------------------------------------------------------------------------
+
+    def _next(self) -> _Work | None:
+        """The next submission; entries that need no grader are done on the way."""
+        if self._again:
+            return self._again.popleft()
+        for entry in self._entries:
+            if entry.submission is not None:
+                return _Work(entry)
+            if entry.problem is not None:
+                self._done.append(Graded(entry, _without_grading(entry, "ungradable", entry.problem)))
+        return None
+
+    def _feed(self, number: int) -> bool:
+        """Give a grader its next submission, starting it if need be; False when there is none left."""
+        work = self._next()
+        if work is None:
+            return False
+        grader = self._graders.get(number) or self._start(number)
+        grader.work = work
+        grader.since = time.monotonic()
+        assert work.entry.submission is not None
+        job = Job(work.entry.exercise.id, dict(work.entry.submission.files))
+        assert grader.process.stdin is not None
+        with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
+            write_frame(grader.process.stdin, job)
+        return True
+
+    def _start(self, number: int) -> _Grader:
+        # -P: the folder the command is run in, which may be a student's, never becomes importable.
+        command = [sys.executable, "-P", "-m", "course.grading.grader"]
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+        process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
+        )
+        assert process.stdin is not None
+        assert process.stdout is not None
+        options = self._options
+        config = Config(options.level, options.at_least, options.timeout, options.seed, number)
+        with contextlib.suppress(BrokenPipeError):
+            write_frame(process.stdin, config)
+        grader = _Grader(number, process)
+        self._graders[number] = grader
+        self._selector.register(process.stdout, selectors.EVENT_READ, number)
+        return grader
+
+    def _collect(self, grader: _Grader) -> None:
+        """Take a grader's answer, or note its death, and give it or its successor more to do."""
+        assert grader.process.stdout is not None
+        frame = read_frame(grader.process.stdout)
+        work, grader.work = grader.work, None
+        if frame is None:
+            self._bury(grader)
+            if work is None:
+                raise InternalError("A grader process ended before its first submission.")
+            self._retry(work)
+        else:
+            answer = msgspec.msgpack.decode(frame, type=Answer)
+            if answer.error is not None:
+                raise _as_error(answer)
+            assert work is not None
+            assert answer.verdict is not None
+            self._done.append(Graded(work.entry, answer.verdict))
+        self._feed(grader.number)
+
+    def _retry(self, work: _Work) -> None:
+        work.tries += 1
+        if work.tries < _MAX_TRIES:
+            self._again.append(work)
+            return
+        problem = Problem(
+            "grader_died",
+            f"The grader died {_MAX_TRIES} times on this submission.",
+            "Report this; the submission is marked for regrading.",
+        )
+        self._done.append(Graded(work.entry, _without_grading(work.entry, "grader_error", problem)))
+
+    def _bury(self, grader: _Grader) -> None:
+        assert grader.process.stdout is not None
+        self._selector.unregister(grader.process.stdout)
+        grader.process.kill()
+        grader.process.wait()
+        grader.process.stdout.close()
+        if grader.process.stdin:
+            with contextlib.suppress(OSError):
+                grader.process.stdin.close()
+        del self._graders[grader.number]
+
+    def _end_hung(self) -> None:
+        now = time.monotonic()
+        for grader in list(self._graders.values()):
+            if grader.work and now - grader.since > self._hang_s:
+                grader.process.kill()  # its pipe closes, and the next round finds it dead
+
+
+def _as_error(answer: Answer) -> CourseError:
+    """A grader's complaint, as the error it was over there."""
+    assert answer.error is not None
+    error = CourseError(answer.error.message, help=answer.error.help, code=answer.error.code)
+    error.exit_code = answer.exit_code
+    return error
+
+
+def _without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:
+    return Verdict(
+        exercise=entry.exercise.id,
+        scope="full",
+        state=state,
+        score=0.0,
+        max_score=entry.exercise.max_points,
+        passed=False,
+        checks=(),
+        isolation="",
+        error=problem,
+    )

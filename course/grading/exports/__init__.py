@@ -1,0 +1,1 @@
+"""Files made from a gradebook: nothing in them that is not in it."""

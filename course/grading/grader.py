@@ -1,0 +1,134 @@
+"""One grader process: reads jobs from standard input, writes verdicts to standard output.
+
+It is trusted, and only ever talks to the coordinator that started it. Frames are a 4-byte little-endian
+length and msgpack. Each exercise's checks are collected at its first job and kept.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from typing import IO, TYPE_CHECKING, Any
+
+import msgspec
+
+from course.errors import CourseError
+from course.grading.verdict import Problem, Verdict
+
+if TYPE_CHECKING:
+    from course.grading.session import GradingSession
+
+__all__ = ["Answer", "Config", "Job", "main", "read_frame", "write_frame"]
+
+_LENGTH = struct.Struct("<I")
+
+
+class Config(msgspec.Struct, frozen=True):
+    """What a grader is started with.
+
+    Attributes:
+        level: protection level to insist on, or None for the best not below ``at_least``.
+        timeout: wall seconds per check.
+        seed: seed of the grading run.
+        processor: number that picks the processor to stay on.
+    """
+
+    level: str | None
+    at_least: str
+    timeout: float
+    seed: int
+    processor: int
+
+
+class Job(msgspec.Struct, frozen=True):
+    """One submission to grade."""
+
+    exercise: str
+    files: dict[str, bytes]
+
+
+class Answer(msgspec.Struct, frozen=True):
+    """The verdict on a job, or why this grader can give none at all."""
+
+    verdict: Verdict | None = None
+    error: Problem | None = None
+    exit_code: int = 0
+
+
+def main() -> None:
+    """Serve until standard input ends."""
+    source = os.fdopen(os.dup(0), "rb")
+    sink = os.fdopen(os.dup(1), "wb")
+    # Whatever prints in this process must not end up between two frames.
+    os.dup2(2, 1)
+    null = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null, 0)
+    config = msgspec.msgpack.decode(read_frame(source) or b"", type=Config)
+    grader = _Grader(config)
+    try:
+        while (frame := read_frame(source)) is not None:
+            write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))
+    except (KeyboardInterrupt, BrokenPipeError):
+        pass  # the coordinator says what was interrupted
+    finally:
+        grader.close()
+
+
+class _Grader:
+    def __init__(self, config: Config) -> None:
+        from course.catalog.load import Catalog
+
+        self._config = config
+        self._catalog = Catalog()
+        self._sessions: dict[str, GradingSession] = {}
+
+    def answer(self, job: Job) -> Answer:
+        from course.grading.session import Submission
+
+        try:
+            return Answer(verdict=self._session(job.exercise).grade(Submission(job.files)))
+        except CourseError as error:
+            problem = Problem(error.code, error.message, error.help)
+            return Answer(error=problem, exit_code=error.exit_code)
+
+    def _session(self, exercise: str) -> GradingSession:
+        from course.grading.session import GradingSession
+
+        if exercise not in self._sessions:
+            config = self._config
+            self._sessions[exercise] = GradingSession(
+                self._catalog.exercise(exercise),
+                self._catalog,
+                scope="full",
+                level=config.level,
+                at_least=config.at_least,
+                timeout=config.timeout,
+                seed=config.seed,
+                processor=config.processor,
+            )
+        return self._sessions[exercise]
+
+    def close(self) -> None:
+        for session in self._sessions.values():
+            session.close()
+
+
+def read_frame(source: IO[bytes]) -> bytes | None:
+    """The next frame's content; None at the end of the stream."""
+    header = source.read(_LENGTH.size)
+    if len(header) < _LENGTH.size:
+        return None
+    size = _LENGTH.unpack(header)[0]
+    body = source.read(size)
+    return body if len(body) == size else None
+
+
+def write_frame(sink: IO[bytes], message: Any) -> None:
+    """Write one message and flush it."""
+    body = msgspec.msgpack.encode(message)
+    sink.write(_LENGTH.pack(len(body)) + body)
+    sink.flush()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""One student's state: the workspace folder, and what was done in it."""

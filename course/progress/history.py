@@ -1,0 +1,189 @@
+"""What the events of one exercise add up to.
+
+The record only knows what happened; this module answers the questions commands ask of it: which checks fail
+now, is another hint due, was it ever passed.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from datetime import datetime
+
+    from course.progress.store import Event
+
+__all__ = ["CheckRun", "History", "fingerprint", "history_of"]
+
+_PASS = "pass"
+
+
+@dataclass(frozen=True, slots=True)
+class CheckRun:
+    """One run of the public checks.
+
+    Attributes:
+        id: of its event.
+        at: when, in UTC.
+        state: "graded" or "ungradable".
+        only: the check that was asked for alone; empty for a run of all public checks.
+        score, max_score: points.
+        passed: the pass mark was reached.
+        all_pass: every check passed.
+        seconds: how long it took.
+        fingerprint: of the file that was checked.
+        statuses: status by check id, in the order the checks ran.
+        tasks: task by check id.
+    """
+
+    id: int
+    at: datetime
+    state: str
+    only: str
+    score: float
+    max_score: float
+    passed: bool
+    all_pass: bool
+    seconds: float
+    fingerprint: str
+    statuses: Mapping[str, str]
+    tasks: Mapping[str, str]
+
+    @property
+    def failed(self) -> bool:
+        """True if a check ran and did not pass."""
+        return any(status != _PASS for status in self.statuses.values())
+
+
+@dataclass(frozen=True, slots=True)
+class HintGiven:
+    """A hint that was shown, and the file it was shown for."""
+
+    id: int
+    task: str
+    index: int
+    fingerprint: str
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """Everything recorded about one exercise, oldest first."""
+
+    runs: tuple[CheckRun, ...]
+    hints: tuple[HintGiven, ...]
+    started: datetime | None
+
+    @property
+    def last(self) -> CheckRun | None:
+        """The newest run, with or without a score."""
+        return self.runs[-1] if self.runs else None
+
+    @property
+    def last_graded(self) -> CheckRun | None:
+        """The newest run of all public checks that gave a score."""
+        return next(reversed(self._whole), None)
+
+    @property
+    def best(self) -> CheckRun | None:
+        """The run of all public checks with the most points, the earliest of equals."""
+        return max(self._whole, key=lambda run: run.score, default=None)
+
+    @property
+    def first_pass(self) -> CheckRun | None:
+        """The first run of all public checks that reached the pass mark."""
+        return next((run for run in self._whole if run.passed), None)
+
+    @property
+    def _whole(self) -> list[CheckRun]:
+        return [run for run in self.runs if run.state == "graded" and not run.only]
+
+    def failing_tasks(self) -> frozenset[str]:
+        """Tasks with a check that does not pass, as far as is known.
+
+        The newest run of all checks counts, corrected by checks that were run alone after it.
+        """
+        statuses: dict[str, str] = {}
+        tasks: dict[str, str] = {}
+        for run in self.runs:
+            if run.state == "graded":
+                if not run.only:
+                    statuses.clear()
+                statuses.update(run.statuses)
+                tasks.update(run.tasks)
+        return frozenset(tasks.get(check, "") for check, status in statuses.items() if status != _PASS)
+
+    def hints_for(self, task: str) -> int:
+        """How many hints of a task were shown."""
+        return 1 + max((hint.index for hint in self.hints if hint.task == task), default=-1)
+
+    def hint_is_due(self, stub: str) -> bool:
+        """True if a check failed on a file that changed since the last hint (since the stub, for the first).
+
+        Args:
+            stub: fingerprint of the file as it was handed out.
+        """
+        hint = self.hints[-1] if self.hints else None
+        before = hint.fingerprint if hint else stub
+        since = hint.id if hint else 0
+        return any(run.id > since and run.failed and run.fingerprint != before for run in self.runs)
+
+
+def history_of(events: Iterable[Event]) -> History:
+    """The history that the events of one exercise tell; other kinds of events are passed over."""
+    runs: list[CheckRun] = []
+    hints: list[HintGiven] = []
+    started: datetime | None = None
+    for event in events:
+        if event.kind == "check":
+            runs.append(_run(event))
+        elif event.kind == "hint":
+            data = event.data
+            hints.append(
+                HintGiven(
+                    event.id,
+                    str(data.get("task", "")),
+                    int(data.get("index", 0)),
+                    str(data.get("fingerprint", "")),
+                )
+            )
+        elif event.kind == "start" and started is None:
+            started = event.at
+    return History(runs=tuple(runs), hints=tuple(hints), started=started)
+
+
+def fingerprint(source: bytes) -> str:
+    """What makes a file a different attempt: its code, without comments and layout.
+
+    A file that does not parse is known by its bytes, line endings aside.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
+            code = ast.dump(ast.parse(source)).encode("utf-8", "surrogatepass")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        code = source.replace(b"\r\n", b"\n")
+    return hashlib.sha256(code).hexdigest()
+
+
+def _run(event: Event) -> CheckRun:
+    data: Mapping[str, Any] = event.data
+    checks = [check for check in data.get("checks", ()) if isinstance(check, dict)]
+    return CheckRun(
+        id=event.id,
+        at=event.at,
+        state=str(data.get("state", "graded")),
+        only=str(data.get("only") or ""),
+        score=float(data.get("score", 0.0)),
+        max_score=float(data.get("max_score", 0.0)),
+        passed=bool(data.get("passed", False)),
+        all_pass=bool(data.get("all_pass", False)),
+        seconds=float(data.get("seconds", 0.0)),
+        fingerprint=str(data.get("fingerprint", "")),
+        statuses={str(check.get("id")): str(check.get("status")) for check in checks},
+        tasks={str(check.get("id")): str(check.get("task")) for check in checks},
+    )

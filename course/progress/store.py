@@ -1,0 +1,255 @@
+"""What a student did, as events that are only ever added.
+
+SQLite with its rollback journal: home folders are often on network file systems, where the write-ahead log
+does not work. Each event is one short transaction on a connection of its own, so a ``watch`` and a
+``check`` can write at once and a process that dies leaves either the whole event or nothing.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+from course.errors import IntegrityError, MissingCapabilityError
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+__all__ = ["SCHEMA_VERSION", "Event", "Repair", "Store"]
+
+#: Raised when the tables change; a record written by a newer course is refused, not guessed at.
+SCHEMA_VERSION = 1
+#: How long a writer waits for another one. In s.
+BUSY_TIMEOUT = 10.0
+
+_SCHEMA = (
+    """CREATE TABLE event (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        at TEXT NOT NULL,
+        kind TEXT NOT NULL,
+        subject TEXT NOT NULL,
+        data TEXT NOT NULL
+    )""",
+    "CREATE INDEX event_by_kind ON event (kind, subject, id)",
+    """CREATE TRIGGER event_is_never_changed BEFORE UPDATE ON event
+        BEGIN SELECT RAISE(ABORT, 'events are only ever added'); END""",
+    """CREATE TRIGGER event_is_never_removed BEFORE DELETE ON event
+        BEGIN SELECT RAISE(ABORT, 'events are only ever added'); END""",
+)
+_INSERT = "INSERT INTO event (at, kind, subject, data) VALUES (?, ?, ?, ?)"
+_SELECT = "SELECT id, at, kind, subject, data FROM event"
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One thing that happened.
+
+    Attributes:
+        id: position in the record, 1 first.
+        at: when, in UTC.
+        kind: "start", "check", "hint", "lesson", "solution", "reset", "update", "submit".
+        subject: the exercise or lesson it is about; empty if none.
+        data: what is worth remembering about it, as plain values.
+    """
+
+    id: int
+    at: datetime
+    kind: str
+    subject: str
+    data: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """What became of a damaged record: where it was kept, and how many events were carried over."""
+
+    kept: Path
+    carried: int
+
+
+class Store:
+    """The record in one file.
+
+    Args:
+        path: the file; it and its folder come into being with the first event.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def append(self, kind: str, subject: str = "", data: Mapping[str, Any] | None = None) -> None:
+        """Add an event.
+
+        Raises:
+            IntegrityError: the file is damaged.
+            MissingCapabilityError: it cannot be written here, is locked, or is from a newer course.
+        """
+        row = (_now(), kind, subject, json.dumps(data or {}, ensure_ascii=False))
+        with self._connection(create=True) as database:
+            database.execute("BEGIN IMMEDIATE")
+            database.execute(_INSERT, row)
+            database.execute("COMMIT")
+
+    def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
+        """Events of a kind and about a subject, oldest first; an empty string stands for any.
+
+        Raises:
+            IntegrityError: the file is damaged.
+            MissingCapabilityError: it cannot be read here, is locked, or is from a newer course.
+        """
+        if not self.path.exists():
+            return ()
+        query = f"{_SELECT} WHERE (? = '' OR kind = ?) AND (? = '' OR subject = ?) ORDER BY id"
+        with self._connection(create=False) as database:
+            if _version(database) == 0:
+                return ()
+            rows = database.execute(query, (kind, kind, subject, subject)).fetchall()
+            return tuple(_event(row) for row in rows)
+
+    def last(self, kind: str, subject: str = "") -> Event | None:
+        """The newest event of a kind and about a subject, or None."""
+        return next(reversed(self.events(kind, subject)), None)
+
+    def repair(self) -> Repair | None:
+        """Set a damaged record aside and carry over what can still be read; None if it is sound.
+
+        The damaged file is renamed, never removed.
+        """
+        try:
+            self.events()
+        except IntegrityError:
+            pass
+        else:
+            return None
+        kept = _free_name(self.path.with_name(f"{self.path.stem}.damaged{self.path.suffix}"))
+        journal = self.path.with_name(self.path.name + "-journal")
+        self.path.rename(kept)
+        if journal.exists():
+            # It belongs to the damaged file, and SQLite would apply it to the new one.
+            journal.rename(kept.with_name(kept.name + "-journal"))
+        saved = _salvage(kept)
+        with self._connection(create=True) as database:
+            database.execute("BEGIN IMMEDIATE")
+            database.executemany(_INSERT, saved)
+            database.execute("COMMIT")
+        return Repair(kept=kept, carried=len(saved))
+
+    @contextlib.contextmanager
+    def _connection(self, *, create: bool) -> Iterator[sqlite3.Connection]:
+        """A connection for one transaction, its failures turned into sentences."""
+        import sqlite3
+
+        try:
+            if create:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+            database = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
+            with contextlib.closing(database):
+                self._prepare(database, create=create)
+                yield database
+        except sqlite3.Error as error:
+            raise self._explained(error) from error
+        except OSError as error:
+            raise _not_writable(self.path, error.strerror or str(error)) from error
+
+    def _prepare(self, database: sqlite3.Connection, *, create: bool) -> None:
+        version = _version(database)
+        if version > SCHEMA_VERSION:
+            raise MissingCapabilityError(
+                f"{self.path} was written by a newer version of the course (format {version}).",
+                help="Install that version or a later one; the file was not touched.",
+                code="progress_too_new",
+            )
+        if version == 0 and create:
+            database.execute("BEGIN IMMEDIATE")
+            # Another process may have been first while this one waited for the lock.
+            if _version(database) == 0:
+                for statement in _SCHEMA:
+                    database.execute(statement)
+                database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+            database.execute("COMMIT")
+
+    def _explained(self, error: sqlite3.Error) -> Exception:
+        name = getattr(error, "sqlite_errorname", "") or ""
+        if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
+            return MissingCapabilityError(
+                f"{self.path} is in use by another program.",
+                help="Wait for it to end, or end it, and run the command again.",
+                code="progress_busy",
+            )
+        if name.startswith(
+            ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
+        ):
+            return _not_writable(self.path, str(error))
+        return _damaged(self.path, str(error))
+
+
+def _version(database: sqlite3.Connection) -> int:
+    return int(database.execute("PRAGMA user_version").fetchone()[0])
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+def _event(row: tuple[Any, ...]) -> Event:
+    number, at, kind, subject, data = row
+    try:
+        when = datetime.fromisoformat(at)
+        values = json.loads(data)
+    except (TypeError, ValueError) as error:
+        raise _unreadable(number) from error
+    if when.tzinfo is None or not isinstance(values, dict):
+        raise _unreadable(number)
+    return Event(id=number, at=when, kind=str(kind), subject=str(subject), data=values)
+
+
+def _unreadable(number: object) -> Exception:
+    import sqlite3
+
+    return sqlite3.DatabaseError(f"event {number} cannot be read")
+
+
+def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
+    """The events that can still be read out of a damaged file, each checked on its own."""
+    import sqlite3
+
+    rows: list[tuple[str, str, str, str]] = []
+    with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(damaged)) as database:
+        cursor = database.execute(f"{_SELECT} ORDER BY id")
+        while (row := cursor.fetchone()) is not None:
+            with contextlib.suppress(sqlite3.DatabaseError):
+                _event(row)
+                rows.append(row[1:])
+    return rows
+
+
+def _free_name(path: Path) -> Path:
+    """``path``, or the first numbered variant of it that does not exist."""
+    candidate, number = path, 2
+    while os.path.lexists(candidate):
+        candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
+        number += 1
+    return candidate
+
+
+def _damaged(path: Path, reason: str) -> IntegrityError:
+    return IntegrityError(
+        f"The record of your progress, {path}, is damaged ({reason}).",
+        help="Run `course doctor --repair`: it keeps the damaged file under another name, carries over what "
+        "can still be read and starts a new record. Your exercises are not touched.",
+        code="progress_damaged",
+    )
+
+
+def _not_writable(path: Path, reason: str) -> MissingCapabilityError:
+    return MissingCapabilityError(
+        f"{path} cannot be used ({reason}).",
+        help="Make the workspace writable, or copy it to a folder that is.",
+        code="not_writable",
+    )

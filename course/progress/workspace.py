@@ -1,0 +1,281 @@
+"""A student's workspace: ``course.toml``, the exercises being worked on, and ``.course/``.
+
+The rule of this module: nothing is overwritten without a copy kept. A new file is created only where none
+is; an existing one is replaced only after ``backup`` has returned the place of its copy.
+
+    course.toml                    which course, which version
+    <exercise-id>/<module>.py      the student's
+    .course/progress.sqlite        the record (course.progress.store)
+    .course/given/<exercise-id>/   every file as it was handed out
+    .course/backups/<when>-<why>/  what reset, update and submit replaced
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import tomllib
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
+from course.progress.store import Store
+
+__all__ = ["FORMAT_VERSION", "MARKER", "Workspace", "same_text", "write_atomically"]
+
+MARKER = "course.toml"
+FORMAT_VERSION = 1
+
+_TEMPLATE = """\
+# A workspace of the course. The files in the folders beside this one are yours; .course holds the
+# record of your progress and a copy of everything a command ever replaced.
+format_version = {format_version}
+
+[course]
+id = "{course_id}"
+version = "{version}"
+"""
+_VERSION_LINE = re.compile(r'^(version\s*=\s*)"[^"\n]*"', re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """A folder that holds a ``course.toml``.
+
+    Attributes:
+        root: the folder, absolute.
+        course_id: the course it belongs to.
+        version: version of the content last put into it.
+    """
+
+    root: Path
+    course_id: str
+    version: str
+
+    @classmethod
+    def find(cls, start: Path) -> Workspace:
+        """The workspace that ``start`` lies in.
+
+        Raises:
+            NotFoundError: neither ``start`` nor a folder above it is one.
+            ContentError: its ``course.toml`` cannot be used.
+            MissingCapabilityError: it was made by a newer version of the course.
+        """
+        for folder in (start, *start.parents):
+            if (folder / MARKER).is_file():
+                return cls.read(folder)
+        raise NotFoundError(
+            "This folder is not inside a workspace.",
+            help="Make one with `course init my-course`, or name one with `-C DIR`.",
+            code="workspace_not_found",
+        )
+
+    @classmethod
+    def read(cls, root: Path) -> Workspace:
+        """The workspace at ``root``; raises what ``find`` raises."""
+        course_id, version = _read_marker(root / MARKER)
+        return cls(root=root, course_id=course_id, version=version)
+
+    @classmethod
+    def create(cls, root: Path, course_id: str, version: str) -> Workspace:
+        """Make a workspace at ``root``, which may exist already and keeps everything in it.
+
+        Raises:
+            UsageError: ``root`` is a file, or there is a ``course.toml``.
+            MissingCapabilityError: the folder cannot be written.
+        """
+        text = _TEMPLATE.format(format_version=FORMAT_VERSION, course_id=course_id, version=version)
+        try:
+            root.mkdir(parents=True, exist_ok=True)
+            (root / ".course").mkdir(exist_ok=True)
+            _write_new(root / MARKER, text.encode())
+        except FileExistsError:
+            raise UsageError(f"{root} is in the way.", help="Name another folder.", code="exists") from None
+        except OSError as error:
+            raise _not_writable(root, error) from error
+        return cls(root=root, course_id=course_id, version=version)
+
+    @property
+    def state(self) -> Path:
+        """The folder for what the course itself keeps here."""
+        return self.root / ".course"
+
+    @property
+    def store(self) -> Store:
+        """The record of progress."""
+        return Store(self.state / "progress.sqlite")
+
+    def path(self, exercise: str, name: str) -> Path:
+        """Where a file of an exercise belongs."""
+        return self.root / exercise / name
+
+    def shown(self, path: Path) -> str:
+        """``path`` as a person wants to read it: relative to the workspace where it lies inside."""
+        with contextlib.suppress(ValueError):
+            return path.relative_to(self.root).as_posix()
+        return str(path)
+
+    def given(self, exercise: str, name: str) -> bytes | None:
+        """A file as it was last handed out; None if it never was."""
+        try:
+            return self._given_path(exercise, name).read_bytes()
+        except OSError:
+            return None
+
+    def started(self) -> tuple[str, ...]:
+        """Ids of the exercises that something was handed out for."""
+        with contextlib.suppress(OSError):
+            return tuple(sorted(entry.name for entry in (self.state / "given").iterdir() if entry.is_dir()))
+        return ()
+
+    def give(self, exercise: str, name: str, data: bytes) -> bool:
+        """Put a file where none is, and remember how it looked; False if there is one already.
+
+        Raises:
+            MissingCapabilityError: the workspace cannot be written.
+        """
+        target = self.path(exercise, name)
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if not self._given_path(exercise, name).exists():
+                self.remember(exercise, name, data)
+            _write_new(target, data)
+        except FileExistsError:
+            return False
+        except OSError as error:
+            raise _not_writable(target, error) from error
+        return True
+
+    def remember(self, exercise: str, name: str, data: bytes) -> None:
+        """Keep how a file looked when it was handed out."""
+        write_atomically(self._given_path(exercise, name), data)
+
+    def is_edited(self, exercise: str, name: str, data: bytes) -> bool:
+        """True unless ``data`` is the file as it was handed out, line endings aside."""
+        given = self.given(exercise, name)
+        return given is None or not same_text(given, data)
+
+    def backup(self, path: Path, why: str) -> Path:
+        """Copy ``path`` into a new folder of backups and give the copy's place.
+
+        Raises:
+            MissingCapabilityError: the copy cannot be written; ``path`` must then stay as it is.
+        """
+        stamp = datetime.now().astimezone().strftime("%Y%m%d-%H%M%S")
+        relative = Path(self.shown(path)) if path.is_relative_to(self.root) else Path(path.name)
+        try:
+            data = path.read_bytes()
+            folder = _new_folder(self.state / "backups", f"{stamp}-{why}")
+            copy = folder / relative
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            _write_new(copy, data)
+        except OSError as error:
+            raise _not_writable(self.state / "backups", error) from error
+        return copy
+
+    def with_version(self, version: str) -> Workspace:
+        """Note in ``course.toml`` which version the content is from now; comments there stay."""
+        marker = self.root / MARKER
+        text = marker.read_text(encoding="utf-8-sig")
+        write_atomically(marker, _VERSION_LINE.sub(rf'\g<1>"{version}"', text, count=1).encode())
+        return Workspace(root=self.root, course_id=self.course_id, version=version)
+
+    def _given_path(self, exercise: str, name: str) -> Path:
+        return self.state / "given" / exercise / name
+
+
+def same_text(one: bytes, other: bytes) -> bool:
+    """True if two files differ in line endings or a byte-order mark at most."""
+    return _normal(one) == _normal(other)
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write a file so that it is either the old one or the new one, whenever the process dies.
+
+    A symbolic link keeps pointing where it points; what it points at is replaced.
+
+    Raises:
+        MissingCapabilityError: the folder cannot be written.
+    """
+    target = path.resolve()
+    scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with scratch.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        scratch.replace(target)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            scratch.unlink()
+        raise _not_writable(path, error) from error
+
+
+def _write_new(path: Path, data: bytes) -> None:
+    """Write a file that must not exist; FileExistsError if it does, even as a dangling link."""
+    with path.open("xb") as file:
+        file.write(data)
+
+
+def _normal(data: bytes) -> bytes:
+    return data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
+
+
+def _new_folder(parent: Path, name: str) -> Path:
+    parent.mkdir(parents=True, exist_ok=True)
+    number = 1
+    while True:
+        folder = parent / (name if number == 1 else f"{name}-{number}")
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            number += 1
+        else:
+            return folder
+
+
+def _read_marker(marker: Path) -> tuple[str, str]:
+    """Course id and version out of a ``course.toml``."""
+    fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
+    try:
+        # An editor of another system may have put a byte-order mark in front; TOML allows none.
+        table = tomllib.loads(marker.read_text(encoding="utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        line = re.search(r"line (\d+)", str(error))
+        problem = f"not valid TOML: {error}."
+        raise _bad_marker(marker, int(line[1]) if line else None, problem, fix) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise _bad_marker(marker, None, f"cannot be read: {error}.", fix) from error
+    version = table.get("format_version")
+    if isinstance(version, int) and version > FORMAT_VERSION:
+        raise MissingCapabilityError(
+            f"{marker} was written by a newer version of the course (format {version}).",
+            help="Install that version or a later one; nothing here was touched.",
+            code="workspace_too_new",
+        )
+    course = table.get("course")
+    if version != FORMAT_VERSION or not isinstance(course, dict):
+        raise _bad_marker(marker, None, "format_version or [course] is missing.", fix)
+    name, content = course.get("id"), course.get("version")
+    if not isinstance(name, str) or not isinstance(content, str):
+        raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.", fix)
+    return name, content
+
+
+def _bad_marker(marker: Path, line: int | None, problem: str, fix: str) -> ContentError:
+    error = ContentError(marker, line, problem, help=fix)
+    # The file is the student's, so this is nothing to report as a fault of the course.
+    error.exit_code = UsageError.exit_code
+    error.code = "workspace_damaged"
+    return error
+
+
+def _not_writable(path: Path, error: OSError) -> CourseError:
+    return MissingCapabilityError(
+        f"{path} cannot be written ({error.strerror or error}).",
+        help="Make the folder writable or free some space, or work in another folder.",
+        code="not_writable",
+    )

@@ -1,0 +1,243 @@
+"""Public checks of ``integrators``: run as often as you like, and once more when you submit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+from course.physics import invariants, systems
+
+probes = kit.companion("integrators", "probes")
+
+
+@pytest.mark.task("explicit_euler_step")
+@pytest.mark.points(5)
+def test_explicit_euler_growth(submission):
+    """Explicit Euler gains energy on a spring at the rate theory says"""
+    task, spring, h, n = "explicit_euler_step", systems.Oscillator(omega=2.0), 0.05, 40
+    _, q, v = submission.march(task, spring, [1.0], [0.6], h, n)
+    energy = invariants.energy(spring, q, v)
+    factor = _mean_factor(energy)
+    kit.expect_close(
+        factor,
+        1 + (h * spring.omega) ** 2,
+        rel=1e-6,
+        source="exact for a linear spring: only rounding is allowed",
+        quantity="energy factor per step",
+        input={"omega": 2.0, "h": h, "steps": n, "q0": [1.0], "v0": [0.6]},
+        message="On a spring, explicit Euler multiplies the energy by 1 + (h*omega)**2 in every step; yours "
+        "does not.",
+        help="Both new values come from the old state alone.",
+        diagnose=lambda: probes.of_energy(
+            submission, task, factor - 1 - (h * spring.omega) ** 2, (spring, [1.0], [0.6], h, n, 0.0)
+        ),
+    )
+
+
+@pytest.mark.task("semi_implicit_euler_step")
+@pytest.mark.points(5)
+def test_semi_implicit_energy(submission):
+    """Semi-implicit Euler's energy on a spring swings within its bound and never drifts"""
+    task, spring, h, n = "semi_implicit_euler_step", systems.Oscillator(omega=2.0), 0.27, 400
+    _, q, v = submission.march(task, spring, [1.0], [0.0], h, n)
+    swing = _largest_change(invariants.energy(spring, q, v))
+    z = h * spring.omega
+    kit.expect_close(
+        swing,
+        z / (2 - z),
+        rel=0.01,
+        source="closed form from rest; 400 samples come within 0.1 % of the extreme",
+        quantity="max |dE|/E0",
+        input={"omega": 2.0, "h": h, "steps": n, "q0": [1.0], "v0": [0.0]},
+        message="From rest on a spring, semi-implicit Euler's energy swings by z/(2 - z) with z = h*omega; "
+        "yours does not.",
+        help="One half of the state moves with the other half's new value.",
+        diagnose=lambda: probes.of_energy(
+            submission, task, swing - z / (2 - z), (spring, [1.0], [0.0], h, n, 0.0)
+        ),
+    )
+
+
+@pytest.mark.task("velocity_verlet_step")
+@pytest.mark.points(6)
+def test_verlet_order(submission):
+    """Halving the step divides velocity Verlet's error by four, on a driven spring"""
+    _expect_order(submission, "velocity_verlet_step", [16, 32, 64], 0.1)
+
+
+@pytest.mark.task("rk4_step")
+@pytest.mark.points(5)
+def test_rk4_order(submission):
+    """Halving the step divides RK4's error by sixteen, on a driven spring"""
+    _expect_order(submission, "rk4_step", [8, 16, 32], 0.3)
+
+
+@pytest.mark.task("rk4_step")
+@pytest.mark.points(2)
+def test_rk4_evaluations(submission):
+    """RK4 evaluates the acceleration four times a step"""
+    pendulum = systems.Pendulum(g=9.81, length=1.0)
+    accel = kit.acceleration(pendulum, 1)
+    accel.during(lambda: submission.call("rk4_step", accel, 0.0, np.array([0.8]), np.array([-0.3]), 0.1))
+    kit.expect_evaluations(
+        accel.count,
+        [4],
+        input={**pendulum.params(), "q": [0.8], "v": [-0.3], "h": 0.1},
+        message="A step of RK4 does not take four evaluations of accel.",
+        diagnose=lambda: probes.of_evaluations(accel.count, [4]),
+    )
+
+
+#: A rotation by 0.4 rad that also shrinks a little: where it leads is known at every step.
+_SPIRAL = systems.LinearStep(
+    [0.98 * math.cos(0.4)], [0.98 * math.sin(0.4)], [-0.98 * math.sin(0.4)], [0.98 * math.cos(0.4)]
+)
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(4)
+def test_integrate_samples(submission):
+    """integrate returns N + 1 samples, the initial state first, and carries the state along"""
+    h, n, omega = 0.25, 8, 2.0
+    q0, v0 = np.array([1.0, -0.5]), np.array([0.5, 2.0])
+    value = submission.call("integrate", _SPIRAL, systems.Oscillator(omega), q0, v0, n * h, h)
+    given = {"step": "a known linear map", "q0": q0, "v0": v0, "t_end": n * h, "h": h}
+    t, q, v = kit.as_tuple(value, ("t", "q", "v"))
+    t = kit.as_vector(t, None, "t")
+    kit.expect_length(
+        t,
+        n + 1,
+        message="integrate does not return one sample more than there are steps.",
+        help="N = round(t_end / h) steps join N + 1 states.",
+        input=given,
+        diagnose=lambda: probes.of_count(submission),
+    )
+    q, v = kit.as_array(q, (n + 1, 2), "q"), kit.as_array(v, (n + 1, 2), "v")
+    angle, shrink = 0.4 * np.arange(n + 1)[:, None], 0.98 ** np.arange(n + 1)[:, None]
+    p0 = v0 / omega
+    q_true = shrink * (np.cos(angle) * q0 + np.sin(angle) * p0)
+    v_true = omega * shrink * (np.cos(angle) * p0 - np.sin(angle) * q0)
+    times = h * np.arange(n + 1)
+    for actual, expected, quantity, units in (
+        (t, times, "t", "s"),
+        (q, q_true, "q", "m"),
+        (v, v_true, "v", "m/s"),
+    ):
+        kit.expect_array(
+            actual,
+            expected,
+            abs=1e-9,
+            source="rounding",
+            quantity=quantity,
+            units=units,
+            t=times,
+            input=given,
+            message="The samples are not the states that the step goes through.",
+            help="Row 0 is the initial state; row i + 1 is what the step makes of row i.",
+            diagnose=lambda: probes.of_rows(t, q, v, h, (q_true, v_true)),
+        )
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(4)
+def test_integrate_counts(submission):
+    """integrate takes the right number of steps where t_end/h is not exact in floating point"""
+    for t_end, h, n in ((0.29, 0.01, 29), (0.8, 0.1, 8), (0.0, 0.1, 0)):
+        given = {"q0": [1.0], "v0": [0.0], "t_end": t_end, "h": h}
+        value = kit.expect_accepts(
+            lambda t_end=t_end, h=h: submission.call(
+                "integrate", _SPIRAL, systems.Oscillator(1.0), np.array([1.0]), np.array([0.0]), t_end, h
+            ),
+            "ValueError",
+            input=given,
+            message="integrate raises ValueError for a duration that is a whole number of steps.",
+            diagnose=lambda: probes.named("REFUSES_DIVISIBLE"),
+        )
+        t, q, v = kit.as_tuple(value, ("t", "q", "v"))
+        for rows, name in ((t, "t"), (q, "q"), (v, "v")):
+            kit.expect_length(
+                rows,
+                n + 1,
+                name=name,
+                input=given,
+                message="The number of samples is not N + 1 with N = round(t_end / h).",
+                help="In floating point, t_end / h may fall just beside a whole number.",
+                diagnose=lambda: probes.of_count(submission),
+            )
+
+
+@pytest.mark.task("observed_order")
+@pytest.mark.points(4)
+def test_observed_order_slope(submission):
+    """observed_order finds the power that errors were made with"""
+    hs = [0.1, 0.05, 0.025, 0.0125]
+    for factor, order in ((3.0, 1.0), (0.2, 2.0), (7.0, 4.0)):
+        errors = [factor * h**order for h in hs]
+        value = submission.call("observed_order", np.array(hs), np.array(errors))
+        kit.expect_close(
+            value,
+            order,
+            abs=1e-9,
+            source="rounding: the points lie on one line",
+            quantity="order",
+            input={"hs": hs, "errors": errors},
+            message="For errors of the form C * h**p, observed_order does not return p.",
+            help="Take logarithms of both, then the slope of the line through them.",
+            diagnose=lambda value=value, errors=errors: probes.of_order(value, hs, errors),
+        )
+
+
+@pytest.mark.task("max_stable_step")
+@pytest.mark.points(5)
+def test_stable_step_verlet(submission):
+    """max_stable_step finds velocity Verlet's limit, h*omega = 2, for any omega"""
+    verlet = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
+    for omega in (1.0, 3.7, 0.2):
+        value = submission.call("max_stable_step", verlet, omega)
+        kit.expect_close(
+            value,
+            2.0 / omega,
+            rel=0.01,
+            source="the contract's 1 %",
+            quantity="largest stable step",
+            units="s",
+            input={"step": "velocity Verlet's map on a spring", "omega": omega},
+            message="The largest stable step of a known one-step map is wrong.",
+            help="Build the map's matrix on (q, v/omega) from two calls and look at its eigenvalues.",
+            diagnose=lambda value=value, omega=omega: probes.of_stability(
+                submission, value, verlet, omega, 2.0
+            ),
+        )
+
+
+def _mean_factor(energy):
+    """By what factor the energy changes per step, on average."""
+    with np.errstate(all="ignore"):
+        return float((energy[-1] / energy[0]) ** (1 / (len(energy) - 1)))
+
+
+def _largest_change(energy):
+    with np.errstate(all="ignore"):
+        return float(np.max(np.abs(invariants.relative_change(energy))))
+
+
+def _expect_order(submission, task, counts, within):
+    """The slope of log error over log step on one driven spring."""
+    problem = kit.Problem(
+        "driven spring", systems.ForcedOscillator(2.0, 1.5, 3.1), [0.8], [-0.9], rate=2.0, span=0.9, t0=0.4
+    )
+    hs, errors = kit.march_errors(submission, task, problem, counts)
+    kit.expect_order(
+        hs,
+        errors,
+        probes.ORDERS[task],
+        abs=within,
+        source="slopes of correct methods at these steps, with a margin",
+        input=problem.input,
+        message="On a spring that is pushed in time, the error does not shrink with the step as it should.",
+        help="The acceleration depends on t here: which time does each evaluation belong to?",
+        diagnose=lambda: probes.of_step(submission, task, problem.run(counts[0])),
+    )

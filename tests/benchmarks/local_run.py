@@ -1,0 +1,180 @@
+"""Run the checks of an exercise on its stub, solution, accepted variants and mutants, in this process.
+
+    python tests/benchmarks/local_run.py integrators [--seeds N] [--only NAME] [--see]
+
+Without a sandbox, so only for code of our own: it is for writing and calibrating checks.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import inspect
+import re
+import sys
+import time
+import tomllib
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
+
+from local_submission import LocalSubmission  # noqa: E402
+
+from course.grading.kit import CheckFailed, Finding, StudentFailure, finding_of  # noqa: E402
+
+
+@dataclass
+class Check:
+    id: str
+    title: str
+    task: str
+    points: float
+    hidden: bool
+    fn: Any
+
+
+@dataclass
+class Result:
+    check: Check
+    status: str
+    finding: Finding | None
+
+
+def load_checks(exercise: str) -> list[Check]:
+    """Public checks, then hidden ones, in the order they are written in."""
+    files = [
+        (ROOT / "exercises" / exercise / "checks.py", False),
+        (ROOT / "tests/graders" / exercise / "checks.py", True),
+    ]
+    checks = []
+    for path, hidden in files:
+        if not path.is_file():
+            continue
+        spec = importlib.util.spec_from_file_location(f"{exercise}_{'hidden' if hidden else 'public'}", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        for name, fn in vars(module).items():
+            if name.startswith("test_"):
+                marks = {mark.name: mark.args[0] for mark in fn.pytestmark}
+                title = (fn.__doc__ or "").splitlines()[0]
+                checks.append(Check(name[5:], title, marks["task"], marks["points"], hidden, fn))
+    return checks
+
+
+def run(source: str, checks: list[Check], seed: int) -> list[Result]:
+    """Run every check on a fresh copy of the module."""
+    results = []
+    submission = LocalSubmission(source, seed)
+    for check in checks:
+        kwargs: dict[str, Any] = {"submission": submission}
+        if "rng" in inspect.signature(check.fn).parameters:
+            kwargs["rng"] = np.random.default_rng([seed, zlib.crc32(check.id.encode())])
+        try:
+            check.fn(**kwargs)
+            results.append(Result(check, "pass", None))
+        except CheckFailed as failed:
+            results.append(Result(check, "fail", failed.finding))
+        except StudentFailure as failure:
+            results.append(Result(check, failure.kind, finding_of(failure)))
+    return results
+
+
+def sources(exercise: str) -> dict[str, str]:
+    """Everything there is to run: kind/name to source text."""
+    solution_dir = ROOT / "solutions" / exercise
+    module = re.search(
+        r'^module = "(.+)"', (ROOT / "exercises" / exercise / "exercise.toml").read_text(), re.M
+    )[1]
+    solution = (solution_dir / module).read_text()
+    found = {"stub": (ROOT / "exercises" / exercise / module).read_text(), "solution": solution}
+    for kind in ("accepted", "mutants"):
+        for path in sorted((solution_dir / kind).glob("*.py")):
+            found[f"{kind}/{path.name}"] = solution + "\n\n" + path.read_text()
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("exercise")
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--see", action="store_true", help="print what the student would see")
+    options = parser.parse_args()
+    checks = load_checks(options.exercise)
+    total = sum(check.points for check in checks)
+    print(f"{len(checks)} checks, {total} points ({sum(c.points for c in checks if not c.hidden)} public)")
+    path = ROOT / "solutions" / options.exercise / "mutants.toml"
+    mutants = {m["file"]: m for m in tomllib.loads(path.read_text())["mutant"]} if path.is_file() else {}
+    wrong = 0
+    for name, source in sources(options.exercise).items():
+        if options.only in name:
+            wrong += _report(name, source, checks, options, total, mutants.get(name.removeprefix("mutants/")))
+    print("all as declared" if not wrong else f"{wrong} NOT as declared")
+    return bool(wrong)
+
+
+def _report(name: str, source: str, checks: list[Check], options: Any, total: float, mutant: Any) -> int:
+    start = time.process_time()
+    faults: dict[str, int] = {}
+    seen: dict[str, Result] = {}
+    scores = []
+    for seed in range(options.first, options.first + options.seeds):
+        results = run(source, checks, seed)
+        scores.append(sum(r.check.points for r in results if r.status == "pass"))
+        for result in results:
+            if result.status != "pass":
+                seen.setdefault(result.check.id, result)
+        for fault in _faults(name, results, mutant):
+            faults[fault] = faults.get(fault, 0) + 1
+    cpu = (time.process_time() - start) / options.seeds
+    print(
+        f"{name:48s} {min(scores):5.0f}..{max(scores):3.0f} of {total:.0f}  {1000 * cpu:6.0f} ms"
+        f"{'  WRONG: ' + str(faults) if faults else ''}"
+    )
+    for result in seen.values() if name != "stub" else ():
+        finding = result.finding
+        where = finding.first_divergence
+        print(
+            f"    {result.check.id:36s} {result.status:8s} {finding.diagnosis}"
+            f"{f'  left at t={where.t:.3g} {where.quantity}' if where else ''}"
+        )
+        if options.see:
+            hidden = "hidden" if result.check.hidden else "public"
+            print(f"      [{hidden}] {result.check.title}\n      {finding.message}\n      -> {finding.help}")
+            if not result.check.hidden:
+                print(
+                    f"      input {finding.input}\n      expected {finding.expected} actual {finding.actual} "
+                    f"{finding.units} tolerance {finding.tolerance} {finding.first_divergence}"
+                )
+    return bool(faults)
+
+
+def _faults(name: str, results: list[Result], mutant: Any) -> list[str]:
+    """What is not as it is declared to be."""
+    failed = {r.check.id: r for r in results if r.status != "pass"}
+    if name == "stub":
+        return [f"{r.check.id} passes" for r in results if r.status == "pass"]
+    if not name.startswith("mutants/"):
+        return [f"{check} fails" for check in failed]
+    if mutant is None:
+        return ["not in mutants.toml"]
+    faults = [
+        f"loses {r.check.id} of {r.check.task}" for r in failed.values() if r.check.task != mutant["task"]
+    ]
+    caught = failed.get(mutant["check"])
+    if caught is None:
+        faults.append(f"not caught by {mutant['check']}")
+    elif caught.finding.diagnosis != mutant["diagnosis"]:
+        faults.append(f"diagnosed {caught.finding.diagnosis}")
+    return faults
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,164 @@
+"""A submission run in this very process, with the interface checks use and no protection whatever.
+
+It serves to write and calibrate checks without a sandbox, and is the unprotected side of the benchmark. It
+reproduces what the boundary does to values (tuples become lists, numpy scalars plain numbers, arrays are
+copied) so that a check cannot come to rely on something that would not cross.
+"""
+
+from __future__ import annotations
+
+import traceback
+import types
+from typing import Any
+
+import numpy as np
+
+from course.grading.failures import StudentFailure
+from course.grading.values import Inspected, as_march
+from course.physics.systems import SYSTEMS
+
+_SYSTEM_TYPES = tuple(SYSTEMS.values())
+_FILE = "<submission>"
+
+
+class LocalSubmission:
+    """One student's module, loaded here.
+
+    Args:
+        source: text of the module.
+        seed: seed of the grading run.
+    """
+
+    def __init__(self, source: str, seed: int = 0) -> None:
+        self.seed = seed
+        self._module = types.ModuleType("submission")
+        exec(compile(source, _FILE, "exec", dont_inherit=True), self._module.__dict__)
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+        """Call the student's function with copies of the arguments; its value as plain data."""
+        return self._inspect(name, args, kwargs).value
+
+    def call_inspect(self, name: str, *args: Any) -> Inspected:
+        """Call it, and say what became of the arguments."""
+        return self._inspect(name, args, {})
+
+    def ref(self, name: str) -> Any:
+        """The student's own function, to be passed back as an argument."""
+        return self._function(name)
+
+    def march(
+        self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
+    ) -> tuple[Any, Any, Any]:
+        """n steps in a row; times (n + 1,), positions and velocities (n + 1, d)."""
+        step = self._function(step_name)
+        q, v = as_march(_guarded(lambda: _march(step, system, q0, v0, t0, h, n)), n, len(q0))
+        return t0 + h * np.arange(n + 1), q, v
+
+    def _inspect(self, name: str, args: Any, kwargs: Any) -> Inspected:
+        function = self._function(name)
+        escaped: list[BaseException] = []
+        given = [_given(arg, escaped) for arg in args]
+        named = {key: _given(arg, escaped) for key, arg in kwargs.items()}
+        try:
+            value = _guarded(lambda: function(*given, **named))
+        except StudentFailure:
+            if escaped:  # a callback refused its arguments: that is the finding
+                raise escaped[0] from None
+            raise
+        if escaped:
+            raise escaped[0]
+        after = [None if callable(arg) else _plain(arg) for arg in given]
+        return Inspected(_plain(value), after, _shares(value, given))
+
+    def _function(self, name: str) -> Any:
+        function = getattr(self._module, name, None)
+        if not callable(function):
+            raise StudentFailure.missing(name)
+        return function
+
+
+def _guarded(fn: Any) -> Any:
+    """``fn()``, with whatever student code raises as a StudentFailure."""
+    try:
+        with np.errstate(all="ignore"):
+            return fn()
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == _FILE]
+        raise StudentFailure(
+            "error",
+            type=type(error).__name__,
+            message=str(error),
+            line=frames[-1].lineno if frames else None,
+            traceback="".join(traceback.format_list(frames)),
+            bases=[cls.__name__ for cls in type(error).__mro__],
+        ) from None
+
+
+def _march(step: Any, system: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
+    d = len(q0)
+    q = np.empty((n + 1, d))
+    v = np.empty((n + 1, d))
+    q[0], v[0] = q0, v0
+    for i in range(n):
+        result = step(system, t0 + i * h, q[i].copy(), v[i].copy(), h)
+        try:
+            q_next, v_next = result
+            if np.shape(q_next) != (d,) or np.shape(v_next) != (d,):
+                return {"bad": f"shapes {np.shape(q_next)} and {np.shape(v_next)}", "step": i}
+            q[i + 1], v[i + 1] = q_next, v_next
+        except (TypeError, ValueError) as error:
+            return {"bad": f"{type(result).__name__}: {error}"[:200], "step": i}
+    return [q, v]
+
+
+def _given(value: Any, escaped: list[BaseException]) -> Any:
+    """An argument as student code gets it: arrays copied, tuples as lists, callbacks behind a wrapper."""
+    if isinstance(value, _SYSTEM_TYPES) or not callable(value):
+        return _plain(value) if not isinstance(value, _SYSTEM_TYPES) else value
+
+    def callback(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return _plain(value(*map(_crossing, args), **{k: _crossing(a) for k, a in kwargs.items()}))
+        except BaseException as error:
+            escaped.append(error)
+            raise ValueError("the grader's function refused its arguments") from None
+
+    callback.original = value  # type: ignore[attr-defined]
+    return callback
+
+
+def _crossing(value: Any) -> Any:
+    """What a value handed to a callback arrives as; a callback that comes back is itself again."""
+    return getattr(value, "original", value) if callable(value) else _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiubc":
+            raise StudentFailure("protocol", message=f"an array of dtype {value.dtype}")
+        return np.array(value)
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if callable(value):
+        return value
+    raise StudentFailure("protocol", message=f"a value of type {type(value).__name__}")
+
+
+def _arrays(value: Any) -> list[Any]:
+    if isinstance(value, np.ndarray):
+        return [value]
+    if isinstance(value, list | tuple):
+        return [array for item in value for array in _arrays(item)]
+    return []
+
+
+def _shares(value: Any, args: Any) -> bool:
+    return any(np.may_share_memory(a, b) for a in _arrays(value) for b in _arrays(args))

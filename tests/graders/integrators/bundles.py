@@ -1,0 +1,291 @@
+"""What the hidden graders of ``integrators`` share: problems drawn from a seed, and bundles of expectations.
+
+Generic parameters matter. From rest at half a period semi-implicit Euler shows order 2; on a spring without
+a clock RK4 with frozen stage times still shows order 4; on free fall position-first semi-implicit Euler
+looks like explicit Euler.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+from course.physics import invariants, systems
+
+probes = kit.companion("integrators", "probes")
+
+EXPLICIT, SEMI, VERLET, RK4 = (
+    "explicit_euler_step",
+    "semi_implicit_euler_step",
+    "velocity_verlet_step",
+    "rk4_step",
+)
+
+# -- problems -------------------------------------------------------------------------------------------
+
+
+def signed(rng, low, high, d=1):
+    """Numbers of either sign, never near zero."""
+    return rng.uniform(low, high, d) * rng.choice([-1.0, 1.0], d)
+
+
+def _start(rng, rate, d=1):
+    return {
+        "q0": signed(rng, 0.5, 1.2, d).tolist(),
+        "v0": (rate * signed(rng, 0.3, 0.9, d)).tolist(),
+        "rate": rate,
+        "span": rng.uniform(1.2, 1.9) / rate,
+        "t0": rng.uniform(0.2, 2.0),
+    }
+
+
+def spring(rng):
+    rate = rng.uniform(0.8, 4.0)
+    return kit.Problem("a spring", systems.Oscillator(rate), **_start(rng, rate, 2))
+
+
+def pendulum(rng):
+    system = systems.Pendulum(9.81, rng.uniform(0.4, 2.0))
+    return kit.Problem("a pendulum", system, **_start(rng, math.sqrt(system.g / system.length), 2))
+
+
+def driven_spring(rng):
+    rate = rng.uniform(0.8, 3.0)
+    system = systems.ForcedOscillator(rate, rate**2 * rng.uniform(0.6, 1.4), rate * rng.uniform(1.3, 1.8))
+    return kit.Problem("a driven spring", system, **_start(rng, rate))
+
+
+def orbit(rng):
+    mu, radius, eccentricity = rng.uniform(0.5, 3.0), rng.uniform(0.8, 1.5), rng.uniform(0.1, 0.3)
+    angle = rng.uniform(0.0, 2 * math.pi)
+    speed = math.sqrt(mu / radius * (1 + eccentricity) / (1 - eccentricity))
+    across = np.array([math.cos(angle), math.sin(angle)])
+    rate = math.sqrt(mu / radius**3)
+    return kit.Problem(
+        "an orbit in the plane",
+        systems.Kepler(mu),
+        q0=(radius * (1 - eccentricity) * across).tolist(),
+        v0=(speed * np.array([-across[1], across[0]])).tolist(),
+        rate=rate,
+        span=rng.uniform(1.2, 1.9) / rate,
+        t0=rng.uniform(0.2, 2.0),
+    )
+
+
+def damped_spring(rng):
+    rate = rng.uniform(0.8, 3.0)
+    system = systems.DampedOscillator(rate, rate * rng.uniform(0.2, 0.6))
+    return kit.Problem("a damped spring", system, **_start(rng, rate, 2))
+
+
+def van_der_pol(rng):
+    rate = rng.uniform(0.8, 2.0)
+    system = systems.VanDerPol(rate * rng.uniform(0.3, 0.8), rate)
+    return kit.Problem("a van der Pol oscillator", system, **_start(rng, rate))
+
+
+CONSERVATIVE = (spring, pendulum, driven_spring, orbit)
+EVERYTHING = (*CONSERVATIVE, damped_spring, van_der_pol)
+
+# -- what several checks expect -------------------------------------------------------------------------
+
+#: How many steps cover the span (1.2 to 1.9 rad): h * rate stays below 0.02 for the first-order methods, and
+#: RK4's errors stay between 1e-10 and 1e-4.
+COUNTS = {EXPLICIT: (96, 144, 216), SEMI: (96, 144, 216), VERLET: (24, 48, 96), RK4: (12, 20, 32)}
+WITHIN = {EXPLICIT: 0.15, SEMI: 0.15, VERLET: 0.1, RK4: 0.3}
+
+
+def expect_orders(submission, task, problems):
+    """The step converges at its order on every problem."""
+    for problem in problems:
+        hs, errors = kit.march_errors(submission, task, problem, COUNTS[task])
+        kit.expect_order(
+            hs,
+            errors,
+            probes.ORDERS[task],
+            abs=WITHIN[task],
+            source="slopes of correct methods over many seeds, with a margin",
+            input=problem.input,
+            message=f"On {problem.name}, the error does not shrink with the step as it should.",
+            help="Compare one step with the formula: time, position and velocity of each evaluation.",
+            diagnose=lambda problem=problem: probes.of_step(submission, task, problem.run(24)),
+        )
+
+
+def unknown_system(rng):
+    """A right-hand side that only the grader knows, counted, and a generic state to take a step from."""
+    stiffness, drag, push, beat = rng.uniform(1.0, 4.0, 4)
+
+    def accel(t, q, v):
+        return -stiffness * np.sin(q) * (1 + 0.2 * q * q) - drag * v * abs(v) + push * np.cos(beat * t + q)
+
+    q, v = signed(rng, 0.4, 1.2, 3), signed(rng, 0.4, 1.2, 3)
+    return kit.acceleration(accel, 3), rng.uniform(0.3, 2.0), q, v, rng.uniform(0.1, 0.3)
+
+
+def expect_evaluations(accel, allowed):
+    kit.expect_evaluations(
+        accel.count,
+        allowed,
+        message="A step does not take as many evaluations of accel as this method needs.",
+        diagnose=lambda: probes.of_evaluations(accel.count, allowed),
+    )
+
+
+def expect_one_evaluation(accel, submission, task):
+    """One evaluation; where the formula itself is wrong, that is said first."""
+    if accel.count != 1:
+        kit.fail(
+            "A step does not take one evaluation of accel.",
+            expected=1,
+            actual=accel.count,
+            units="evaluations",
+            diagnose=lambda: probes.of_step(submission, task) or probes.of_evaluations(accel.count, (1,)),
+        )
+
+
+def expect_formula(submission, task, result, accel, t, q, v, h):
+    """The result of a step is one of the forms that the method has."""
+    q_next, v_next = kit.as_pair(result, len(q))
+    forms = [right(accel, t, q, v, h) for right in probes.RIGHT[task]]
+    q_true, v_true = min(forms, key=lambda form: abs(form[0] - q_next).max() + abs(form[1] - v_next).max())
+    for actual, expected, name, units in ((q_next, q_true, "q_next", "m"), (v_next, v_true, "v_next", "m/s")):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-10,
+            source="rounding",
+            quantity=name,
+            units=units,
+            input={"t": t, "q": q, "v": v, "h": h},
+            message="One step on a system in which everything matters is not what the formula gives.",
+            help="Write the formula down with every argument of accel and compare it with your line of code.",
+            diagnose=lambda: probes.of_step(submission, task),
+        )
+
+
+def expect_clean(submission, task, rng):
+    """A step changes none of its arguments, returns arrays of its own and takes whole numbers."""
+    system = systems.DrivenPendulum(*rng.uniform(1.0, 3.0, 4).tolist())
+    t, h = rng.uniform(0.2, 2.0), rng.uniform(0.1, 0.3)
+    whole = rng.integers(1, 5, 2), rng.integers(-4, 0, 2)
+    floats = [part.astype(float) for part in whole]
+    args = [system, t, *floats, h]
+    given = {**system.params(), "t": t, "q": whole[0], "v": whole[1], "h": h}
+    inspected = submission.call_inspect(task, *args)
+    q_next, v_next = kit.as_pair(inspected.value, 2)
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["", "", "q", "v", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input=given,
+    )
+    result = kit.expect_accepts(
+        lambda: submission.call(task, system, t, *whole, h),
+        "TypeError",
+        input=given,
+        message="The step fails on a state of whole numbers.",
+        diagnose=lambda: probes.of_whole_numbers(submission, task),
+    )
+    for actual, expected, name in zip(
+        kit.as_pair(result, 2), (q_next, v_next), ("q_next", "v_next"), strict=True
+    ):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            source="the same step from the same state as floats",
+            quantity=name,
+            input=given,
+            message="From whole numbers the step gives something else than from the same state as floats.",
+            diagnose=lambda: probes.of_whole_numbers(submission, task),
+        )
+
+
+def expect_symplectic(submission, task, rng):
+    """The Jacobian of one step on an orbit keeps the symplectic form; RK4's would be off by 1e-4."""
+    problem = orbit(rng)
+    h = rng.uniform(0.5, 0.8) / problem.rate
+
+    def flow(y):
+        return np.concatenate(
+            kit.as_pair(submission.call(task, problem.system, problem.t0, y[:2], y[2:], h), 2)
+        )
+
+    with np.errstate(all="ignore"):
+        derivative = invariants.jacobian(flow, np.concatenate([problem.q0, problem.v0]))
+        defect = invariants.symplecticity_defect(derivative)
+    kit.expect_close(
+        defect,
+        0.0,
+        abs=1e-6,
+        source="finite differences leave 1e-8 or less",
+        quantity="max |J^T Omega J - Omega|",
+        input={**problem.input, "h": h},
+        message="One step on an orbit does not keep the symplectic form, so energy and area will drift.",
+        help="Each half of the state must move with a function of the other half alone.",
+        diagnose=lambda: probes.of_step(submission, task),
+    )
+
+
+def expect_free_fall(submission, task, rng):
+    """Constant acceleration is followed exactly."""
+    system, h, n = systems.FreeFall(rng.uniform(1.6, 25.0)), rng.uniform(0.05, 0.3), 12
+    q0, v0 = signed(rng, 1.0, 5.0, 3), signed(rng, 1.0, 5.0, 3)
+    t, q, v = submission.march(task, system, q0, v0, h, n)
+    up = np.array([0.0, 0.0, -system.g])
+    s = t[:, None]
+    for actual, expected, name, units in (
+        (q, q0 + s * v0 + s**2 / 2 * up, "q", "m"),
+        (v, v0 + s * up, "v", "m/s"),
+    ):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            source="exact: only rounding is allowed",
+            quantity=name,
+            units=units,
+            t=t,
+            input={"g": system.g, "h": h, "q0": q0, "v0": v0},
+            message="This method follows the parabola of free fall exactly; yours does not.",
+            help="With a constant acceleration a, one step must give q + h*v + h**2/2*a and v + h*a.",
+            diagnose=lambda: probes.of_step(submission, task),
+        )
+
+
+def expect_slope(submission, hs, errors, message):
+    """observed_order is the least-squares slope of the logarithms."""
+    value = submission.call("observed_order", hs, errors)
+    kit.expect_close(
+        value,
+        invariants.convergence_order(hs, errors),
+        abs=1e-8,
+        source="rounding: the least-squares slope is one number",
+        quantity="order",
+        input={"hs": hs, "errors": errors},
+        message=message,
+        help="Slope of log error over log h by least squares, whatever the order of the points.",
+        diagnose=lambda: probes.of_order(value, hs, errors),
+    )
+
+
+def expect_limit(submission, step, omega, limit, message):
+    """max_stable_step of ``step`` is ``limit / omega`` to 1 %."""
+    value = submission.call("max_stable_step", step, omega)
+    kit.expect_close(
+        value,
+        limit / omega,
+        rel=0.01,
+        source="the contract's 1 %",
+        quantity="largest stable step",
+        units="s",
+        input={**step.params(), "omega": omega},
+        message=message,
+        help="Build the map's matrix from two calls, walk up from 0.05/omega, look at its eigenvalues.",
+        diagnose=lambda: probes.of_stability(submission, value, step, omega, limit),
+    )

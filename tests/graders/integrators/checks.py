@@ -1,0 +1,383 @@
+"""Hidden graders of ``integrators``. Parameters are drawn anew from the seed of each grading run.
+
+Thresholds come from sweeps over seeds and steps of every accepted solution; the table is in
+``tests/benchmarks/calibration/integrators.md``.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+from course.physics import invariants, systems
+
+probes = kit.companion("integrators", "probes")
+bundles = kit.sibling(__file__, "bundles")
+loops = kit.sibling(__file__, "loops")
+EXPLICIT, SEMI, VERLET, RK4 = bundles.EXPLICIT, bundles.SEMI, bundles.VERLET, bundles.RK4
+
+# -- explicit Euler -------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(EXPLICIT)
+@pytest.mark.points(3)
+def test_explicit_euler_order(submission, rng):
+    """Explicit Euler is of first order on six different problems"""
+    bundles.expect_orders(submission, EXPLICIT, [make(rng) for make in bundles.EVERYTHING])
+
+
+@pytest.mark.task(EXPLICIT)
+@pytest.mark.points(2)
+def test_explicit_euler_one_step(submission, rng):
+    """One step of explicit Euler on an unknown system is what the formula says, with one evaluation"""
+    accel, t, q, v, h = bundles.unknown_system(rng)
+    result = accel.during(lambda: submission.call(EXPLICIT, accel, t, q, v, h))
+    bundles.expect_one_evaluation(accel, submission, EXPLICIT)
+    bundles.expect_formula(submission, EXPLICIT, result, accel, t, q, v, h)
+
+
+@pytest.mark.task(EXPLICIT)
+@pytest.mark.points(2)
+def test_explicit_euler_inputs(submission, rng):
+    """Explicit Euler leaves its arguments alone and takes whole numbers"""
+    bundles.expect_clean(submission, EXPLICIT, rng)
+
+
+# -- semi-implicit Euler --------------------------------------------------------------------------------
+
+
+@pytest.mark.task(SEMI)
+@pytest.mark.points(4)
+def test_semi_implicit_order(submission, rng):
+    """Semi-implicit Euler is of first order on four different problems"""
+    bundles.expect_orders(submission, SEMI, [make(rng) for make in bundles.CONSERVATIVE])
+
+
+@pytest.mark.task(SEMI)
+@pytest.mark.points(2)
+def test_semi_implicit_symplectic(submission, rng):
+    """Semi-implicit Euler is symplectic on an orbit, at a large step"""
+    bundles.expect_symplectic(submission, SEMI, rng)
+
+
+@pytest.mark.task(SEMI)
+@pytest.mark.points(2)
+def test_semi_implicit_one_step(submission, rng):
+    """One step of semi-implicit Euler on an unknown system is one of its two forms, with one evaluation"""
+    accel, t, q, v, h = bundles.unknown_system(rng)
+    result = accel.during(lambda: submission.call(SEMI, accel, t, q, v, h))
+    bundles.expect_one_evaluation(accel, submission, SEMI)
+    bundles.expect_formula(submission, SEMI, result, accel, t, q, v, h)
+
+
+@pytest.mark.task(SEMI)
+@pytest.mark.points(2)
+def test_semi_implicit_inputs(submission, rng):
+    """Semi-implicit Euler leaves its arguments alone and takes whole numbers"""
+    bundles.expect_clean(submission, SEMI, rng)
+
+
+# -- velocity Verlet ------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(3)
+def test_verlet_order_everywhere(submission, rng):
+    """Velocity Verlet is of second order on four different problems"""
+    bundles.expect_orders(submission, VERLET, [make(rng) for make in bundles.CONSERVATIVE])
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(2)
+def test_verlet_energy(submission, rng):
+    """Velocity Verlet's energy on a spring swings as far as theory says"""
+    # A turn takes k + 0.38 steps: near the golden ratio the samples never repeat, so some fall near q = 0.
+    z = 2 * math.sin(math.pi / (rng.integers(9, 16) + rng.uniform(0.37, 0.39)))
+    omega, n = rng.uniform(0.5, 5.0), 300
+    system = systems.Oscillator(omega)
+    q0 = bundles.signed(rng, 0.5, 1.5).tolist()
+    _, q, v = submission.march(VERLET, system, q0, [0.0], z / omega, n)
+    with np.errstate(all="ignore"):
+        swing = float(np.max(np.abs(invariants.relative_change(invariants.energy(system, q, v)))))
+    kick_first = z**2 / 4
+    drift_first = kick_first / (1 - kick_first)
+    nearest = min(kick_first, drift_first, key=lambda expected: abs(swing - expected))
+    kit.expect_close(
+        swing,
+        nearest,
+        rel=0.01,
+        source="closed forms z^2/4 (kick-drift-kick) and z^2/4/(1 - z^2/4) (drift-kick-drift)",
+        quantity="max |dE|/E0",
+        input={"omega": omega, "h": z / omega, "q0": q0, "steps": n},
+        message="Over many turns on a spring, the energy does not keep to the bound of velocity Verlet.",
+        help="Two half kicks around one drift, each with the acceleration at its own end of the step.",
+        diagnose=lambda: probes.of_energy(
+            submission, VERLET, swing - nearest, (system, q0, [0.0], z / omega, n, 0.0)
+        ),
+    )
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(1)
+def test_verlet_frequency(submission, rng):
+    """On a spring, velocity Verlet turns a little too fast, by exactly what theory says"""
+    omega, z, n = rng.uniform(0.5, 5.0), rng.uniform(0.4, 1.2), 60
+    h = z / omega
+    start = bundles.signed(rng, 0.5, 1.5), omega * bundles.signed(rng, 0.3, 1.0)
+    _, q, _ = submission.march(VERLET, systems.Oscillator(omega), *start, h, n)
+    x = q[:, 0]
+    with np.errstate(all="ignore"):
+        # Samples of a turning pointer obey x[k+1] + x[k-1] = 2 cos(angle) x[k].
+        cosine = float(x[1:-1] @ (x[2:] + x[:-2]) / (2 * x[1:-1] @ x[1:-1]))
+    kit.expect_close(
+        math.acos(cosine) / h if abs(cosine) <= 1 else math.nan,
+        2 / h * math.asin(z / 2),
+        rel=1e-6,
+        source="exact on a linear spring: only rounding is allowed",
+        quantity="angular frequency",
+        units="rad/s",
+        input={"omega": omega, "h": h},
+        message="The frequency of the spring under your velocity Verlet is not the one that theory gives.",
+        help="Look at the factor of the acceleration in the position and at both kicks.",
+        diagnose=lambda: probes.of_step(submission, VERLET),
+    )
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(1)
+def test_verlet_symplectic(submission, rng):
+    """Velocity Verlet is symplectic on an orbit, at a large step"""
+    bundles.expect_symplectic(submission, VERLET, rng)
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(1)
+def test_verlet_reversible(submission, rng):
+    """Velocity Verlet run there, turned round and run back ends where it began"""
+    problem, n = bundles.pendulum(rng), 60
+    h = rng.uniform(0.3, 0.5) / problem.rate
+    _, q, v = submission.march(VERLET, problem.system, problem.q0, problem.v0, h, n)
+    with np.errstate(all="ignore"):
+        _, back, _ = submission.march(VERLET, problem.system, q[-1], -v[-1], h, n)
+    kit.expect_array(
+        back[-1],
+        problem.q0,
+        abs=1e-8,
+        source="exactly reversible: only rounding, grown over the way there and back",
+        quantity="q",
+        units="rad",
+        input={**problem.input, "h": h, "steps": n},
+        message="With the velocity reversed, your velocity Verlet does not retrace its path.",
+        help="The step must look the same from both ends: half a kick at each, or half a drift at each.",
+        diagnose=lambda: probes.of_step(submission, VERLET),
+    )
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(1)
+def test_verlet_free_fall(submission, rng):
+    """Velocity Verlet is exact in free fall"""
+    bundles.expect_free_fall(submission, VERLET, rng)
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(1)
+def test_verlet_evaluations(submission, rng):
+    """Velocity Verlet takes one or two evaluations a step"""
+    accel, t, q, v, h = bundles.unknown_system(rng)
+    accel.during(lambda: submission.call(VERLET, accel, t, q, v, h))
+    bundles.expect_evaluations(accel, (1, 2))
+
+
+@pytest.mark.task(VERLET)
+@pytest.mark.points(2)
+def test_verlet_inputs(submission, rng):
+    """Velocity Verlet leaves its arguments alone and takes whole numbers"""
+    bundles.expect_clean(submission, VERLET, rng)
+
+
+# -- Runge-Kutta 4 --------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(RK4)
+@pytest.mark.points(5)
+def test_rk4_order_everywhere(submission, rng):
+    """RK4 is of fourth order on six different problems"""
+    bundles.expect_orders(submission, RK4, [make(rng) for make in bundles.EVERYTHING])
+
+
+@pytest.mark.task(RK4)
+@pytest.mark.points(3)
+def test_rk4_decay(submission, rng):
+    """RK4 loses energy on a spring at the rate theory says"""
+    omega, z, n = rng.uniform(0.5, 5.0), rng.uniform(0.6, 1.2), 30
+    system, h = systems.Oscillator(omega), z / omega
+    start = bundles.signed(rng, 0.5, 1.5).tolist(), (omega * bundles.signed(rng, 0.3, 1.0)).tolist()
+    _, q, v = submission.march(RK4, system, *start, h, n)
+    energy = invariants.energy(system, q, v)
+    with np.errstate(all="ignore"):
+        loss = 1.0 - float((energy[-1] / energy[0]) ** (1 / n))
+    expected = z**6 / 72 - z**8 / 576
+    kit.expect_close(
+        loss,
+        expected,
+        rel=1e-6,
+        source="exact for every fourth-order method with four stages on a linear spring",
+        quantity="energy lost per step",
+        input={"omega": omega, "h": h, "steps": n, "q0": start[0], "v0": start[1]},
+        message="On a spring, RK4 loses about z**6/72 of its energy a step with z = h*omega; yours does not.",
+        help="Check the weights and how far along each slope is taken.",
+        diagnose=lambda: probes.of_energy(submission, RK4, expected - loss, (system, *start, h, n, 0.0)),
+    )
+
+
+@pytest.mark.task(RK4)
+@pytest.mark.points(1)
+def test_rk4_free_fall(submission, rng):
+    """RK4 is exact in free fall"""
+    bundles.expect_free_fall(submission, RK4, rng)
+
+
+@pytest.mark.task(RK4)
+@pytest.mark.points(2)
+def test_rk4_inputs(submission, rng):
+    """RK4 leaves its arguments alone and takes whole numbers"""
+    bundles.expect_clean(submission, RK4, rng)
+
+
+# -- integrate ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(3)
+def test_integrate_time(submission, rng):
+    """integrate tells each step the time at which it starts"""
+    loops.expect_times(submission, rng)
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(2)
+def test_integrate_refuses(submission, rng):
+    """integrate raises ValueError for a duration that is no whole number of steps, and only then"""
+    loops.expect_awkward_durations(submission, rng)
+    loops.expect_refusals(submission, rng)
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(2)
+def test_integrate_whole_numbers(submission, rng):
+    """integrate takes an initial state of whole numbers, and leaves it alone"""
+    loops.expect_whole_numbers(submission, rng)
+
+
+# -- observed_order -------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("observed_order")
+@pytest.mark.points(3)
+def test_observed_order_least_squares(submission, rng):
+    """observed_order fits all points by least squares where they scatter"""
+    hs = 0.3 * np.cumprod(rng.uniform(0.4, 0.8, 7))
+    errors = rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 4.5) * np.exp(rng.normal(0.0, 0.2, 7))
+    bundles.expect_slope(
+        submission, hs, errors, "Through points that scatter, observed_order is not the least-squares slope."
+    )
+
+
+@pytest.mark.task("observed_order")
+@pytest.mark.points(3)
+def test_observed_order_any_order(submission, rng):
+    """observed_order takes two points or many, in any order, as lists or arrays"""
+    two = 10 ** rng.uniform(-4, -1, 2)
+    many = rng.permutation(0.5 * np.cumprod(rng.uniform(0.4, 0.8, 5)))
+    for hs in (np.sort(two), np.sort(two)[::-1], many):
+        errors = rng.uniform(1e-6, 1e3) * hs ** rng.uniform(0.8, 4.5)
+        message = "For points in another order than from large to small, observed_order is not the slope."
+        bundles.expect_slope(submission, hs, errors, message)
+        bundles.expect_slope(
+            submission,
+            hs.tolist(),
+            errors.tolist(),
+            "Given lists instead of arrays, observed_order is not the slope.",
+        )
+
+
+# -- max_stable_step ------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("max_stable_step")
+@pytest.mark.points(3)
+def test_stable_step_limits(submission, rng):
+    """max_stable_step finds the limit of maps that it has never seen"""
+    a, b, c = rng.uniform(0.6, 5.0, 3)
+    angle, shear = rng.uniform(0.4, 1.2), rng.uniform(1.2, 3.0)
+    spiral = [0.8, 0.0, 0.2 / a**2]
+    maps = (
+        # A spiral that shrinks, then grows past z = a.
+        (
+            _scaled(spiral, math.cos(angle)),
+            _scaled(spiral, math.sin(angle)),
+            _scaled(spiral, -math.sin(angle)),
+            None,
+            a,
+        ),
+        # One eigenvalue passes -1 at z = b; a shear makes every norm larger than 1 from the start.
+        ([0.6, 0.0, -1.6 / b**2], [shear], [0.0], [0.3], b),
+        # The determinant is still small when one eigenvalue passes 1 at z = c.
+        ([0.1], [0.0], [rng.uniform(-0.5, 0.5)], [0.7, 0.3 / c], c),
+    )
+    for qq, qp, pq, pp, limit in maps:
+        step = systems.LinearStep(qq, qp, pq, qq if pp is None else pp)
+        bundles.expect_limit(
+            submission, step, rng.uniform(0.2, 20.0), limit, "The largest stable step of a map is wrong."
+        )
+
+
+@pytest.mark.task("max_stable_step")
+@pytest.mark.points(2)
+def test_stable_step_pocket(submission, rng):
+    """max_stable_step stops at the first unstable step although larger ones are stable again"""
+    low = rng.uniform(0.8, 2.0)
+    high = low + rng.uniform(0.6, 1.0)
+    curve = 1.5 / (
+        low * high
+    )  # the radius starts at 0.5 and rises 0.02 to 0.2 above one between low and high
+    growth = [1 - curve * low * high, curve * (low + high), -curve]
+    step = systems.LinearStep(growth, [0.0], [0.0], [0.2])
+    bundles.expect_limit(
+        submission,
+        step,
+        rng.uniform(0.2, 20.0),
+        low,
+        "For a map that is unstable in a range of steps and stable again beyond it, the result is not the "
+        "start of that range.",
+    )
+
+
+@pytest.mark.task("max_stable_step")
+@pytest.mark.points(2)
+def test_stable_step_edges(submission, rng):
+    """max_stable_step is zero where every step fails and infinite where none does"""
+    euler = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
+    bundles.expect_limit(
+        submission,
+        euler,
+        rng.uniform(0.2, 20.0),
+        0.0,
+        "For a map that is unstable at every step, the result is not zero.",
+    )
+    calm = systems.LinearStep([0.5, rng.uniform(0.01, 0.04)], [0.1], [0.0], [0.4])
+    bundles.expect_limit(
+        submission,
+        calm,
+        rng.uniform(0.2, 20.0),
+        math.inf,
+        "For a map that is stable at every step of the search, the result is not infinite.",
+    )
+
+
+def _scaled(coefficients, factor):
+    return [factor * c for c in coefficients]

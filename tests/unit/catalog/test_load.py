@@ -1,0 +1,234 @@
+"""Reading course files, and what is said when one is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from course.catalog import load
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise, Hints
+from course.errors import ContentError, NotFoundError
+
+EXERCISE = "exercises/doubling/exercise.toml"
+HINTS = "exercises/doubling/hints.toml"
+MUTANTS = "solutions/doubling/mutants.toml"
+LESSON = "lessons/half-as-much.md"
+SYLLABUS = "lessons/syllabus.toml"
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    """Replace the first ``old`` in a file; it must be there."""
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def read_everything(catalog: Catalog) -> None:
+    catalog.lessons()
+    for exercise in catalog.exercises():
+        catalog.hints(exercise)
+        catalog.mutants(exercise)
+
+
+def refused(mini: Path, file: str) -> ContentError:
+    """The error that reading the broken course ends with; it must be about this file."""
+    with pytest.raises(ContentError) as caught:
+        read_everything(Catalog())
+    assert caught.value.file == mini.resolve() / file
+    assert caught.value.help
+    return caught.value
+
+
+def test_the_course_introduces_itself(catalog: Catalog) -> None:
+    assert (catalog.course_id, catalog.title, catalog.version) == ("mini", "A miniature course", "0.1.0")
+
+
+def test_a_course_without_a_version_has_the_packages(mini: Path) -> None:
+    from course import __version__
+
+    edit(mini / SYLLABUS, 'version = "0.1.0"\n', "")
+    assert Catalog().version == __version__
+
+
+def test_lessons_come_in_the_order_of_the_syllabus(catalog: Catalog, mini: Path) -> None:
+    assert [lesson.id for lesson in catalog.lessons()] == ["twice-as-much", "half-as-much"]
+    assert catalog.lesson("half-as-much").before == ("twice-as-much",)
+    assert Path(catalog.lesson("half-as-much").path) == mini.resolve() / LESSON
+
+
+def test_exercises_come_in_their_order(mini: Path) -> None:
+    edit(mini / EXERCISE, "order = 1", "order = 9")
+    assert [exercise.id for exercise in Catalog().exercises()] == ["halving", "doubling"]
+
+
+def test_an_exercise_knows_its_files(catalog: Catalog, mini: Path) -> None:
+    exercise = catalog.exercise("doubling")
+    assert exercise.stub_path == mini.resolve() / "exercises" / "doubling" / "doubling.py"
+    assert exercise.max_points == 10
+    assert catalog.hints(exercise).of("double")[0] == "What is a number added to itself?"
+    assert [mutant.file for mutant in catalog.mutants(exercise)][:2] == ["squares.py", "loses_the_sign.py"]
+
+
+def test_a_student_has_no_mutants(mini: Path) -> None:
+    (mini / "solutions").rename(mini / "elsewhere")
+    catalog = Catalog()
+    assert catalog.mutants(catalog.exercise("doubling")) == ()
+
+
+def test_listing_ids_opens_nothing_but_the_syllabus(mini: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    real = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda self: opened.append(self.name) or real(self))
+    catalog = Catalog()
+    assert catalog.exercise_ids() == ("doubling", "halving")
+    assert opened == []
+    assert catalog.lesson_ids() == ("twice-as-much", "half-as-much")
+    assert opened == ["syllabus.toml"]
+
+
+def test_a_file_is_read_once(catalog: Catalog, monkeypatch: pytest.MonkeyPatch) -> None:
+    read_everything(catalog)
+    monkeypatch.setattr(Path, "read_bytes", lambda self: pytest.fail(f"{self} was read again"))
+    read_everything(catalog)
+
+
+@pytest.mark.parametrize(
+    ("kind", "wanted", "advice"),
+    [
+        ("exercise", "doublng", "Did you mean doubling?"),
+        ("exercise", "halv", "Did you mean halving?"),
+        ("exercise", "../doubling", "Did you mean doubling?"),
+        ("exercise", "Zeppelin", "`course progress` lists what there is."),
+        ("lesson", "twice", "Did you mean twice-as-much?"),
+    ],
+)
+def test_an_unknown_id_is_answered_with_the_nearest(
+    catalog: Catalog, kind: str, wanted: str, advice: str
+) -> None:
+    with pytest.raises(NotFoundError) as caught:
+        getattr(catalog, kind)(wanted)
+    assert caught.value.code == f"{kind}_not_found"
+    assert caught.value.help == advice
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "line", "problem", "fix"),
+    [
+        (EXERCISE, "summary =", "sumary =", 7, "unknown key `sumary`", "Did you mean `summary`?"),
+        (
+            EXERCISE,
+            "summary =",
+            "zzz = 1\nsummary =",
+            7,
+            "unknown key `zzz`",
+            "Known keys: format_version",
+        ),
+        (EXERCISE, "order = 1", 'folder = "/tmp"\norder = 1', 6, "unknown key `folder`", "`"),
+        (EXERCISE, "order = 1\n", "", 1, "lacks the key `order`", "Add a line `order = ...`."),
+        (EXERCISE, "order = 1", 'order = "1"', 6, "`order` must be a whole number", "Write a whole number."),
+        (EXERCISE, "points = 6", 'points = "6"', 19, "`task[2].points` must be a number", "Write a number."),
+        (EXERCISE, "points = 4\n", "", 11, "`task[1]` lacks the key `points`", "points = ..."),
+        (EXERCISE, "points = 4", "point = 4", 14, "unknown key `point`", "Did you mean `points`?"),
+        (EXERCISE, "points = 4", "points = 0", 14, "above 0", "public and hidden"),
+        (EXERCISE, "points = 4", "points = nan", 14, "above 0", "public and hidden"),
+        (EXERCISE, "points = 4", "points = inf", 14, "above 0", "public and hidden"),
+        (EXERCISE, 'id = "doublings"', 'id = "double"', 17, "listed twice", "rename"),
+        (EXERCISE, 'id = "doublings"', 'id = "a b"', 17, "no Python name", "name of the function"),
+        (EXERCISE, "order = 1", "order = 1\npass_mark = 70", 7, "`pass_mark`", "0.70 for 70 %"),
+        (EXERCISE, "order = 1", "order = 1\npass_mark = 0", 7, "`pass_mark`", "0.70 for 70 %"),
+        (EXERCISE, "order = 1", "order = 1\npass_mark = nan", 7, "`pass_mark`", "0.70 for 70 %"),
+        (EXERCISE, "order = 1", "order = 0", 6, "`order` must be 1 or more", "from 1"),
+        (EXERCISE, '"doubling.py"', '"../doubling.py"', 4, "no plain Python file name", "underscores"),
+        (EXERCISE, '"doubling.py"', '"doubling.txt"', 4, "no plain Python file name", "underscores"),
+        (EXERCISE, '"doubling.py"', '"checks.py"', 4, "another role", "another name"),
+        (EXERCISE, 'id = "doubling"', 'id = "tripling"', 2, "the folder is called doubling", "rename"),
+        (EXERCISE, 'title = "Doubling"', 'title = " "', 3, "`title` is empty", "Fill it in."),
+        (EXERCISE, '"twice-as-much"', '"Twice"', 5, "not a valid lesson id", "hyphens"),
+        (EXERCISE, "order = 1", 'order = 1\nimports = ["numpy.fft"]', 7, "no top-level package", "alone"),
+        (EXERCISE, "hidden_points = 5", "hidden_points = 11", 9, "between 0 and the sum", "Add up"),
+        (EXERCISE, "hidden_checks = 2", "hidden_checks = -1", 8, "negative", "Count"),
+        (EXERCISE, "format_version = 1", "format_version = 2", 1, "knows formats up to 1", "newer version"),
+        (EXERCISE, "format_version = 1", 'format_version = "1"', 1, "whole number", "format_version = 1"),
+        (EXERCISE, "format_version = 1\n", "", 1, "declares no format_version", "at the top"),
+        (EXERCISE, "order = 1", "order = ", 6, "not valid TOML", "quotes"),
+        (EXERCISE, "order = 1", "order = 1\norder = 2", 7, "not valid TOML", "quotes"),
+        (HINTS, 'id = "double"', 'id = "dubble"', 4, "has no task 'dubble'", "double, doublings"),
+        (HINTS, 'id = "doublings"', 'id = "double"', 12, "hints twice", "one list"),
+        (HINTS, '"Return x + x."', '""', 8, "`hints` is empty", "Fill it in."),
+        (HINTS, '"Return x + x."', "3", 8, "`task[1].hints[3]` must be text in quotes", "Write text"),
+        (MUTANTS, '"squares.py"', '"../squares.py"', 4, "no plain Python file name", "wrong_sign.py"),
+        (MUTANTS, '"loses_the_sign.py"', '"squares.py"', 11, "listed twice", "Remove"),
+        (MUTANTS, 'task = "double"', 'task = "triple"', 5, "has no task 'triple'", "double, doublings"),
+        (MUTANTS, '"SQUARES_INSTEAD"', '""', 8, "`diagnosis` is empty", "Fill it in."),
+        (LESSON, 'id = "half-as-much"', 'id = "half"', 3, "the file is called half-as-much.md", "rename"),
+        (LESSON, "minutes = 2", "minutes = 0", 5, "more than 0", "how long"),
+        (LESSON, '["Halve a number."]', "[]", 7, "`objectives` is empty", "one line each"),
+        (LESSON, '["halving"]', '["Halving!"]', 9, "not a valid exercise id", "hyphens"),
+        (LESSON, "title =", "titel =", 4, "unknown key `titel`", "Did you mean `title`?"),
+        (LESSON, "+++", "", 1, "+++", "+++"),
+        (SYLLABUS, 'id = "mini"', 'id = "Mini"', 2, "lower-case", "physics-sim"),
+        (SYLLABUS, ', "half-as-much"', ', "twice-as-much"', 5, "listed twice", "Remove"),
+    ],
+)
+def test_what_is_wrong_is_named_with_line_and_fix(
+    mini: Path, file: str, old: str, new: str, line: int, problem: str, fix: str
+) -> None:
+    edit(mini / file, old, new)
+    error = refused(mini, file)
+    assert problem in error.problem
+    assert fix in error.help
+    assert error.line == line
+
+
+def test_a_missing_file_is_named(mini: Path) -> None:
+    (mini / HINTS).unlink()
+    error = refused(mini, HINTS)
+    assert error.line is None
+    assert "missing" in error.problem
+
+
+def test_a_lesson_without_a_file_is_named(mini: Path) -> None:
+    (mini / LESSON).unlink()
+    assert "missing" in refused(mini, LESSON).problem
+
+
+def test_a_folder_in_a_files_place_is_named(mini: Path) -> None:
+    (mini / HINTS).unlink()
+    (mini / HINTS).mkdir()
+    assert "cannot be read" in refused(mini, HINTS).problem
+
+
+@pytest.mark.parametrize(
+    ("data", "line", "problem"),
+    [
+        (b'format_version = 1\nid = "caf\xe9"\n', 2, "not UTF-8"),
+        (b"\xef\xbb\xbfformat_version = 1\n", 1, "byte order mark"),
+        (b"f\x00ormat_version = 1\n", 1, "not valid TOML"),
+        ("format_version = 1\n".encode("utf-16"), 1, "not UTF-8"),
+    ],
+)
+def test_an_odd_encoding_is_named(mini: Path, data: bytes, line: int, problem: str) -> None:
+    (mini / EXERCISE).write_bytes(data)
+    error = refused(mini, EXERCISE)
+    assert problem in error.problem
+    assert error.line == line
+
+
+def test_windows_line_ends_are_read(mini: Path) -> None:
+    for file in (EXERCISE, LESSON):
+        path = mini / file
+        path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    read_everything(Catalog())
+
+
+def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
+    (mini / "exercises" / "__pycache__").mkdir()
+    assert Catalog().exercise_ids() == ("doubling", "halving")
+
+
+def test_any_toml_file_with_a_format_can_be_read_into_a_type(mini: Path) -> None:
+    assert load.read_toml(mini / HINTS, Hints).task[0].id == "double"
+    with pytest.raises(ContentError, match="unknown key `hints`"):
+        load.read_toml(mini / HINTS, Exercise)

@@ -1,0 +1,86 @@
+"""Where content is found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from course.catalog import locate
+from course.errors import InternalError, UsageError
+
+
+def _package(root: Path) -> Path:
+    (root / "course" / "lessons").mkdir(parents=True)
+    return root / "course"
+
+
+def test_a_checkout_has_everything(tmp_path: Path) -> None:
+    package = _package(tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    for folder in ("exercises", "solutions", "tests/graders"):
+        (tmp_path / folder).mkdir(parents=True)
+    found = locate._installed(package)
+    assert found.is_checkout
+    assert found.root == tmp_path
+    assert found.exercises == tmp_path / "exercises"
+    assert found.lessons == package / "lessons"
+    assert found.quiz == tmp_path / "quiz"
+    assert found.solutions == tmp_path / "solutions"
+    assert found.graders == tmp_path / "tests" / "graders"
+    assert found.syllabus == package / "lessons" / "syllabus.toml"
+
+
+def test_an_unpacked_source_archive_is_a_students(tmp_path: Path) -> None:
+    package = _package(tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    (tmp_path / "exercises").mkdir()
+    found = locate._installed(package)
+    assert not found.is_checkout
+    assert found.solutions is None
+
+
+def test_a_wheel_reads_the_content_inside_the_package(tmp_path: Path) -> None:
+    package = _package(tmp_path)
+    (package / "content" / "exercises").mkdir(parents=True)
+    # What another package has put beside it is not ours.
+    (tmp_path / "exercises").mkdir()
+    (tmp_path / "solutions").mkdir()
+    (tmp_path / "pyproject.toml").touch()
+    found = locate._installed(package)
+    assert found.exercises == package / "content" / "exercises"
+    assert found.quiz == package / "content" / "quiz"
+    assert found.solutions is None
+    assert found.graders is None
+
+
+def test_an_installation_without_content_says_so(tmp_path: Path) -> None:
+    with pytest.raises(InternalError, match="exercises are missing"):
+        locate._installed(_package(tmp_path))
+
+
+def test_the_environment_selects_another_course(mini: Path) -> None:
+    found = locate.content()
+    assert found.exercises == mini.resolve() / "exercises"
+    assert found.graders == mini.resolve() / "graders"
+    assert found.is_checkout
+
+
+def test_a_selected_course_may_be_a_students(mini: Path) -> None:
+    (mini / "graders").rename(mini / "kept-elsewhere")
+    assert not locate.content().is_checkout
+
+
+@pytest.mark.parametrize("missing", ["exercises", "lessons"])
+def test_a_selected_folder_that_is_no_course_is_refused(mini: Path, missing: str) -> None:
+    (mini / missing).rename(mini / "gone")
+    with pytest.raises(UsageError, match="holds no course") as caught:
+        locate.content()
+    assert caught.value.code == "no_such_content"
+
+
+def test_this_repository_is_a_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    found = locate.content()
+    assert found.is_checkout
+    assert found.root == Path(__file__).parents[3]

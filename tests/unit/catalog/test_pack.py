@@ -1,0 +1,216 @@
+"""Solution packs: the same bytes each time, and nothing believed that was not checked."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import stat
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from course.catalog import pack
+from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+
+SOLUTIONS = {"doubling": {"doubling.py": b"def double(x):\n    return 2 * x\n", "README.md": b"Why.\n"}}
+
+
+def packed() -> bytes:
+    return pack.pack_bytes("mini", "0.1.0", SOLUTIONS)
+
+
+def write(folder: Path, data: bytes) -> Path:
+    path = folder / "s.coursepack"
+    path.write_bytes(data)
+    return path
+
+
+def forge(folder: Path, *, manifest: Any = None, rename: str = "", extra: Any = None, **change: Any) -> Path:
+    """A pack put together by somebody else: entries and manifest as given."""
+    entries = {"solutions/doubling/doubling.py": b"x = 1\n"}
+    if rename:
+        entries = {rename: b"x = 1\n"}
+    listed = [
+        {"path": name, "size": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+        for name, data in entries.items()
+    ]
+    head = {
+        "format": "course-solutions",
+        "format_version": 1,
+        "course_id": "mini",
+        "course_version": "1",
+        "files": listed,
+        **change,
+    }
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        if manifest is not False:
+            archive.writestr("manifest.json", manifest if manifest is not None else json.dumps(head))
+        for name, data in entries.items():
+            archive.writestr(name, data)
+        if extra is not None:
+            extra(archive)
+    return write(folder, buffer.getvalue())
+
+
+def test_a_pack_gives_back_what_went_in(tmp_path: Path) -> None:
+    read = pack.read_pack(write(tmp_path, packed()))
+    assert (read.course_id, read.course_version) == ("mini", "0.1.0")
+    assert read.solutions == SOLUTIONS
+
+
+def test_the_same_solutions_give_the_same_bytes() -> None:
+    backwards = {name: dict(reversed(files.items())) for name, files in reversed(SOLUTIONS.items())}
+    assert pack.pack_bytes("mini", "0.1.0", backwards) == packed()
+
+
+def test_the_manifest_carries_a_sum_of_every_file() -> None:
+    with zipfile.ZipFile(io.BytesIO(packed())) as archive:
+        manifest = json.loads(archive.read("manifest.json"))
+        assert manifest["format_version"] == 1
+        assert {entry["path"]: entry["sha256"] for entry in manifest["files"]} == {
+            name: hashlib.sha256(archive.read(name)).hexdigest()
+            for name in archive.namelist()
+            if name != "manifest.json"
+        }
+
+
+def test_a_hand_made_pack_with_a_true_manifest_is_read(tmp_path: Path) -> None:
+    assert pack.read_pack(forge(tmp_path)).solutions == {"doubling": {"doubling.py": b"x = 1\n"}}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../doubling.py",
+        "/etc/doubling.py",
+        "solutions/doubling/../../x.py",
+        "solutions/doubling/sub/x.py",
+        "solutions/Doubling/x.py",
+        "solutions/doubling/.hidden",
+        "solutions\\doubling\\x.py",
+        "solutions/doubling/x.py\n",
+        "C:x.py",
+    ],
+)
+def test_a_name_that_is_no_plain_file_of_an_exercise_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(IntegrityError):
+        pack.read_pack(forge(tmp_path, rename=name))
+
+
+def _twice(archive: zipfile.ZipFile) -> None:
+    with pytest.warns(UserWarning, match="Duplicate"):
+        archive.writestr("solutions/doubling/doubling.py", b"x = 2\n")
+
+
+def _link(archive: zipfile.ZipFile) -> None:
+    info = zipfile.ZipInfo("solutions/doubling/link.py")
+    info.create_system = 3
+    info.external_attr = (stat.S_IFLNK | 0o777) << 16
+    archive.writestr(info, b"/etc/passwd")
+
+
+def _bomb(archive: zipfile.ZipFile) -> None:
+    archive.writestr("solutions/doubling/big.py", b"0" * 2_000_000, zipfile.ZIP_DEFLATED)
+
+
+def _many(archive: zipfile.ZipFile) -> None:
+    for index in range(300):
+        archive.writestr(f"solutions/doubling/f{index}.py", b"")
+
+
+@pytest.mark.parametrize("extra", [_twice, _link, _bomb, _many], ids=["twice", "link", "bomb", "many"])
+def test_an_archive_with_tricks_is_refused(tmp_path: Path, extra: Any) -> None:
+    with pytest.raises(IntegrityError):
+        pack.read_pack(forge(tmp_path, extra=extra))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"manifest": False},
+        {"manifest": "{"},
+        {"manifest": b"\xff\xfe"},
+        {"format": "course-workspace"},
+        {"format_version": 0},
+        {"files": []},
+        {"course_id": 3},
+        {
+            "files": [
+                {
+                    "path": "solutions/doubling/doubling.py",
+                    "size": 6,
+                    "sha256": hashlib.sha256(b"x = 2\n").hexdigest(),
+                }
+            ]
+        },
+    ],
+)
+def test_a_manifest_that_does_not_fit_is_refused(tmp_path: Path, change: dict[str, Any]) -> None:
+    with pytest.raises(IntegrityError, match="is not a pack of solutions, or is damaged"):
+        pack.read_pack(forge(tmp_path, **change))
+
+
+def test_a_pack_of_a_newer_format_asks_for_a_newer_course(tmp_path: Path) -> None:
+    path = forge(tmp_path, format_version=2, something_new=True)
+    with pytest.raises(MissingCapabilityError, match="pack format 2"):
+        pack.read_pack(path)
+
+
+@pytest.mark.parametrize("data", [b"", b"PK", b"not a zip at all", packed()[:-30], packed()[:100]])
+def test_a_file_that_is_no_whole_zip_is_refused(tmp_path: Path, data: bytes) -> None:
+    with pytest.raises(IntegrityError):
+        pack.read_pack(write(tmp_path, data))
+
+
+def test_a_file_too_large_to_be_a_pack_is_refused_unread(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "s.coursepack"
+    with path.open("wb") as file:
+        file.truncate(50_000_000)
+    monkeypatch.setattr(Path, "read_bytes", lambda self: pytest.fail("it was read"))
+    with pytest.raises(IntegrityError, match="larger than any pack"):
+        pack.read_pack(path)
+
+
+def test_a_pack_that_is_not_there_is_not_found(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError):
+        pack.read_pack(tmp_path / "none.coursepack")
+    with pytest.raises(NotFoundError):
+        pack.read_pack(tmp_path)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(st.integers(0, len(packed()) - 1), st.integers(1, 255))
+def test_a_damaged_byte_is_noticed_or_changes_nothing(tmp_path: Path, position: int, flip: int) -> None:
+    data = bytearray(packed())
+    data[position] ^= flip
+    try:
+        read = pack.read_pack(write(tmp_path, bytes(data)))
+    except CourseError as error:
+        assert isinstance(error, IntegrityError)  # noqa: PT017 - any other outcome is checked below
+    else:
+        assert read.solutions == SOLUTIONS
+        assert read.course_id == "mini"
+
+
+@pytest.mark.parametrize(
+    "solutions",
+    [
+        {},
+        {"doubling": {"../x.py": b""}},
+        {"Doubling": {"x.py": b""}},
+        {"doubling": {"x.py": b"0" * 1_000_001}},
+        {"doubling": {f"f{index}.py": b"" for index in range(201)}},
+        {"doubling": {f"f{index}.py": b"0" * 900_000 for index in range(6)}},
+    ],
+)
+def test_what_could_not_be_read_back_is_not_packed(solutions: dict[str, dict[str, bytes]]) -> None:
+    with pytest.raises(UsageError):
+        pack.pack_bytes("mini", "1", solutions)

@@ -143,12 +143,15 @@ def _grade(
         exercise = candidate.exercise
         entries = solutions_folder(catalog, exercise) / "mutants.toml"
         prover = Prover(exercise, candidate.checks, entries, findings)
-        with open_grader(exercise, catalog) as grade:
-            for proof in candidate.proofs:
-                if on_progress:
-                    on_progress(done, total, f"{exercise.id}: {proof.role} {proof.path.name}")
-                prover.prove(proof, grade)
-                done += 1
+        try:
+            with open_grader(exercise, catalog) as grade:
+                for proof in candidate.proofs:
+                    if on_progress:
+                        on_progress(done, total, f"{exercise.id}: {proof.role} {proof.path.name}")
+                    prover.prove(proof, grade)
+                    done += 1
+        except ContentError as error:  # checks that cannot be collected
+            findings.add_error(error)
         isolation = prover.isolation
     if on_progress:
         on_progress(done, total, "")

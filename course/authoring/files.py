@@ -6,20 +6,13 @@ What only a grading run can show is in ``course.authoring.proofs``.
 
 from __future__ import annotations
 
-import math
 import re
 from typing import TYPE_CHECKING
 
-from course.authoring.source import (
-    CheckSource,
-    checks_in,
-    foreign_imports,
-    parse,
-    quoted_numbers,
-    signatures,
-)
+from course.authoring.checks import audit_checks
+from course.authoring.source import CheckSource, foreign_imports, parse, signatures
 from course.authoring.variants import instructors, solution_path, solutions_folder
-from course.catalog.models import Exercise, Hints
+from course.catalog.models import Exercise
 from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
 
@@ -73,9 +66,9 @@ def blanks_in(path: Path, findings: Findings) -> bool:
 def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
     """Everything that reading can show; returns the checks the exercise declares."""
     _audit_declaration(catalog, exercise, findings)
-    _audit_hints(exercise, findings)
+    _audit_hints(catalog, exercise, findings)
     _audit_code(catalog, exercise, findings)
-    return _audit_checks(catalog, exercise, findings)
+    return audit_checks(catalog, exercise, findings)
 
 
 def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
@@ -116,8 +109,8 @@ def _order_of(catalog: Catalog, exercise_id: str) -> int | None:
         return None  # reported where that exercise is audited
 
 
-def _audit_hints(exercise: Exercise, findings: Findings) -> None:
-    document = read_document(exercise.hints_path, Hints)
+def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
+    document = catalog.hints_document(exercise)
     for task in exercise.task:
         hints = document.value.of(task.id)
         if len(hints) < LEAST_HINTS:
@@ -186,88 +179,4 @@ def _audit_imports(exercise: Exercise, path: Path, tree: ast.Module, findings: F
             "imports",
             f"{name} may not be imported here.",
             "Use the standard library and what `imports` in exercise.toml lists.",
-        )
-
-
-def _audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
-    grader = exercise_folders(catalog, exercise.id)[2] / "checks.py"
-    trees = {exercise.checks_path: parse(exercise.checks_path), grader: parse(grader)}
-    checks = tuple(
-        check for path, tree in trees.items() for check in checks_in(path, tree, hidden=path == grader)
-    )
-    seen: dict[str, CheckSource] = {}
-    for check in checks:
-        _audit_check(exercise, check, seen, findings)
-        seen.setdefault(check.id, check)
-    diagnosis = exercise.checks_path.with_name("diagnosis.py")
-    if diagnosis.is_file():
-        trees[diagnosis] = parse(diagnosis)
-    for path in (grader, diagnosis):
-        for line, number in quoted_numbers(trees[path]) if path in trees else ():
-            findings.add(
-                path,
-                line,
-                "leak",
-                f"a text that a hidden check shows contains the number {number}.",
-                "Say it in words; put values into input, expected and actual, which are not shown.",
-            )
-    _audit_points(exercise, checks, findings)
-    return checks
-
-
-def _audit_check(
-    exercise: Exercise, check: CheckSource, seen: dict[str, CheckSource], findings: Findings
-) -> None:
-    """One check: its docstring, its markers, and what it depends on."""
-
-    def wrong(message: str, fix: str) -> None:
-        findings.add(check.path, check.line, "check", f"check {check.id} {message}", fix)
-
-    if check.id in seen:
-        wrong("exists twice.", f"Rename it; the other is in {seen[check.id].path.parent.name}.")
-    if not check.title:
-        wrong("has no title.", "Start the function with a docstring of one line: what is true of right code.")
-    if check.task is None:
-        wrong("has no task.", 'Mark it: @pytest.mark.task("name of the function").')
-    elif check.task not in {task.id for task in exercise.task}:
-        wrong(f"belongs to a task {check.task!r} that does not exist.", "Correct the marker.")
-    if check.points is None or not (check.points >= 0 and math.isfinite(check.points)):
-        wrong("has no points.", "Mark it: @pytest.mark.points(2), a plain number, 0 or more.")
-    for required in check.requires:
-        if required not in seen:
-            wrong(
-                f"requires {required!r}, which does not run before it.",
-                "Name a check that stands above it; a public check cannot depend on a hidden one.",
-            )
-
-
-def _audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
-    """The declaration and the markers add up to the same."""
-    path = exercise.checks_path.with_name("exercise.toml")
-    lines = read_document(path, Exercise).lines
-
-    def wrong(where: tuple[str | int, ...], message: str, fix: str) -> None:
-        findings.add(path, lines.line(where), "points", message, fix)
-
-    for index, task in enumerate(exercise.task):
-        total = sum(check.points or 0.0 for check in checks if check.task == task.id)
-        if not math.isclose(total, task.points):
-            wrong(
-                ("task", index, "points"),
-                f"task {task.id} has {task.points:g} points, and its checks {total:g}.",
-                f"Write {total:g}, or change the checks' points.",
-            )
-    hidden = [check for check in checks if check.hidden]
-    if len(hidden) != exercise.hidden_checks:
-        wrong(
-            ("hidden_checks",),
-            f"`hidden_checks` is {exercise.hidden_checks}, and there are {len(hidden)}.",
-            f"Write {len(hidden)}.",
-        )
-    points = sum(check.points or 0.0 for check in hidden)
-    if not math.isclose(points, exercise.hidden_points, abs_tol=1e-9):
-        wrong(
-            ("hidden_points",),
-            f"`hidden_points` is {exercise.hidden_points:g}, and the hidden checks have {points:g}.",
-            f"Write {points:g}.",
         )

@@ -1,4 +1,4 @@
-"""The one seam between authoring and grading: a grader for an exercise takes sources and gives verdicts."""
+"""The one seam between authoring and grading: what checks there are, and verdicts on sources."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.grading.collected import Check
     from course.grading.verdict import Verdict
 
-__all__ = ["Grade", "OpenGrader", "grading_session"]
+__all__ = ["Grade", "OpenGrader", "declared_checks", "grading_session"]
 
 Grade: TypeAlias = "Callable[[bytes], Verdict]"
 OpenGrader: TypeAlias = "Callable[[Exercise, Catalog], AbstractContextManager[Grade]]"
@@ -33,3 +34,19 @@ def grading_session(exercise: Exercise, catalog: Catalog) -> Iterator[Grade]:
             return session.grade(Submission(files={exercise.module: source}))
 
         yield grade
+
+
+def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
+    """The checks as pytest collects them, by id: markers whose values are computed have them here.
+
+    Raises:
+        ContentError: a file cannot be imported, or a check lacks its marks.
+    """
+    from course.grading.collected import CollectedChecks
+    from course.grading.session import check_files
+
+    collected = CollectedChecks(check_files(exercise, catalog, "full"))
+    try:
+        return {check.id: check for check in collected.checks}
+    finally:
+        collected.close()

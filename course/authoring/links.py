@@ -68,7 +68,7 @@ class LinkChecker:
         else:
             return self._problem_with_anchor(path, anchor)
         if name not in known:
-            return f"names a {place.split(':')[0]} that does not exist.", f"Known: {', '.join(known)}."
+            return "leads to nothing: the id does not exist.", f"Known: {', '.join(known)}."
         return self._problem_with_anchor(destination, anchor) if anchor else None
 
     def _problem_with_file(self, path: Path, place: str, anchor: str) -> tuple[str, str] | None:

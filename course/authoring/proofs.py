@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from course.authoring.checks import public_numbers
 from course.authoring.mutants import judge, mutant_path
 from course.authoring.source import DECIMAL, CheckSource, parse, signatures
 from course.authoring.variants import accepted_files, compose, mutant_files, solution_path
@@ -133,6 +134,7 @@ class Prover:
         self._checks = {check.id: check for check in checks}
         self._mutants_toml = mutants_toml
         self._findings = findings
+        self._public = public_numbers(exercise)
         self.isolation = ""
 
     def prove(self, proof: Proof, grade: Grade) -> None:
@@ -225,7 +227,7 @@ class Prover:
         """What a hidden check says holds no value that redaction is there to hide."""
         for check in verdict.checks:
             if check.visibility is Visibility.HIDDEN and check.status is Status.FAIL:
-                for number in _leaks(check):
+                for number in _leaks(check, self._public):
                     self._findings.add(
                         *self._place(check.id, self._exercise.checks_path),
                         "leak",
@@ -244,11 +246,12 @@ class Prover:
         return found.line if found else None
 
 
-def _leaks(check: CheckResult) -> Iterator[str]:
-    """Numbers in a check's words that have a decimal point, or that are among its values."""
+def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
+    """Numbers in a check's words that have a decimal point and are not public, or that are among its values."""
     words = f"{check.message} {check.help}"
     for match in DECIMAL.finditer(words):
-        yield match[0]
+        if match[0] not in public:
+            yield match[0]
     values = set(_numbers([check.input, check.expected, check.actual]))
     for match in _INTEGER.finditer(words):
         if abs(int(match[0])) >= _TELLING and float(match[0]) in values:

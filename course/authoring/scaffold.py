@@ -47,17 +47,17 @@ def new_exercise(catalog: Catalog, exercise_id: str) -> tuple[Path, ...]:
     templates = _TEMPLATES / "exercise"
     return _write(
         {
-            student / "exercise.toml": templates / "exercise" / "exercise.toml.tmpl",
-            student / "README.md": templates / "exercise" / "README.md.tmpl",
-            student / module: templates / "exercise" / "stub.py.tmpl",
-            student / "hints.toml": templates / "exercise" / "hints.toml.tmpl",
-            student / "checks.py": templates / "exercise" / "checks.py.tmpl",
-            graders / "checks.py": templates / "graders" / "checks.py.tmpl",
-            solutions / module: templates / "solution" / "solution.py.tmpl",
-            solutions / "README.md": templates / "solution" / "README.md.tmpl",
-            solutions / "mutants.toml": templates / "solution" / "mutants.toml.tmpl",
-            solutions / "accepted" / "unusual.py": templates / "solution" / "accepted" / "unusual.py.tmpl",
-            solutions / "mutants" / "wrong.py": templates / "solution" / "mutants" / "wrong.py.tmpl",
+            student / "exercise.toml": templates / "exercise.toml.tmpl",
+            student / "README.md": templates / "README.md.tmpl",
+            student / module: templates / "stub.py.tmpl",
+            student / "hints.toml": templates / "hints.toml.tmpl",
+            student / "checks.py": templates / "checks.py.tmpl",
+            graders / "checks.py": templates / "hidden_checks.py.tmpl",
+            solutions / module: templates / "solution.py.tmpl",
+            solutions / "README.md": templates / "prose.md.tmpl",
+            solutions / "mutants.toml": templates / "mutants.toml.tmpl",
+            solutions / "accepted" / "unusual.py": templates / "unusual.py.tmpl",
+            solutions / "mutants" / "wrong.py": templates / "wrong.py.tmpl",
         },
         words,
     )

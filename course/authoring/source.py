@@ -31,6 +31,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 #: A number with a decimal point or an exponent: what a hidden check's words must not contain.
 DECIMAL = re.compile(r"(?<![\w.])\d+(?:\.\d+(?:[eE][-+]?\d+)?|[eE][-+]?\d+)(?![\w.]*\w)")
 
+_INDIRECT = object()
+
 
 @dataclass(frozen=True, slots=True)
 class Signature:
@@ -49,9 +51,10 @@ class CheckSource:
     Attributes:
         id: the function's name without ``test_``.
         title: first line of its docstring; empty if there is none.
-        task, points: what its markers say; None where a marker is missing or is not a plain value.
+        task, points: what its markers say; None where a marker is missing or is not written as a plain value.
         requires: ids of the checks it depends on.
         hidden: True for a grader, False for a public check.
+        indirect: names of markers that are there, and whose values only running the file can tell.
     """
 
     id: str
@@ -62,6 +65,7 @@ class CheckSource:
     points: float | None
     requires: tuple[str, ...]
     hidden: bool
+    indirect: tuple[str, ...] = ()
 
 
 def parse(path: Path) -> ast.Module:
@@ -113,20 +117,26 @@ def foreign_imports(tree: ast.Module, allowed: tuple[str, ...]) -> Iterator[tupl
 def checks_in(path: Path, tree: ast.Module, *, hidden: bool) -> tuple[CheckSource, ...]:
     """The checks of a file, in order."""
     return tuple(
-        CheckSource(
-            id=node.name.removeprefix("test_"),
-            path=path,
-            line=node.lineno,
-            title=(ast.get_docstring(node) or "").split("\n")[0].strip(),
-            task=_text(_marker(node, "task")),
-            points=_number(_marker(node, "points")),
-            requires=tuple(
-                value for call in _markers(node, "requires") for arg in call.args if (value := _text([arg]))
-            ),
-            hidden=hidden,
-        )
+        _check(node, path, hidden=hidden)
         for node in tree.body
         if isinstance(node, Function) and node.name.startswith("test_")
+    )
+
+
+def _check(node: Function, path: Path, *, hidden: bool) -> CheckSource:
+    marks = {name: _marked(node, name) for name in ("task", "points", "requires")}
+    task = next((value for value in marks["task"] if isinstance(value, str)), None)
+    points = next((value for value in marks["points"] if type(value) in {int, float}), None)
+    return CheckSource(
+        id=node.name.removeprefix("test_"),
+        path=path,
+        line=node.lineno,
+        title=(ast.get_docstring(node) or "").split("\n", maxsplit=1)[0].strip(),
+        task=task,
+        points=None if points is None else float(points),
+        requires=tuple(value for value in marks["requires"] if isinstance(value, str)),
+        hidden=hidden,
+        indirect=tuple(name for name, values in marks.items() if _INDIRECT in values),
     )
 
 
@@ -164,29 +174,18 @@ def _without_annotations(arguments: ast.arguments) -> ast.arguments:
     return bare
 
 
-def _markers(node: Function, name: str) -> Iterator[ast.Call]:
-    """The decorators ``@pytest.mark.<name>(...)`` of a function."""
-    for decorator in node.decorator_list:
-        if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == f"pytest.mark.{name}":
-            yield decorator
+def _marked(node: Function, name: str) -> list[Any]:
+    """The arguments of the decorators ``@pytest.mark.<name>(...)``; _INDIRECT for what is no plain value."""
+    return [
+        _literal(argument)
+        for decorator in node.decorator_list
+        if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == f"pytest.mark.{name}"
+        for argument in decorator.args
+    ]
 
 
-def _marker(node: Function, name: str) -> list[ast.expr]:
-    return next((call.args for call in _markers(node, name)), [])
-
-
-def _literal(arguments: list[ast.expr]) -> Any:
+def _literal(expression: ast.expr) -> Any:
     try:
-        return ast.literal_eval(arguments[0]) if arguments else None
+        return ast.literal_eval(expression)
     except ValueError:
-        return None
-
-
-def _text(arguments: list[ast.expr]) -> str | None:
-    value = _literal(arguments)
-    return value if isinstance(value, str) else None
-
-
-def _number(arguments: list[ast.expr]) -> float | None:
-    value = _literal(arguments)
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+        return _INDIRECT

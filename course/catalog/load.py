@@ -151,10 +151,14 @@ class Catalog:
     def hints(self, exercise: Exercise) -> Hints:
         """The hints of an exercise."""
         if exercise.id not in self._hints:
-            document = read_document(exercise.hints_path, Hints)
-            rules.check_hints(document, exercise)
-            self._hints[exercise.id] = document.value
+            self._hints[exercise.id] = self.hints_document(exercise).value
         return self._hints[exercise.id]
+
+    def hints_document(self, exercise: Exercise) -> Document[Hints]:
+        """``hints.toml`` with its lines."""
+        document = read_document(exercise.hints_path, Hints)
+        rules.check_hints(document, exercise)
+        return document
 
     def mutants(self, exercise: Exercise) -> tuple[Mutant, ...]:
         """What must happen to each wrong solution; empty where there are no solutions (a wheel)."""

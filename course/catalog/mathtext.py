@@ -6,6 +6,8 @@ bars, an exponent with no raised form in Unicode is written with ^. A formula ne
 
 from __future__ import annotations
 
+from textwrap import dedent
+
 from course.catalog.mathtree import (
     ACCENTS,
     Accent,
@@ -54,7 +56,7 @@ def math_text(tex: str) -> str:
     Raises:
         MathError: it uses something that has no agreed text form.
     """
-    return _text(read_math(tex)).strip()
+    return dedent("\n".join(line.rstrip() for line in _text(read_math(tex)).split("\n")))
 
 
 def math_spoken(tex: str) -> str:

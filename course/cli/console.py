@@ -22,10 +22,11 @@ from typing import TYPE_CHECKING, Any, TextIO, cast
 from course.errors import InternalError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     import msgspec
     from rich.console import Console as RichConsole
+    from rich.text import Text
 
 __all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
 
@@ -71,31 +72,28 @@ class _Stream:
         self._open = True
 
     def write(self, text: str) -> int:
-        with self._broken_pipe_is_quiet():
-            self._stream.write(text)
+        self._unless_gone(lambda: self._stream.write(text))
         return len(text)
 
     def write_bytes(self, data: bytes) -> None:
         """Write UTF-8 bytes as they are, whatever encoding the stream has."""
-        with self._broken_pipe_is_quiet():
-            self._stream.flush()
-            binary = getattr(self._stream, "buffer", None)
-            if binary is None:
-                self._stream.write(data.decode("utf-8"))
-            else:
-                binary.write(data)
-                binary.flush()
+        binary = getattr(self._stream, "buffer", None)
+        if binary is None:
+            self.write(data.decode("utf-8"))
+            return
+        self.flush()
+        self._unless_gone(lambda: binary.write(data))
+        self._unless_gone(binary.flush)
 
     def flush(self) -> None:
-        with self._broken_pipe_is_quiet():
-            self._stream.flush()
+        self._unless_gone(self._stream.flush)
 
-    @contextlib.contextmanager
-    def _broken_pipe_is_quiet(self) -> Iterator[None]:
+    def _unless_gone(self, action: Callable[[], Any]) -> None:
+        """Do something with the stream; once its reader is gone, nothing more is done with it."""
         if not self._open:
             return
         try:
-            yield
+            action()
         except BrokenPipeError:
             self._open = False
             # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
@@ -199,11 +197,8 @@ class Console:
             self._human.write(" " * indent + "".join(_bare(piece) for piece in pieces) + "\n")
             return
         from rich.padding import Padding
-        from rich.text import Text
 
-        text = Text()
-        for piece in pieces:
-            text.append(*((piece, None) if isinstance(piece, str) else piece))
+        text = _text(pieces)
         self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
 
     def blank(self) -> None:
@@ -227,13 +222,10 @@ class Console:
         from rich.table import Table
         from rich.text import Text
 
-        text = Text()
-        for piece in pieces:
-            text.append(*((piece, None) if isinstance(piece, str) else piece))
         grid = Table.grid(padding=(0, 2, 0, 0))
         grid.add_column(no_wrap=True, min_width=width or len(label))
         grid.add_column(overflow="fold")
-        grid.add_row(Text(label, style=style), text)
+        grid.add_row(Text(label, style=style), _text(pieces))
         self.rich().print(Padding(grid, (0, 0, 0, indent)))
 
     def table(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
@@ -247,18 +239,18 @@ class Console:
             return
         from rich import box
         from rich.table import Table
-        from rich.text import Text
 
         table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
         for index, head in enumerate(headers):
             # The first column is an id that people copy: it folds rather than lose its end.
             table.add_column(head, overflow="fold", no_wrap=index == 0 and self.width >= 60)
         for row in rows:
-            table.add_row(*(Text(cell) if isinstance(cell, str) else Text(*cell) for cell in row))
+            table.add_row(*(_text((cell,)) for cell in row))
         self.rich().print(table)
 
     def block(self, text: str, language: str = "", indent: int = 0) -> None:
         """Text shown exactly as it is: code, a diff, a traceback."""
+        text = _harmless(text)
         if not self.fancy:
             for row in text.splitlines():
                 self._human.write(" " * indent + row + "\n")
@@ -281,14 +273,14 @@ class Console:
 
     def warn(self, text: str) -> None:
         """Something the person should know that is no failure; on standard error."""
-        self._err.write(f"Note: {text}\n")
+        self._err.write(f"Note: {_harmless(text)}\n")
 
     def error(self, message: str, help: str = "") -> None:  # noqa: A002
         """What went wrong, and below it what to do; on standard error."""
         self._out.flush()
-        self._err.write(f"{message}\n")
+        self._err.write(f"{_harmless(message)}\n")
         if help:
-            self._err.write(f"{help}\n")
+            self._err.write(f"{_harmless(help)}\n")
         self._err.flush()
 
     def raw(self, text: str) -> None:
@@ -325,6 +317,13 @@ class Console:
         self._out.flush()
         return sys.stdin.readline().strip().lower() in {"y", "yes"}
 
+    def ask(self, question: str) -> str | None:
+        """What somebody types on one line, without the space around it; None at the end of the input."""
+        self._out.write(question)
+        self._out.flush()
+        answer = sys.stdin.readline()
+        return answer.strip() if answer else None
+
     def go_on(self, where: str) -> bool:
         """Wait for Enter; q, or the end of the input, means no."""
         self._out.write(f"{where} Enter goes on, q stops: ")
@@ -359,9 +358,19 @@ def _bare(piece: Piece) -> str:
     return _harmless(piece if isinstance(piece, str) else piece[0])
 
 
+def _text(pieces: Sequence[Piece]) -> Text:
+    """Pieces as one Rich text."""
+    from rich.text import Text
+
+    text = Text()
+    for piece in pieces:
+        text.append(_bare(piece), None if isinstance(piece, str) else piece[1])
+    return text
+
+
 def _harmless(text: str) -> str:
     """Text that cannot steer the terminal: what a student's code printed or raised is shown, not obeyed."""
-    return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
+    return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text.replace("\r\n", "\n"))
 
 
 _installed: Console | None = None

@@ -180,8 +180,6 @@ def _inside(console: Console, here: Here) -> int:
     console.line(f"Workspace: {here.workspace.root}")
     console.line(f"Lessons read: {read} of {total}")
     if states:
-        if console.fancy:
-            console.blank()
         console.table(
             ("Exercise", "State", "Score"),
             [(state.id, WORDS[state.state], _score(state)) for state in states],

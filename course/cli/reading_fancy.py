@@ -35,6 +35,10 @@ __all__ = ["FancyPrinter"]
 _MARGIN = 2
 _PROSE = 78
 _GAP = 3  # between the columns of a table
+#: A space that Rich does not break a line at, of Unicode's private use; the last step makes it a space.
+_KEEP = "\ue000"
+#: A formula up to this length stays on one line.
+_SHORT = 16
 _COLOURS = {
     "predict": "yellow",
     "answer": "green",
@@ -208,7 +212,7 @@ class FancyPrinter:
                 case b.Value(text=words):
                     text.append(value_text(words))
                 case b.Formula(text=words):
-                    text.append(words)
+                    text.append(words.replace(" ", _KEEP) if len(words) <= _SHORT else words)
                 case b.Span(style, children):
                     inner = self._text(children)
                     inner.stylize(_SPANS[style])
@@ -239,7 +243,8 @@ class _Prefixed:
             kept = _stripped(line)
             if kept or self._style:
                 yield Segment(self._mark, self._style)
-            yield from kept
+            for text, style, control in kept:
+                yield Segment(text.replace(_KEEP, " "), style, control)
             yield Segment.line()
 
 

@@ -50,6 +50,7 @@ COMMANDS: dict[str, Entry] = {
     "init": Entry("starting", "init", LEARN, "Make a workspace.", "course init my-course"),
     "lessons": Entry("lessons", "lessons", LEARN, "List the lessons.", "course lessons"),
     "lesson": Entry("lessons", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"),
+    "quiz": Entry("quiz", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"),
     "start": Entry(
         "starting", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
     ),

@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from course.grading.verdict import CheckResult  # noqa: TC001 - msgspec reads annotations at run time
+from course.grading.verdict import CheckResult
 
 __all__ = [
     "Backup",

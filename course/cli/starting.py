@@ -84,7 +84,8 @@ def start(exercise: OneExercise) -> int:
     here.record("start", chosen.id, {"version": here.catalog.version})
     step = f"course watch {chosen.id}"
     console.note(f"Read {chosen.id}/README.md, write your code in {chosen.id}/{chosen.module}.")
-    console.note(f"Then check it on every save: {step}   (or once: course check)")
+    console.note(f"Then check it on every save: {step}")
+    console.note(f"Or once, now and then: course check {chosen.id}")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(Start(exercise=chosen.id, files=tuple(files), next=NextStep(step)))

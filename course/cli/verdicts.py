@@ -14,7 +14,7 @@ from course.cli.numbers import format_input, format_pair, format_points, format_
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from course.catalog.models import Exercise
+    from course.catalog.models import Exercise, Task
     from course.grading.verdict import CheckResult, Verdict
 
 __all__ = ["show_verdict", "summary"]
@@ -35,10 +35,15 @@ def show_verdict(
     """
     if not console.quiet:
         page = _Page(console, verbose=verbose)
+        unwritten: list[tuple[Task, list[CheckResult]]] = []
         for task in exercise.task:
             checks = [check for check in verdict.checks if check.task == task.id]
-            if checks:
+            if _is_unwritten(checks):
+                unwritten.append((task, checks))
+            elif checks:
                 page.task(task.title, checks)
+        if unwritten:
+            page.unwritten(unwritten)
         # Checks of a task that the exercise does not list must not vanish.
         known = {task.id for task in exercise.task}
         for check in verdict.checks:
@@ -88,14 +93,26 @@ class _Page:
 
     def task(self, title: str, checks: Sequence[CheckResult]) -> None:
         """A heading with the points, and the task's checks."""
-        points = format_points(sum(check.points for check in checks))
-        maximum = format_points(sum(check.max_points for check in checks))
-        self._console.heading(title, f"{points}/{maximum} points")
+        self._console.heading(title, _points(checks))
         if _all_alike(checks):
             self._alike(next(check for check in checks if check.status != "skip"))
         else:
             for check in checks:
                 self.check(check)
+        self._gap()
+
+    def unwritten(self, tasks: Sequence[tuple[Task, Sequence[CheckResult]]]) -> None:
+        """The functions that still are as the stub has them: what is true of all is said once."""
+        every = [check for _, checks in tasks for check in checks]
+        self._console.heading("Not written yet", _points(every))
+        for task, _ in tasks:
+            self._console.item(
+                "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
+            )
+        self._text(next(check.help for check in every if check.diagnosis == _UNWRITTEN))
+        self._gap()
+
+    def _gap(self) -> None:
         if self._console.fancy:
             self._console.blank()
 
@@ -130,7 +147,7 @@ class _Page:
         self._said.add(check.help)
         if self._verbose:
             self._traces(check)
-        elif (check.traceback or check.stdout) and check.diagnosis != _UNWRITTEN:
+        elif check.traceback or check.stdout:
             self._kept_back = True
 
     def _traces(self, check: CheckResult) -> None:
@@ -152,12 +169,23 @@ class _Page:
         self._console.item(word, text, (aside, "dim"), style=STATUS_STYLE.get(status, ""), width=_LABEL_WIDTH)
 
 
-def _all_alike(checks: Sequence[CheckResult]) -> bool:
-    """True if one thing is wrong with every check, as with a function that is not written yet."""
+def _is_unwritten(checks: Sequence[CheckResult]) -> bool:
+    """True if the task's function is as the stub has it."""
     ran = [check for check in checks if check.status != "skip"]
-    if len({(check.status, check.message) for check in ran}) != 1 or ran[0].status in {"pass", "fail"}:
+    return bool(ran) and all(check.diagnosis == _UNWRITTEN for check in ran)
+
+
+def _all_alike(checks: Sequence[CheckResult]) -> bool:
+    """True if one thing keeps all of several checks from running, such as a missing function."""
+    ran = [check for check in checks if check.status != "skip"]
+    if len(checks) < 2 or len({(check.status, check.message) for check in ran}) != 1:
         return False
-    return len(checks) > 1 or ran[0].diagnosis == _UNWRITTEN
+    return ran[0].status not in {"pass", "fail"}
+
+
+def _points(checks: Sequence[CheckResult]) -> str:
+    points = format_points(sum(check.points for check in checks))
+    return f"{points}/{format_points(sum(check.max_points for check in checks))} points"
 
 
 def _numbers(check: CheckResult) -> list[tuple[str, str]]:

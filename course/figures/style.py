@@ -37,6 +37,8 @@ PALETTE = {
 
 #: Text width of a printed page.
 WIDTH_IN = 6.5
+# Margins round the axes, inches: room for labels and, above, for the finding and the titles of panels.
+_LEFT_IN, _RIGHT_IN, _BOTTOM_IN, _TOP_IN, _TITLE_IN = 0.72, 0.12, 0.5, 0.36, 0.2
 
 _RC: dict[str, Any] = {
     "font.family": "DejaVu Sans",  # shipped with matplotlib, so every machine draws the same letters
@@ -107,19 +109,31 @@ def house_style() -> Iterator[None]:
 def new_figure(height_in: float, rows: int = 1, columns: int = 1, **grid: Any) -> tuple[Figure, list[Axes]]:
     """A figure of page width with a grid of axes, row by row, and no window behind it.
 
+    The axes sit where the margins say, whatever the letters measure, so that two versions of matplotlib put
+    every curve in the same place.
+
     Args:
         height_in: height, inches.
         grid: passed on to ``Figure.subplots`` (sharex, sharey, ...).
     """
-    figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
+    figure = Figure(figsize=(WIDTH_IN, height_in))
     FigureCanvasAgg(figure)
+    figure.subplots_adjust(
+        left=_LEFT_IN / WIDTH_IN,
+        right=1.0 - _RIGHT_IN / WIDTH_IN,
+        bottom=_BOTTOM_IN / height_in,
+        top=1.0 - (_TOP_IN + (_TITLE_IN if rows * columns > 1 else 0.0)) / height_in,
+        hspace=0.14,
+        wspace=0.08,
+    )
     axes = figure.subplots(rows, columns, squeeze=False, **grid)
     return figure, list(axes.flat)
 
 
 def title(figure: Figure, finding: str) -> None:
     """Head a figure with what it shows: a sentence, not a topic."""
-    figure.suptitle(finding, x=0.012, ha="left", fontsize=10.5, fontweight="bold")
+    top = 1.0 - 0.08 / figure.get_figheight()
+    figure.suptitle(finding, x=0.012, y=top, ha="left", va="top", fontsize=10.5, fontweight="bold")
 
 
 def note(axes: Axes, text: str, at: tuple[float, float], place: tuple[float, float], color: str) -> None:

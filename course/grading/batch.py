@@ -14,6 +14,7 @@ import sys
 import time
 from collections import deque
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -73,6 +74,7 @@ class _Grader:
     number: int
     process: subprocess.Popen[bytes]
     work: _Work | None = None
+    ready: bool = False
     since: float = field(default_factory=time.monotonic)
 
 
@@ -163,6 +165,9 @@ class _Coordinator:
         # -P: the folder the command is run in, which may be a student's, never becomes importable.
         command = [sys.executable, "-P", "-m", "course.grading.grader"]
         environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+        # The graders run the course that this process runs, however it came to be importable here.
+        package = str(Path(__file__).resolve().parents[2])
+        environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
         process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
         )
@@ -181,12 +186,16 @@ class _Coordinator:
         """Take a grader's answer, or note its death, and give it or its successor more to do."""
         assert grader.process.stdout is not None
         frame = read_frame(grader.process.stdout)
+        if not grader.ready:
+            if frame is None:
+                raise InternalError("A grader process cannot start; what it printed is above.")
+            grader.ready = True
+            return
         work, grader.work = grader.work, None
         if frame is None:
             self._bury(grader)
-            if work is None:
-                raise InternalError("A grader process ended before its first submission.")
-            self._retry(work)
+            if work is not None:
+                self._retry(work)
         else:
             answer = msgspec.msgpack.decode(frame, type=Answer)
             if answer.error is not None:

@@ -129,6 +129,7 @@ def _run_item(item: pytest.Item) -> None:
 def _collect(paths: list[Path], plugin: CheckPlugin) -> tuple[pytest.Session, list[pytest.Item]]:
     """Import the check files hermetically: no conftest, no ini, no plugin and no setting of the user's."""
     from _pytest.config import _prepareconfig
+    from _pytest.mark.structures import MARK_GEN
 
     ini = Path(__file__).with_name("checks.ini")
     arguments = [
@@ -140,17 +141,27 @@ def _collect(paths: list[Path], plugin: CheckPlugin) -> tuple[pytest.Session, li
         # The session's own start-up hooks are left out: they print, and check the working folder.
         session = pytest.Session.from_config(config)
         config.hook.pytest_sessionstart(session=session)
+        # Marks are checked against this plugin's list, even where another pytest runs around this one.
+        plugin.pytest_configure(config)
+        around, MARK_GEN._config = MARK_GEN._config, config
         try:
             items = session.perform_collect()
         except pytest.UsageError as error:
             raise ContentError(paths[0], None, str(error), help="Restore the file.") from None
+        finally:
+            MARK_GEN._config = around
     if plugin.collect_errors:
         last = plugin.collect_errors[0].strip().splitlines()[-1].removeprefix("E").strip()
         problem = f"a check file cannot be imported: {last}"
         raise ContentError(paths[0], None, problem, help="Repair the file.")
     if not items:
         raise ContentError(paths[0], None, "there is no check in it", help="Name its functions test_...")
-    return session, [item for item in items if isinstance(item, pytest.Item)]
+    found = [item for item in items if isinstance(item, pytest.Item)]
+    for item in found:
+        # pytest would answer a later import of this path from sys.modules, even of a file that changed.
+        module: Any = getattr(item, "module", None)
+        sys.modules.pop(getattr(module, "__name__", ""), None)
+    return session, found
 
 
 @contextlib.contextmanager

@@ -177,6 +177,7 @@ class Gradebook:
 
     def set_meta(self, **facts: str) -> None:
         """Record facts about the run."""
+        self.flush()
         with self._explained():
             self._db.execute("BEGIN IMMEDIATE")
             self._db.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", facts.items())
@@ -240,8 +241,9 @@ class Gradebook:
                 yield Result(Key(*key), msgspec.json.decode(body, type=Verdict), late, graded_at)
 
 
-def _sha256(body: bytes) -> str:
-    return hashlib.sha256(body).hexdigest()
+def _sha256(body: bytes | str) -> str:
+    # Whoever edits the file by hand may leave text where bytes were: that is damage too, not a crash.
+    return hashlib.sha256(body.encode() if isinstance(body, str) else body).hexdigest()
 
 
 def _now() -> str:

@@ -65,6 +65,7 @@ def main() -> None:
     os.dup2(null, 0)
     config = msgspec.msgpack.decode(read_frame(source) or b"", type=Config)
     grader = _Grader(config)
+    write_frame(sink, Answer())  # started: from here on a death is some submission's doing
     try:
         while (frame := read_frame(source)) is not None:
             write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))

@@ -39,7 +39,12 @@ MAX_ARCHIVE = 6 << 20  # an archive of files within the limits is never larger
 FORMAT_VERSION = 1
 
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
-_IGNORED = ("__MACOSX", ".DS_Store", "Thumbs.db", "desktop.ini")
+_IGNORED = frozenset(
+    {
+        "__MACOSX", "__pycache__", ".DS_Store", ".git", ".idea", ".ipynb_checkpoints", ".svn", ".vscode",
+        "Thumbs.db", "desktop.ini",
+    }
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -98,7 +103,7 @@ def students(folder: Path) -> list[tuple[str, Path]]:
     found: dict[str, Path] = {}
     for raw in names:
         path = Path(os.fsdecode(os.path.join(os.fsencode(folder), raw)))  # noqa: PTH118 - bytes
-        if raw.startswith(b".") or os.fsdecode(raw) in _IGNORED or not (path.is_dir() or path.is_symlink()):
+        if os.fsdecode(raw) in _IGNORED or not (path.is_dir() or path.is_symlink()):
             continue
         name = raw.decode("utf-8", "backslashreplace")
         while name in found:

@@ -136,13 +136,7 @@ class GradingSession:
         Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
         """
         try:
-            remote = RemoteSubmission(
-                self._spawner,
-                submission.files,
-                self.exercise.module,
-                timeout=self._timeout,
-                seed=self._seed,
-            )
+            remote = self._load(submission)
         except LoadRefusedError as refused:
             return self._ungradable(_load_problem(refused, self.exercise.module))
         except IsolationError as error:
@@ -159,6 +153,12 @@ class GradingSession:
         return self._graded(results)
 
     # -- checks ---------------------------------------------------------------------------------------
+
+    def _load(self, submission: Submission) -> RemoteSubmission:
+        """The submission in a worker; the benchmarks put an unprotected one in its place."""
+        return RemoteSubmission(
+            self._spawner, submission.files, self.exercise.module, timeout=self._timeout, seed=self._seed
+        )
 
     def _run(self, remote: RemoteSubmission, only: str | None) -> list[CheckResult]:
         ordered = self._checks.in_order()

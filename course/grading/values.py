@@ -15,6 +15,7 @@ import numpy as np
 
 from course.grading.failures import CheckFailed
 from course.grading.verdict import Finding
+from course.isolation.failures import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -197,22 +198,23 @@ def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
 def plain(value: Any) -> Any:
     """``value`` for a finding: numpy becomes lists and numbers, long things are cut, others are named."""
     if isinstance(value, np.ndarray):
-        return value.tolist() if value.size <= _SHOWN else f"array of shape {value.shape}"
+        return plain(value.tolist()) if value.size <= _SHOWN else f"array of shape {value.shape}"
     if isinstance(value, np.generic):
-        return value.item()
+        return plain(value.item())
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in list(value.items())[:_SHOWN]}
+        return {printable(str(key), 80): plain(item) for key, item in list(value.items())[:_SHOWN]}
     if isinstance(value, list | tuple):
         more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
         return [plain(item) for item in value[:_SHOWN]] + more
-    if isinstance(value, bool | int | float) or value is None:
+    if value is None or isinstance(value, bool | int | float):
         return value
-    return value[:200] if isinstance(value, str) else f"({type(value).__name__})"
+    text = str(value) if isinstance(value, str | complex) else f"({type(value).__name__})"
+    return printable(text, 200)
 
 
 def _real(value: Any) -> Array | None:
     """``value`` as a float array, or None if it is not real numbers of one regular shape."""
-    if not isinstance(value, np.ndarray | list | tuple | int | float) or isinstance(value, bool):
+    if not _is_numeric(value) or isinstance(value, bool):
         return None
     try:
         array = np.asarray(value)
@@ -221,6 +223,13 @@ def _real(value: Any) -> Array | None:
     if array.size == 0 and array.dtype == object:
         return None
     return array.astype(float) if array.dtype.kind in "fiu" else None
+
+
+def _is_numeric(value: Any) -> bool:
+    """Whether it is made of numbers; of text numpy would make an array as wide as the longest, throughout."""
+    if isinstance(value, list | tuple):
+        return all(map(_is_numeric, value))
+    return isinstance(value, np.ndarray | int | float)
 
 
 def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:

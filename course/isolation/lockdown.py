@@ -10,6 +10,7 @@ headers.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import platform
@@ -28,7 +29,9 @@ __all__ = [
     "apply_limits",
     "apply_seccomp",
     "become_unprivileged",
+    "die_first",
     "die_with_parent",
+    "drop_bounding_set",
     "drop_capabilities",
     "landlock_abi",
     "landlock_apply",
@@ -114,16 +117,26 @@ def become_unprivileged() -> None:
     os.setresuid(NOBODY, NOBODY, NOBODY)
 
 
-def drop_capabilities() -> None:
-    """Give up every capability, the bounding set included, and any way to gain one by exec."""
+def drop_bounding_set() -> None:
+    """Give up what an exec could regain; before ``become_unprivileged``, which loses the right to do so."""
     for capability in range(_LAST_CAP + 1):
         if _prctl(_PR_CAPBSET_DROP, capability) < 0:
             break  # past the last one this kernel knows, or no CAP_SETPCAP: then no_new_privs must do
+
+
+def drop_capabilities() -> None:
+    """Give up every capability, and any way to gain one by exec."""
     _prctl(_PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL)
     header = struct.pack("=Ii", 0x20080522, 0)  # _LINUX_CAPABILITY_VERSION_3, this process
     _check(_libc.capset(header, b"\0" * 24), "capset")
     _check(_prctl(_PR_SET_NO_NEW_PRIVS, 1), "no_new_privs")
     _check(_prctl(_PR_SET_DUMPABLE, 0), "not dumpable")
+
+
+def die_first() -> None:
+    """Be what the kernel ends when memory runs out, rather than the grader or the zygote."""
+    with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w", encoding="ascii") as handle:  # noqa: PTH123
+        handle.write("1000")
 
 
 def die_with_parent() -> None:
@@ -181,6 +194,7 @@ def landlock_ruleset(readable: list[str], writable: list[str]) -> int:
         _allow(ruleset, path, (_FS_READ_FILE | _FS_READ_DIR | _FS_EXECUTE) & handled)
     for path in writable:
         _allow(ruleset, path, _FS_WRITE & handled)
+    _allow(ruleset, os.devnull, (_FS_READ_FILE | _FS_WRITE_FILE) & handled)
     return ruleset
 
 

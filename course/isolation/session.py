@@ -12,7 +12,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from course.isolation import wire
-from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.failures import IsolationError, StudentFailure, printable
 from course.physics import systems
 
 if TYPE_CHECKING:
@@ -27,6 +27,9 @@ _CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
 _RECV = 1 << 12
 _HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
+#: What the callbacks of one call may carry in all; a check may keep every argument it is given.
+_CALLBACK_BYTES = 16 << 20
+_MAX_FRAMES = 12  # of a traceback
 _TICK_S = 0.1  # how often a blocked read looks at the clock; it ends by the deadline plus this
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
@@ -82,6 +85,7 @@ class Connection:
         self._lent: list[Callable[..., Any]] = []
         self._nesting = 0
         self._refused: AssertionError | None = None
+        self._received = 0  # bytes, since the call began
         self._printed = ""
         self.deadline = deadline
         self.alive = True
@@ -115,6 +119,8 @@ class Connection:
             return self._lent[value.number] if value.mine else RemoteFunction(self, value.number)
         if isinstance(value, wire.Rhs):
             try:
+                if not all(map(_few_numbers, value.params.values())):
+                    raise TypeError
                 return systems.SYSTEMS[value.name](**value.params)
             except Exception as error:  # noqa: BLE001 - any parameters may arrive
                 raise wire.WireError(
@@ -146,7 +152,7 @@ class Connection:
 
     def output(self) -> str:
         """What the submission printed so far."""
-        return self._handle.output() if self.alive else self._printed
+        return printable(self._handle.output()) if self.alive else self._printed
 
     def close(self) -> None:
         """End the worker."""
@@ -156,7 +162,7 @@ class Connection:
         if not self.alive:
             return None
         self.alive = False
-        self._printed = self._handle.output()
+        self._printed = printable(self._handle.output())
         end = self._handle.finish()
         self.cpu_s = end.cpu_s
         return end
@@ -170,6 +176,7 @@ class Connection:
         if not self._nesting:
             self._lent.clear()
             self._refused = None
+            self._received = 0
         try:
             frame = self._codec.encode(kind, request)
         except wire.UnsupportedValueError as error:
@@ -181,6 +188,8 @@ class Connection:
         while True:
             kind, value = self._receive()
             if kind == _CALLBACK:
+                if self._received > _CALLBACK_BYTES:
+                    raise self._breach("more to the functions it was given than any solution needs")
                 self._answer_callback(value)
             elif kind in (Kind.RESULT, Kind.RAISED):
                 if self._refused is not None and not self._nesting:
@@ -197,9 +206,9 @@ class Connection:
     def _answer_callback(self, value: Any) -> None:
         try:
             number, kwargs, *args = value
-            function = self._lent[number]
-            if number < 0 or not (kwargs is None or type(kwargs) is dict):
+            if type(number) is not int or number < 0 or not (kwargs is None or type(kwargs) is dict):
                 raise TypeError
+            function = self._lent[number]
         except (TypeError, ValueError, IndexError):
             raise self._breach("a callback in another form") from None
         if self._nesting >= _MAX_NESTING:
@@ -218,6 +227,7 @@ class Connection:
         self._send(answer)
 
     def _load(self) -> frozenset[str]:
+        self._await_lockdown()
         try:
             self._send(wire.Codec().encode(Kind.LOAD, [dict(self._files), self._main]))
             kind, value = self._receive()
@@ -226,45 +236,57 @@ class Connection:
         if kind == Kind.LOADED and isinstance(value, list):
             return frozenset(name for name in value if isinstance(name, str))
         if kind == Kind.REFUSED and isinstance(value, dict):
-            if value.get("stage") == "lockdown":
-                raise IsolationError(f"a worker could not be locked down: {value.get('message')}")
             stage = "syntax" if value.get("stage") == "syntax" else "import"
             raise LoadRefusedError(stage, self._raised(value), _text(value.get("text")))
         raise LoadRefusedError("crash", self._breach("an answer of another form"))
+
+    def _await_lockdown(self) -> None:
+        """The first word of a worker, said before it is given a stranger's code: only here is it believed."""
+        try:
+            kind, value = self._receive()
+        except StudentFailure as failure:
+            if failure.kind == "timeout":  # replaced shortly before the deadline of a check
+                raise LoadRefusedError(failure.kind, failure) from None
+            raise IsolationError(f"a worker did not get ready: {failure.message}") from None
+        if kind != Kind.READY:
+            self.close()
+            raise IsolationError(f"a worker could not be locked down: {value}")
 
     def _raised(self, value: Any) -> StudentFailure:
         """The exception a worker reports, with nothing taken for granted about the report."""
         if not isinstance(value, dict):
             return self._breach("an exception in another form")
-        kind = _text(value.get("type"))
+        kind = _text(value.get("type"), 100)
         message = _text(value.get("message"))
         if kind == "UnsupportedValue":
             return StudentFailure("protocol", type=kind, message=message)
+        source = self._files[self._main].decode("utf-8", "replace").splitlines()
         frames = [
-            (frame[1], _text(frame[2]))
-            for frame in value.get("frames") or []
-            if isinstance(frame, list)
-            and len(frame) == 3
-            and frame[0] in self._files
-            and isinstance(frame[1], int)
+            (frame[1], _text(frame[2], 100))
+            for frame in _items(value.get("frames"), _MAX_FRAMES)
+            if isinstance(frame, list) and len(frame) == 3 and _text(frame[0]) == self._main
+            if self._is_line(frame[1], source)
         ]
         line = frames[-1][0] if frames else None
-        if isinstance(value.get("line"), int):
+        if self._is_line(value.get("line"), source):
             line = value["line"]
-        bases = [_text(base) for base in value.get("bases") or [] if isinstance(base, str)]
+        bases = [_text(base, 100) for base in _items(value.get("bases"), _MAX_FRAMES)]
         return StudentFailure(
             "memory" if "MemoryError" in bases else "error",
             type=kind,
             message=message,
             line=line,
-            traceback="\n".join(self._quoted(number, function) for number, function in frames),
+            traceback="\n".join(
+                f"{self._main}:{number} in {function}\n    {_text(source[number - 1].strip(), 200)}".rstrip()
+                for number, function in frames
+            ),
             bases=bases,
         )
 
-    def _quoted(self, line: int, function: str) -> str:
-        source = self._files[self._main].decode("utf-8", "replace").splitlines()
-        text = source[line - 1].strip() if 0 < line <= len(source) else ""
-        return f"{self._main}:{line} in {function}\n    {text}".rstrip()
+    @staticmethod
+    def _is_line(number: Any, source: list[str]) -> bool:
+        """Whether the file has that line: any other number would be a way to carry a value out."""
+        return type(number) is int and 0 < number <= len(source)
 
     # -- frames ---------------------------------------------------------------------------------------
 
@@ -276,6 +298,7 @@ class Connection:
                 if sent == len(rest):
                     return
                 rest = memoryview(rest)[sent:]
+                self._check_deadline()  # one that reads slowly never lets a write block
             except (BlockingIOError, TimeoutError):
                 self._check_deadline()
             except OSError:
@@ -296,6 +319,7 @@ class Connection:
                 self._check_deadline()  # one that trickles never lets a read block
             buffer = bytes(rest)
         self._buffer = buffer[end:]
+        self._received += end
         if monotonic() > self.deadline:
             raise self._timeout()  # a worker that keeps calling back never lets a read block
         try:
@@ -336,7 +360,19 @@ class Connection:
 
 
 def _text(value: Any, limit: int = 2000) -> str:
-    return value[:limit] if isinstance(value, str) else ""
+    return printable(value, limit) if isinstance(value, str) else ""
+
+
+def _items(value: Any, limit: int) -> list[Any]:
+    """The last of what a list holds, nothing if it is no list."""
+    return value[-limit:] if isinstance(value, list) else []
+
+
+def _few_numbers(value: Any) -> bool:
+    """Whether it can be a parameter of a right-hand side: a number, or a handful of them."""
+    if isinstance(value, list):
+        return len(value) <= 64 and all(isinstance(item, int | float) for item in value)
+    return isinstance(value, int | float)
 
 
 def _set_tick(sock: Any) -> None:

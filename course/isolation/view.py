@@ -44,11 +44,14 @@ class View:
 
     def expanded(self) -> list[Path]:
         """``readable`` without ``masked``, as a list of paths none of which contains a masked one."""
-        return [path for top in self.readable for path in _without(top, self.masked)] + list(self.packages)
+        found = [path for top in self.readable for path in _without(top, self.masked)]
+        return [*dict.fromkeys(found), *self.packages]
 
 
 def _without(top: Path, masked: tuple[Path, ...]) -> list[Path]:
-    if top in masked:
+    """``top``, or what is in it without the masked; links are followed first, as Landlock follows them."""
+    top = Path(os.path.realpath(top))
+    if any(top.is_relative_to(mask) for mask in masked):
         return []
     if not any(mask.is_relative_to(top) for mask in masked):
         return [top]
@@ -56,7 +59,14 @@ def _without(top: Path, masked: tuple[Path, ...]) -> list[Path]:
         children = sorted(top.iterdir())
     except OSError:
         return []
-    return [path for child in children for path in _without(child, masked)]
+    return [
+        path for child in children if not _leads_around(child, masked) for path in _without(child, masked)
+    ]
+
+
+def _leads_around(path: Path, masked: tuple[Path, ...]) -> bool:
+    """Whether it is a link to a folder with something masked in it: following those might never end."""
+    return path.is_symlink() and any(mask.is_relative_to(os.path.realpath(path)) for mask in masked)
 
 
 def view_for(imports: tuple[str, ...]) -> View:
@@ -91,9 +101,11 @@ def _package_folders() -> set[Path]:
     folders.update(Path(entry) for entry in sys.path if entry.endswith(("site-packages", "dist-packages")))
     for system in ("/usr/lib", "/usr/local/lib"):  # packages of other Pythons: this course may be among them
         for kind in ("site-packages", "dist-packages"):
-            folders.update(Path(system).glob(f"python3*/{kind}"))
+            folders.update(Path(system).glob(f"*/{kind}"))
     if (here.parent / "pyproject.toml").exists():
         folders.add(here.parent)  # a checkout: solutions and graders are beside the package
+    if "COURSE_CONTENT" in os.environ:
+        folders.add(Path(os.environ["COURSE_CONTENT"]).resolve())
     return {Path(os.path.realpath(folder)) for folder in folders} | folders
 
 

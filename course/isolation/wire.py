@@ -52,6 +52,7 @@ MAX_ARRAY_BYTES = 64 << 20  # all arrays of a frame together
 MAX_FRAME = MAX_VALUE_BYTES + MAX_ARRAY_BYTES
 MAX_DEPTH = 32
 MAX_DIMENSIONS = 8
+_RHS_DEPTH = 4  # of the parameters of a right-hand side
 MAX_VALUES = 200_000  # decoding one costs about half a microsecond: a hostile frame costs at most 0.1 s
 
 HEADER = struct.Struct("<IB")
@@ -71,6 +72,7 @@ class Kind(enum.IntEnum):
     MARCH = 3  # [step, rhs, q0, v0, t0, h, n]
     REPLY = 4  # value of a callback
     REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
+    READY = 15  # None: locked down, and nothing of the submission has run yet
     LOADED = 16  # [names of functions]
     REFUSED = 17  # {stage, type, message, line, text}
     RESULT = 18  # value
@@ -267,7 +269,7 @@ def _put_other(value: Any, parts: list[bytes], names: Names | None, depth: int) 
     elif isinstance(lowered, Rhs):
         parts.append(b"p")
         _put_str(lowered.name, parts, None, 1)
-        _put_dict(lowered.params, parts, None, 4)
+        _put_dict(lowered.params, parts, None, min(depth, _RHS_DEPTH))
     elif isinstance(lowered, Seed):
         parts.append(b"g" + _I64.pack(lowered.value))
     else:
@@ -319,7 +321,7 @@ def _quick(body: bytes) -> Any:  # noqa: PLR0911 - it gives up at the first thin
     """
     if body[0] == _V:
         size = 8 * _U32.unpack_from(body, 1)[0]
-        if size != len(body) - 5 or size > MAX_ARRAY_BYTES:
+        if size != len(body) - 5 or size > MAX_VALUE_BYTES:  # larger ones must not be copied twice
             return _OTHER
         return np.frombuffer(bytearray(body[5:]), _FLOAT64)  # writable, and aligned as malloc aligns
     if body[0] != _L or len(body) > MAX_VALUE_BYTES:
@@ -386,9 +388,9 @@ class _Reader:
             if depth <= 0:
                 raise WireError(f"nested more than {MAX_DEPTH} deep")
             return self._list(depth - 1) if tag == _L else self._dict(depth - 1)
-        return self._rare(tag)
+        return self._rare(tag, depth)
 
-    def _rare(self, tag: int) -> Any:
+    def _rare(self, tag: int, depth: int) -> Any:
         if tag == _Y and self._accept_bytes:
             raw = self._raw()
             self.bulk += len(raw)
@@ -399,8 +401,11 @@ class _Reader:
             # "c": the receiver (this side) holds it; "w": the sender does.
             return self._names.raise_(Reference(self._u32(), mine=tag == _C))
         if tag == _P:
-            name, params = self.take(1), self.take(4)
-            if not isinstance(name, str) or not isinstance(params, dict):
+            # One inside another would recurse without ever using up the depth.
+            if depth <= 0 or self.body[self.at] != _S:
+                raise WireError("a right-hand side in another form")
+            name, params = self.take(0), self.take(min(depth, _RHS_DEPTH))
+            if not isinstance(params, dict):
                 raise WireError("a right-hand side in another form")
             return self._names.raise_(Rhs(name, params))
         if tag == _G:
@@ -422,6 +427,10 @@ class _Reader:
         return raw
 
     def _text(self) -> str:
+        size = _U32.unpack_from(self.body, self.at)[0]
+        # Before it is decoded: one wide character makes text take four bytes for each of its letters.
+        if self.at + 4 + size - self.bulk > MAX_VALUE_BYTES:
+            raise WireError("more than 1 MB of plain values")
         return self._raw().decode("utf-8")
 
     def _count(self) -> int:

@@ -112,7 +112,8 @@ class Worker:
         self._nesting = 0
 
     def serve(self) -> None:
-        """Answer until the grader closes the connection."""
+        """Say that this process is ready, then answer until the grader closes the connection."""
+        self._send(Kind.READY, None)
         while True:
             try:
                 kind, value = self._receive()

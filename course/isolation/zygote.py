@@ -68,7 +68,8 @@ def _fork_on_request(config: dict[str, Any], imports: frozenset[str], worker: An
     control = socket.socket(fileno=config["control"])
     control.set_inheritable(False)
     program = lockdown.seccomp_program()
-    rules = lockdown.landlock_ruleset(config["readable"], [config["workdir"]])
+    # One long list for all workers, or none where the root that was built holds only what is readable.
+    rules = lockdown.landlock_ruleset(config["readable"], [config["workdir"]]) if config["readable"] else -1
     own_namespace = (
         os.open("/proc/self/ns/pid", os.O_RDONLY | os.O_CLOEXEC) if config["level"] == "L3" else -1
     )
@@ -118,21 +119,26 @@ def _become_worker(
         sock = socket.socket(fileno=_SOCKET)
         workdir = request["workdir"]
         root = os.getuid() == 0
+        lockdown.die_first()
         if config["level"] == "L3":
             lockdown.unshare_worker()
             uid = lockdown.NOBODY if root else os.getuid()
             lockdown.mount_tmpfs(workdir, size="16m", uid=uid)
             lockdown.mount_tmpfs("/proc", size="4k", readonly=True)
         os.chdir(workdir)
+        lockdown.drop_bounding_set()
         if root and config["become_nobody"]:
             lockdown.become_unprivileged()
         lockdown.die_with_parent()
         lockdown.drop_capabilities()
-        own = lockdown.landlock_ruleset(["/"], [workdir])
+        own = lockdown.landlock_ruleset(
+            ["/"], [workdir]
+        )  # after the mounts: a rule is about one folder's inode
         lockdown.landlock_apply(own)
-        lockdown.landlock_apply(_RULES)
         os.close(own)
-        os.close(_RULES)
+        if rules >= 0:
+            lockdown.landlock_apply(_RULES)
+            os.close(_RULES)
         lockdown.apply_limits(**config["limits"])
         lockdown.apply_seccomp(program)
     except BaseException as error:  # noqa: BLE001 - fail closed, and say which layer it was
@@ -142,23 +148,23 @@ def _become_worker(
 
 
 def _keep_only(sock: int, output: int, rules: int) -> None:
-    """Descriptors 0 to 4 become nothing, the output file twice, the socket, the rules; all others close."""
+    """Descriptors 0 to 4 become nothing, the output file twice, the socket, any rules; all others close."""
     import fcntl  # not on Windows, where this never runs
 
     null = os.open(os.devnull, os.O_RDONLY)
-    high = [fcntl.fcntl(descriptor, fcntl.F_DUPFD, 16) for descriptor in (null, output, output, sock, rules)]
+    kept = [null, output, output, sock, *([rules] if rules >= 0 else [])]
+    high = [fcntl.fcntl(descriptor, fcntl.F_DUPFD, 16) for descriptor in kept]
     for target, descriptor in enumerate(high):
         os.dup2(descriptor, target, inheritable=False)
     close_range, last = ctypes.c_long(436), ctypes.c_uint(0xFFFFFFFF)
-    if ctypes.CDLL(None).syscall(close_range, ctypes.c_uint(_RULES + 1), last, ctypes.c_uint(0)) != 0:
-        os.closerange(_RULES + 1, os.sysconf("SC_OPEN_MAX"))
+    if ctypes.CDLL(None).syscall(close_range, ctypes.c_uint(len(kept)), last, ctypes.c_uint(0)) != 0:
+        os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
 
 
 def _refuse(sock: socket.socket, message: str) -> None:
     import wire  # type: ignore[import-not-found]
 
-    described = {"stage": "lockdown", "type": "LockdownError", "message": message}
-    sock.sendall(wire.Codec().encode(wire.Kind.REFUSED, described))
+    sock.sendall(wire.Codec().encode(wire.Kind.REFUSED, message))
 
 
 def _request(control: socket.socket) -> tuple[dict[str, Any] | None, list[int]]:

@@ -208,10 +208,11 @@ class LinearStep(_Plain):
         entries = {name: list(getattr(self, name)) for name in ("qq", "qp", "pq", "pp")}
         return {**entries, "clock": self.clock}
 
-    def matrix(self, z: float) -> Array:
-        """The map on (q, v/omega) at z = h omega; shape (2, 2)."""
-        qq, qp, pq, pp = (_polynomial(c, z) for c in (self.qq, self.qp, self.pq, self.pp))
-        return np.array([[qq, qp], [pq, pp]])
+    def matrix(self, z: ArrayLike) -> Array:
+        """The map on (q, v/omega) at z = h omega; shape (2, 2), or (..., 2, 2) for an array of z."""
+        z = np.asarray(z, dtype=float)
+        entries = [np.polyval(c[::-1], z) for c in (self.qq, self.qp, self.pq, self.pp)]
+        return np.stack(np.broadcast_arrays(*entries), axis=-1).reshape(*z.shape, 2, 2)
 
     def __call__(
         self,

@@ -53,7 +53,7 @@ class Event:
     Attributes:
         id: position in the record, 1 first.
         at: when, in UTC.
-        kind: "start", "check", "hint", "lesson", "solution", "reset", "update", "submit".
+        kind: "start", "check", "hint", "lesson", "place", "solution", "reset", "update" or "submit".
         subject: the exercise or lesson it is about; empty if none.
         data: what is worth remembering about it, as plain values.
     """

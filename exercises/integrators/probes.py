@@ -22,7 +22,6 @@ from course.physics.integrators import (
     VelocityVerlet,
     trajectory,
 )
-from course.physics.invariants import spectral_radius
 from course.physics.systems import DrivenPendulum, LinearStep, Oscillator
 
 named = kit.companion("integrators", "diagnosis").named
@@ -155,8 +154,9 @@ def of_evaluations(count, allowed):
 
 # -- integrate ----------------------------------------------------------------------------------------
 
-#: Durations and steps (s) whose quotients are awkward, awkward in another way, and exact.
-_DURATIONS = ((0.29, 0.01), (0.8, 0.1), (1.1, 0.1), (1.0, 0.25))
+#: Durations and steps (s): a quotient just below a whole number, sums of h that fall short, a quotient just
+#: above, and one without any rounding.
+_DURATIONS = ((0.29, 0.01), (0.8, 0.1), (1.1, 0.1), (0.063, 0.009), (1.0, 0.25))
 IDENTITY = LinearStep([1.0], [0.0], [0.0], [1.0])
 
 
@@ -264,16 +264,21 @@ def _slopes(hs, errors):
 
 Z_FIRST, Z_LAST = 0.05, 10.0
 _GRID = np.linspace(Z_FIRST, Z_LAST, 1991)
+#: What may be asked to stay below one, for many matrices at once, instead of the spectral radius.
 _CRITERIA = (
-    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, 2)),
-    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, np.inf)),
-    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, 1)),
-    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, "fro")),
+    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, 2, axis=(-2, -1))),
+    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, np.inf, axis=(-2, -1))),
+    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, 1, axis=(-2, -1))),
+    ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, "fro", axis=(-2, -1))),
     ("STABILITY_BY_DETERMINANT", lambda m: abs(np.linalg.det(m))),
-    ("STABILITY_BY_DETERMINANT", lambda m: abs(np.trace(m)) / 2),
-    ("EIGENVALUES_WITHOUT_MODULUS", lambda m: max(np.linalg.eigvals(m).real)),
-    ("EIGENVALUES_WITHOUT_MODULUS", lambda m: max(abs(np.linalg.eigvals(m).real))),
+    ("STABILITY_BY_DETERMINANT", lambda m: abs(np.trace(m, axis1=-2, axis2=-1)) / 2),
+    ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max(axis=-1)),
+    ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).real).max(axis=-1)),
 )
+#: Maps that tell the criteria apart: sheared, with an eigenvalue of -1 at z = 1.5, spiralling out at 1.9.
+_SHEARED = LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
+_FLIPPED = LinearStep([0.6, 0, -1.6 / 1.5**2], [2.0], [0.0], [0.3])
+_SPIRAL = LinearStep([0.3, 0, 0.02], [0.75, 0, 0.05], [-0.75, 0, -0.05], [0.3, 0, 0.02])
 
 
 def of_stability(submission, value, step, omega, limit):
@@ -288,16 +293,17 @@ def of_stability(submission, value, step, omega, limit):
 def _searches(submission, step, omega, limit):
     """Codes and the h * omega that each mistake leads to, the most telling first."""
     yield "RETURNS_Z", limit * omega
-    # A search that takes no notice of the step finds the limit of another one as well.
-    other = LinearStep([0.0, 1 / 3.3], [0.0], [0.0], [0.0, 1 / 3.3])
-    found = kit.as_number(submission.call("max_stable_step", other, 1.0))
-    if not _same(found, 3.3):
-        yield "ASSUMES_ITS_LIMIT", found
+    # A search that takes no notice of the step finds the same limit for all.
+    found = [kit.as_number(submission.call("max_stable_step", other, 1.0)) for other in (_FLIPPED, _SPIRAL)]
+    if _same(*found):
+        yield "ASSUMES_ITS_LIMIT", found[0]
     yield ("NO_ZERO", Z_FIRST) if limit == 0 else ("TOLERANCE_TOO_TIGHT", Z_FIRST)
     if limit == math.inf:
         yield "NO_INFINITY", Z_LAST
+    found.append(kit.as_number(submission.call("max_stable_step", _SHEARED, 1.0)))
     for code, size in _CRITERIA:
-        yield code, _first_failure(step, size)
+        if all(map(_same, [_first_failure(other, size) for other in (_FLIPPED, _SPIRAL, _SHEARED)], found)):
+            yield code, _first_failure(step, size)
     yield "TOLERANCE_TOO_TIGHT", 0.0
     for edge in _later_limits(step):
         yield "LARGEST_STABLE_STEP", edge
@@ -309,14 +315,14 @@ def _same(a, b):
 
 def _first_failure(step, size):
     """Where ``size`` of the map first exceeds one, as max_stable_step would report it."""
-    for z in _GRID:
-        if size(step.matrix(z)) > 1 + 1e-8:
-            return 0.0 if z == Z_FIRST else float(z)
-    return math.inf
+    fails = np.flatnonzero(size(step.matrix(_GRID)) > 1 + 1e-8)
+    if not fails.size:
+        return math.inf
+    return float(_GRID[fails[0]]) if fails[0] else 0.0
 
 
 def _later_limits(step):
     """Every h * omega after the first limit at which the map turns unstable."""
-    stable = np.array([spectral_radius(step.matrix(z)) <= 1 + 1e-8 for z in _GRID])
+    stable = abs(np.linalg.eigvals(step.matrix(_GRID))).max(axis=-1) <= 1 + 1e-8
     ends = np.flatnonzero(stable[:-1] & ~stable[1:])
     return [float(_GRID[i]) for i in ends[1:]] + ([math.inf] if stable[-1] else [])

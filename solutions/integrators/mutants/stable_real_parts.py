@@ -13,7 +13,7 @@ def max_stable_step(step, omega):
 
     z = 0.05
     while size(z) <= 1 + 1e-8:
-        z += 0.005
+        z += 0.01
         if z >= 10:
             return math.inf
-    return (z - 0.0025) / omega if z > 0.05 else 0.0
+    return (z - 0.005) / omega if z > 0.05 else 0.0

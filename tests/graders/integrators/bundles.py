@@ -93,7 +93,7 @@ EVERYTHING = (*CONSERVATIVE, damped_spring, van_der_pol)
 
 #: How many steps cover the span (1.2 to 1.9 rad): h * rate stays below 0.02 for the first-order methods, and
 #: RK4's errors stay between 1e-10 and 1e-4.
-COUNTS = {EXPLICIT: (96, 144, 216), SEMI: (96, 144, 216), VERLET: (24, 48, 96), RK4: (12, 20, 32)}
+COUNTS = {EXPLICIT: (96, 144, 216), SEMI: (96, 144, 216), VERLET: (24, 48, 96), RK4: (32, 48, 72)}
 WITHIN = {EXPLICIT: 0.15, SEMI: 0.15, VERLET: 0.1, RK4: 0.3}
 
 

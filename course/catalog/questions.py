@@ -1,0 +1,294 @@
+"""The quiz's questions: one TOML file each under ``quiz/``, read into frozen types.
+
+A question has several variants. A variant has four options and may have numbers: those with ``values`` are
+drawn from a list, those with ``formula`` are computed from them, and texts name both as ``{name}``. The lists
+are finite, so every case a student can ever meet can be gone through beforehand (``course.quizzing.proof``).
+``docs/quiz-format.md`` describes the files for authors.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from course.catalog.formulas import Formula, FormulaError
+from course.catalog.reading import Document, read_document
+from course.errors import UsageError
+from course.ids import QuestionId
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["OPTIONS", "Number", "Option", "Question", "Variant", "placeholders", "read_questions"]
+
+#: Options of every question. Five questions of four options are passed by guessing in 1.6 % of attempts.
+OPTIONS = 4
+#: Cases of one variant; more would only make proving it slow.
+MAX_CASES = 500
+_DIGITS = range(1, 7)
+
+_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
+_SLUG = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
+
+Where = tuple[str | int, ...]
+
+
+class Number(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A number of a variant: drawn from ``values`` or computed by ``formula`` from the numbers above it.
+
+    Attributes:
+        digits: significant digits a computed number is shown with.
+    """
+
+    name: str
+    values: tuple[int | float, ...] = ()
+    formula: str = ""
+    digits: int = 3
+
+
+class Option(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One answer to choose from.
+
+    Attributes:
+        right: True for the one that is right.
+        misconception: of a wrong one, what whoever picks it believes: a key of the question's table.
+        explanation: why it is right or wrong; shown after the attempt.
+    """
+
+    id: str
+    text: str
+    explanation: str
+    right: bool = False
+    misconception: str = ""
+
+
+class Variant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One way of asking a question.
+
+    Attributes:
+        source: where its facts come from, with a year; or what its numbers are computed from.
+    """
+
+    id: str
+    prompt: str
+    source: str
+    option: tuple[Option, ...]
+    number: tuple[Number, ...] = ()
+
+    @property
+    def cases(self) -> int:
+        """In how many ways its numbers can be drawn."""
+        return math.prod(len(number.values) for number in self.number if number.values)
+
+
+class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A file of the quiz.
+
+    Attributes:
+        order: position in the quiz, 1 first.
+        title: what it is about, in a few words.
+        misconceptions: what people wrongly believe here, in their words, by name.
+        lesson: the lesson to read again; empty if none.
+    """
+
+    format_version: int
+    id: str
+    order: int
+    title: str
+    misconceptions: dict[str, str]
+    variant: tuple[Variant, ...]
+    lesson: str = ""
+
+
+def placeholders(text: str) -> list[str]:
+    """The names in braces, in order."""
+    return _PLACEHOLDER.findall(text)
+
+
+def read_questions(folder: Path) -> tuple[Document[Question], ...]:
+    """The questions of a quiz in their order, with the lines they stand on; none where there is no folder.
+
+    Raises:
+        ContentError: a file is wrong, or two claim one place.
+    """
+    if not folder.is_dir():
+        return ()
+    documents = sorted(
+        (_read(path) for path in folder.glob("*.toml")), key=lambda d: (d.value.order, d.value.id)
+    )
+    for one, other in zip(documents, documents[1:], strict=False):
+        if one.value.order == other.value.order:
+            other.fail(
+                ("order",),
+                f"question {one.value.id} has the order {one.value.order} too.",
+                fix="Give each question a place of its own.",
+            )
+    return tuple(documents)
+
+
+def _read(path: Path) -> Document[Question]:
+    document = read_document(path, Question)
+    question = document.value
+    _check_id(document, question.id)
+    _check_words(document, ("title",), question.title)
+    if question.order < 1:
+        document.fail(("order",), "`order` must be 1 or more.", fix="Number the questions from 1.")
+    for name, belief in question.misconceptions.items():
+        _check_slug(document, ("misconceptions", name), name, "misconception")
+        _check_words(document, ("misconceptions", name), belief)
+    if not question.variant:
+        document.fail((), "there is no variant.", fix="Add a [[variant]] with four [[variant.option]].")
+    _check_distinct(document, ("variant",), [variant.id for variant in question.variant], "variant")
+    for index, variant in enumerate(question.variant):
+        _check_variant(document, ("variant", index), variant)
+    return document
+
+
+def _check_id(document: Document[Question], name: str) -> None:
+    try:
+        QuestionId(name)
+    except UsageError as error:
+        document.fail(("id",), error.message, fix=error.help)
+    if name != document.path.stem:
+        document.fail(
+            ("id",),
+            f"`id` is {name}, and the file is called {document.path.name}.",
+            fix=f'Write `id = "{document.path.stem}"`, or rename the file {name}.toml.',
+        )
+
+
+def _check_variant(document: Document[Question], where: Where, variant: Variant) -> None:
+    _check_slug(document, (*where, "id"), variant.id, "variant")
+    _check_words(document, (*where, "prompt"), variant.prompt)
+    _check_words(document, (*where, "source"), variant.source)
+    if len(variant.option) != OPTIONS:
+        document.fail(
+            where,
+            f"variant {variant.id} has {len(variant.option)} options.",
+            fix=f"Give it {OPTIONS}: one that is right and {OPTIONS - 1} that are not.",
+        )
+    right = [index for index, option in enumerate(variant.option) if option.right]
+    if len(right) != 1:
+        document.fail(
+            (*where, "option", right[1]) if right else where,
+            f"variant {variant.id} has {len(right)} right options.",
+            fix="Mark exactly one with `right = true`.",
+        )
+    _check_distinct(document, (*where, "option"), [option.id for option in variant.option], "option")
+    for index, option in enumerate(variant.option):
+        _check_option(document, (*where, "option", index), option)
+    _check_numbers(document, where, variant)
+    _check_placeholders(document, where, variant)
+
+
+def _check_option(document: Document[Question], where: Where, option: Option) -> None:
+    _check_slug(document, (*where, "id"), option.id, "option")
+    if len(option.id) == 1:
+        document.fail(
+            (*where, "id"), f"`id` is the letter {option.id}.", fix="Use a word: letters name places on screen."
+        )
+    _check_words(document, (*where, "text"), option.text)
+    _check_words(document, (*where, "explanation"), option.explanation)
+    known = document.value.misconceptions
+    if option.right and option.misconception:
+        document.fail(
+            (*where, "misconception"), "the right option names a misconception.", fix="Remove the line."
+        )
+    if not option.right and option.misconception not in known:
+        said = f"{option.misconception!r} is not among them" if option.misconception else "it names none"
+        document.fail(
+            (*where, "misconception") if option.misconception else where,
+            f"a wrong option names one of the [misconceptions], and {said}.",
+            fix=f"Known: {', '.join(known) or 'none; write the table first'}.",
+        )
+
+
+def _check_numbers(document: Document[Question], where: Where, variant: Variant) -> None:
+    known: set[str] = set()
+    for index, number in enumerate(variant.number):
+        at = (*where, "number", index)
+        if not number.name.isidentifier() or number.name in known:
+            document.fail(
+                (*at, "name"), f"{number.name!r} is no new name.", fix="Use letters, each name once: t_end"
+            )
+        if bool(number.values) == bool(number.formula):
+            document.fail(
+                at, f"number {number.name} needs either `values` or `formula`.", fix="Keep one of the two."
+            )
+        if len(set(number.values)) != len(number.values) or not all(map(math.isfinite, number.values)):
+            document.fail(
+                (*at, "values"), "`values` repeats one or holds nan or inf.", fix="List finite numbers, each once."
+            )
+        if number.digits not in _DIGITS:
+            document.fail((*at, "digits"), "`digits` must lie between 1 and 6.", fix="Write: digits = 3")
+        if number.formula:
+            _check_formula(document, (*at, "formula"), number.formula, known)
+        known.add(number.name)
+    if variant.cases > MAX_CASES:
+        document.fail(
+            where, f"variant {variant.id} has {variant.cases} cases.", fix=f"List fewer values: {MAX_CASES} at most."
+        )
+
+
+def _check_formula(document: Document[Question], where: Where, text: str, known: set[str]) -> None:
+    try:
+        formula = Formula(text)
+    except FormulaError as error:
+        document.fail(where, f"`formula` cannot be read: {error}.", fix="Write for example: 2 * sqrt(m / k)")
+    unknown = sorted(formula.names - known)
+    if unknown:
+        document.fail(
+            where,
+            f"`formula` uses {unknown[0]}, which is not given above it.",
+            fix=f"Given above: {', '.join(sorted(known)) or 'nothing'}.",
+        )
+
+
+def _check_placeholders(document: Document[Question], where: Where, variant: Variant) -> None:
+    known = {number.name for number in variant.number}
+    texts: list[tuple[Where, str]] = [((*where, "prompt"), variant.prompt)]
+    for index, option in enumerate(variant.option):
+        texts += [((*where, "option", index, key), getattr(option, key)) for key in ("text", "explanation")]
+    used: set[str] = set()
+    for at, text in texts:
+        names = placeholders(text)
+        if (stray := next((name for name in names if name not in known), None)) is not None:
+            document.fail(
+                at, f"{{{stray}}} names no number.", fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}."
+            )
+        if re.search(r"[{}]", _PLACEHOLDER.sub("", text)):
+            document.fail(at, "a brace stands alone.", fix="Braces hold the name of a number: {h}.")
+        used.update(names)
+    for number in variant.number:
+        if number.formula:
+            used |= Formula(number.formula).names
+    for index, number in enumerate(variant.number):
+        if number.name not in used:
+            document.fail(
+                (*where, "number", index),
+                f"number {number.name} is used nowhere.",
+                fix="Use it in a text or a formula, or remove it.",
+            )
+
+
+def _check_slug(document: Document[Any], where: Where, name: str, kind: str) -> None:
+    if not _SLUG.fullmatch(name):
+        document.fail(
+            where,
+            f"{name!r} is no name of a {kind}.",
+            fix="Use lower-case words joined by hyphens: looks-are-everything",
+        )
+
+
+def _check_words(document: Document[Any], where: Where, text: str) -> None:
+    if not text.strip():
+        document.fail(where, f"`{where[-1]}` is empty.", fix="Fill it in.")
+
+
+def _check_distinct(document: Document[Any], where: Where, names: list[str], kind: str) -> None:
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            document.fail((*where, index), f"{kind} {name} is there twice.", fix="Rename one of the two.")

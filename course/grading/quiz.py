@@ -1,0 +1,224 @@
+"""The quiz records of a submission, scored again.
+
+A record says with which seed a student was asked what, and what was answered. Only that is used: the
+questions are posed again from the seed and scored here, and the score the record claims must agree. A record
+that does not hold together (unknown questions or options, answers missing, a claim that differs) makes the
+quiz of that student ``ungradable: quiz_record_inconsistent``; nothing else of the submission suffers.
+
+Of several attempts the best one counts. Two with the same seed are the same questions, and the second was
+answered by someone who had read the explanations: only the first of each seed counts.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import msgspec
+
+from course.errors import ContentError, UngradableError
+from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.progress.quiz import MAX_RECORDS
+from course.quizzing.attempt import Result, mark, needed
+from course.quizzing.bank import MAX_SEED, Bank
+
+if TYPE_CHECKING:
+    from course.quizzing.attempt import Marked
+
+__all__ = ["EXERCISE_ID", "GRADER_REVISION", "QuizScore", "grade_quiz", "quiz_version", "record_sha256", "score_record"]
+
+#: What the quiz is called among the exercises of a gradebook; no exercise may have this id.
+EXERCISE_ID = "quiz"
+#: Raised when the way records are scored changes; part of the grader's version.
+GRADER_REVISION = 1
+
+CODE = "quiz_record_inconsistent"
+
+_Slug = Annotated[str, msgspec.Meta(pattern=r"^[a-z][a-z0-9-]{0,59}$")]
+
+
+class _Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One attempt as ``course submit`` writes it."""
+
+    seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)]
+    version: Annotated[str, msgspec.Meta(max_length=60)]
+    finished_at: Annotated[str, msgspec.Meta(max_length=60)]
+    questions: Annotated[tuple[_Slug, ...], msgspec.Meta(max_length=100)]
+    answers: Annotated[dict[_Slug, _Slug], msgspec.Meta(max_length=100)]
+    score: Annotated[int, msgspec.Meta(ge=0, le=100)]
+
+
+_Records = Annotated[tuple[_Record, ...], msgspec.Meta(max_length=MAX_RECORDS)]
+
+
+@dataclass(frozen=True, slots=True)
+class QuizScore:
+    """The attempt that counts.
+
+    Attributes:
+        seed: of that attempt.
+        finished_at: when the student's machine says it was finished; believed for display only.
+        attempts: how many were handed in.
+        repeated: how many of them did not count because their seed came earlier.
+    """
+
+    result: Result
+    seed: int
+    version: str
+    finished_at: str
+    attempts: int
+    repeated: int
+
+
+def score_record(bank: Bank, record: object) -> QuizScore | None:
+    """Score the attempts of one student again; None if there are none.
+
+    Args:
+        bank: the questions of the course that grades.
+        record: what ``submission.json`` has under "quiz", exactly as JSON gave it; it may be anything.
+
+    Raises:
+        UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
+    """
+    attempts = _read(record)
+    if not attempts:
+        return None
+    scores: dict[int, QuizScore] = {}
+    for number, attempt in enumerate(attempts, start=1):
+        result = _score(bank, attempt, f"Attempt {number} of the quiz")
+        kept = QuizScore(result, attempt.seed, attempt.version, attempt.finished_at, len(attempts), 0)
+        scores.setdefault(attempt.seed, kept)
+    best = max(scores.values(), key=lambda score: score.result.score)
+    return QuizScore(
+        best.result, best.seed, best.version, best.finished_at, len(attempts), len(attempts) - len(scores)
+    )
+
+
+def grade_quiz(bank: Bank, record: object) -> Verdict | None:
+    """The verdict on a student's quiz, in the form every export knows; None if no attempt was handed in.
+
+    One public check and one point a question; a wrong answer's diagnosis is its misconception. No student
+    code runs, so ``isolation`` is empty.
+    """
+    total = len(bank.ids)
+    try:
+        score = score_record(bank, record)
+    except UngradableError as error:
+        return _verdict(total, state="ungradable", error=Problem(error.code, error.message, error.help))
+    except ContentError as error:
+        # A fault of the question files is ours, and never a student's zero.
+        return _verdict(total, state="grader_error", error=Problem(error.code, error.message, error.help))
+    if score is None:
+        return None
+    repeated = f", {score.repeated} of them with questions already seen" if score.repeated else ""
+    said = f"Best of {score.attempts} attempts{repeated}." if score.attempts > 1 else ""
+    return _verdict(
+        total,
+        score=score.result.score,
+        checks=tuple(_check(marked, score.seed) for marked in score.result.marked),
+        warnings=(said,) if said else (),
+    )
+
+
+def record_sha256(record: object) -> str:
+    """Digest of a record: what a gradebook keys the result by."""
+    try:
+        text = json.dumps(record, sort_keys=True, separators=(",", ":"))
+    except (TypeError, ValueError, RecursionError):
+        text = "unreadable"
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def quiz_version(bank: Bank) -> str:
+    """The grader's version for the quiz: changes with any question file or with the way of scoring."""
+    return hashlib.sha256(f"{GRADER_REVISION}/{bank.digest}".encode()).hexdigest()
+
+
+def _read(record: object) -> tuple[_Record, ...]:
+    try:
+        return msgspec.convert(record, _Records)
+    except (msgspec.ValidationError, UnicodeError, RecursionError, OverflowError) as error:
+        # What msgspec says names places and types of our own; anything quoted from the record is escaped.
+        raise _inconsistent(f"The quiz record is malformed ({ascii(str(error))[1:-1][:200]}).") from None
+
+
+def _score(bank: Bank, attempt: _Record, which: str) -> Result:
+    if tuple(sorted(attempt.questions)) != tuple(sorted(bank.ids)):
+        strange = sorted(set(attempt.questions) ^ set(bank.ids))
+        named = f": {', '.join(strange[:5])}" if strange else ""
+        raise _inconsistent(f"{which} is not about the questions of this quiz{named}.", attempt.version)
+    missing = sorted(set(bank.ids) - set(attempt.answers))
+    if missing:
+        raise _inconsistent(f"{which} has no answer to {missing[0]}.", attempt.version)
+    if len(attempt.answers) > len(bank.ids):
+        strange = sorted(set(attempt.answers) - set(bank.ids))
+        raise _inconsistent(f"{which} answers {strange[0]}, which was not asked.", attempt.version)
+    posed = bank.pose(attempt.seed)
+    for question in posed:
+        given = attempt.answers[question.question]
+        if given not in {choice.id for choice in question.choices}:
+            raise _inconsistent(
+                f"{which} answers {question.question} with {given!r}, which seed {attempt.seed} does not offer.",
+                attempt.version,
+            )
+    result = mark(posed, attempt.answers)
+    if result.score != attempt.score:
+        raise _inconsistent(
+            f"{which} claims {attempt.score} of {result.total}, and its answers score {result.score}.",
+            attempt.version,
+        )
+    return result
+
+
+def _inconsistent(message: str, version: str = "") -> UngradableError:
+    made = f" The attempt says it was made with version {version!a} of the course." if version else ""
+    return UngradableError(
+        message,
+        help="Ask the student to run `course submit` again and upload the zip unchanged; where the quiz changed "
+        f"in between, grade with the version it was taken with.{made}",
+        code=CODE,
+    )
+
+
+def _check(marked: Marked, seed: int) -> CheckResult:
+    posed, chosen = marked.posed, marked.chosen
+    return CheckResult(
+        id=posed.question,
+        title=posed.title,
+        task=EXERCISE_ID,
+        status=Status.PASS if marked.right else Status.FAIL,
+        visibility=Visibility.PUBLIC,
+        points=float(marked.right),
+        max_points=1.0,
+        input={"seed": seed, "variant": posed.variant},
+        expected=posed.key.id,
+        actual=chosen.id,
+        diagnosis=None if marked.right else chosen.misconception.replace("-", "_").upper(),
+        message="" if marked.right else f"Chosen: {chosen.text}",
+        help="" if marked.right else chosen.explanation,
+    )
+
+
+def _verdict(
+    total: int,
+    *,
+    state: str = "graded",
+    score: int = 0,
+    checks: tuple[CheckResult, ...] = (),
+    error: Problem | None = None,
+    warnings: tuple[str, ...] = (),
+) -> Verdict:
+    return Verdict(
+        exercise=EXERCISE_ID,
+        scope="full",
+        state=state,
+        score=float(score),
+        max_score=float(total),
+        passed=state == "graded" and score >= needed(total),
+        checks=checks,
+        isolation="",
+        error=error,
+        warnings=warnings,
+    )

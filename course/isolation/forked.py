@@ -1,0 +1,275 @@
+"""Linux, L3 and L2: workers forked from a warm zygote, each ended by a pidfd."""
+
+from __future__ import annotations
+
+import array
+import contextlib
+import json
+import os
+import select
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from course.isolation import launch
+from course.isolation.failures import IsolationError
+from course.isolation.levels import MAX_OUTPUT, START_TIMEOUT, Exit, Level
+
+if TYPE_CHECKING:
+    from course.isolation.levels import Handle, Limits
+    from course.isolation.view import View
+
+__all__ = ["ZygoteSpawner"]
+
+_INSIDE = "/course-worker"  # where the flat files appear inside bubblewrap
+_PACKAGES = "/packages"
+
+
+class ZygoteSpawner:
+    """Linux: forks workers from a warm zygote and holds a pidfd of each."""
+
+    def __init__(self, level: Level, view: View, imports: tuple[str, ...], limits: Limits) -> None:
+        self.level = level
+        self._view = view
+        self._imports = imports
+        self._limits = limits
+        self._process: subprocess.Popen[bytes] | None = None
+        self._start()
+
+    def _start(self) -> None:
+        self._folder = Path(tempfile.mkdtemp(prefix="course-zygote-"))
+        try:
+            launch.copy_flat_files(self._folder)
+            self._start_zygote(os.getuid() == 0)
+        except BaseException:
+            self.close()
+            raise
+
+    def _start_zygote(self, root: bool) -> None:
+        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        config: dict[str, Any] = {
+            "control": theirs.fileno(),
+            "level": self.level.value,
+            "imports": list(self._imports),
+            "limits": vars(self._limits),
+            "become_nobody": root and (self.level is Level.L3 or _open_to_others(self._view)),
+        }
+        if self.level is Level.L3:
+            # Nothing to list as readable: the root is built of what is.
+            self._scratch = "/tmp"
+            config |= {"path": [_INSIDE, _PACKAGES], "readable": [], "workdir": self._scratch}
+            inside = launch.command(self._view, _INSIDE, config)
+            command = [*_bubblewrap(self._view, self._folder, root), *inside]
+        else:
+            scratch = self._folder / "scratch"
+            scratch.mkdir(mode=0o711)
+            self._scratch = str(scratch)
+            readable = [str(path) for path in (*self._view.expanded(), self._folder)]
+            path = [str(self._folder), *sorted({str(entry.parent) for entry in self._view.packages})]
+            config |= {"path": path, "readable": readable, "workdir": self._scratch}
+            if config["become_nobody"]:
+                self._folder.chmod(0o711)
+            command = launch.command(self._view, str(self._folder), config)
+        with theirs, (self._folder / "stderr").open("wb") as errors:
+            self._process = subprocess.Popen(
+                command,
+                pass_fds=(theirs.fileno(),),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=errors,
+                env=launch.environment(),
+                cwd="/",
+            )
+        self._control.settimeout(START_TIMEOUT)
+        self._check_start(self._view)
+
+    def _check_start(self, view: View) -> None:
+        """An interpreter may silently load another library than its own: compare what the zygote reports."""
+        try:
+            hello, _ = self._receive()
+        except (OSError, ValueError) as error:
+            raise IsolationError(f"the zygote did not start: {self._stderr() or error}") from None
+        expected = list(sys.version_info[:3])
+        if Path(hello["prefix"]) != view.prefix or hello["version"] != expected:
+            raise IsolationError(f"the zygote runs another Python: {hello['prefix']}, expected {view.prefix}")
+        roots = [Path(_PACKAGES), *view.packages]
+        if not any(Path(hello["numpy"]).is_relative_to(root) for root in roots):
+            raise IsolationError(f"the zygote found another numpy: {hello['numpy']}")
+
+    def _stderr(self) -> str:
+        text = (self._folder / "stderr").read_text("utf-8", "replace").strip()
+        return text.splitlines()[-1] if text else ""
+
+    def _send(self, message: dict[str, Any], descriptors: tuple[int, ...] = ()) -> None:
+        rights = (
+            [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", descriptors))] if descriptors else []
+        )
+        self._control.sendmsg([json.dumps(message).encode()], rights)
+
+    def _receive(self) -> tuple[dict[str, Any], int | None]:
+        message, ancillary, _, _ = self._control.recvmsg(4096, socket.CMSG_LEN(4))
+        if not message:
+            raise OSError("the zygote ended")
+        received = array.array("i")
+        for _, _, data in ancillary:
+            received.frombytes(data[: len(data) - len(data) % received.itemsize])
+        return json.loads(message), received[0] if received else None
+
+    def spawn(self) -> Handle:
+        try:
+            return self._fork()
+        except OSError as error:
+            # The zygote is gone: the system may end any process when memory runs out. Start another, once.
+            cause = self._stderr() or str(error)
+        self.close()
+        self._start()
+        try:
+            return self._fork()
+        except OSError:
+            raise IsolationError(f"the zygote does not answer: {cause}") from None
+
+    def _fork(self) -> Handle:
+        ours, theirs = socket.socketpair()
+        output = os.memfd_create("output", os.MFD_CLOEXEC)
+        workdir = self._scratch
+        try:
+            if self.level is Level.L2:
+                workdir = tempfile.mkdtemp(dir=self._scratch)
+                Path(workdir).chmod(
+                    0o777
+                )  # inside a folder only its owner can list; the worker may be nobody
+            with theirs:
+                self._send({"workdir": workdir}, (theirs.fileno(), output))
+                answer, pidfd = self._receive()
+            if pidfd is None:
+                raise IsolationError(f"the zygote could not fork: {answer.get('error')}")
+        except BaseException:
+            ours.close()
+            os.close(output)
+            raise
+        return _ForkedHandle(ours, answer["pid"], pidfd, output, workdir, self)
+
+    def reap(self, pid: int) -> Exit:
+        """Collect a worker that has ended.
+
+        Raises:
+            IsolationError: the zygote, its parent, is gone too.
+        """
+        try:
+            self._send({"reap": pid})
+            answer, _ = self._receive()
+        except (OSError, ValueError) as error:
+            raise IsolationError(f"the zygote does not answer: {self._stderr() or error}") from None
+        status = answer["status"]
+        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, answer["cpu_s"])
+
+    def close(self) -> None:
+        if self._process is not None:
+            with contextlib.suppress(OSError):
+                self._control.close()  # the zygote ends at end of file, and all it started with it
+            try:
+                self._process.wait(2)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+            self._process = None
+        launch.remove_tree(self._folder)
+
+
+def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
+    """The command that builds a root of nothing but the view and starts a process in it.
+
+    Raises:
+        IsolationError: there is no bubblewrap.
+    """
+    binary = shutil.which("bwrap")
+    if binary is None:
+        raise IsolationError("bubblewrap is not installed")
+    command = [
+        binary,
+        "--unshare-pid",
+        "--unshare-net",
+        "--unshare-ipc",
+        "--unshare-uts",
+        "--unshare-cgroup-try",
+    ]
+    command += ["--hostname", "course", "--die-with-parent", "--new-session"]
+    if not root:
+        # Not "--dev": it would nest a second user namespace, in which these capabilities are void.
+        command += ["--unshare-user", "--cap-add", "CAP_SYS_ADMIN", "--cap-add", "CAP_SETPCAP"]
+    for above in _folders_above(view.readable):
+        # Made by name: those that a bind makes on its way are closed to everyone but their owner.
+        command += ["--perms", "0755", "--dir", str(above)]
+    for path in view.readable:
+        if path.is_symlink():
+            command += ["--symlink", os.readlink(path), str(path)]  # noqa: PTH115 - the text of the link
+        else:
+            bind = "--dev-bind" if path.is_relative_to("/dev") else "--ro-bind"
+            command += [bind, str(path), str(path)]
+    for path in view.masked:
+        command += ["--perms", "0755", "--tmpfs", str(path)]
+    command += ["--perms", "0755", "--dir", _PACKAGES]
+    for path in view.packages:
+        command += ["--ro-bind", str(path), f"{_PACKAGES}/{path.name}"]
+    for path in view.masked:
+        command += ["--remount-ro", str(path)]
+    command += ["--ro-bind", str(folder), _INSIDE, "--proc", "/proc", "--tmpfs", "/tmp"]
+    return [*command, "--remount-ro", "/tmp", "--remount-ro", "/", "--chdir", "/", "--"]
+
+
+def _folders_above(paths: tuple[Path, ...]) -> list[Path]:
+    """Folders that lead to these and are not inside one of them, outermost first."""
+    above = {parent for path in paths for parent in path.parents}
+    inside = {folder for folder in above if any(folder.is_relative_to(path) for path in paths)}
+    return sorted(above - inside - {Path("/")})
+
+
+def _open_to_others(view: View) -> bool:
+    """Whether an unprivileged user can reach the interpreter (it may lie below root's own home)."""
+    for path in (view.interpreter, *view.packages):
+        for folder in path.parents:
+            if not folder.stat().st_mode & 0o001:
+                return False
+    return True
+
+
+class _ForkedHandle:
+    """A worker forked by the zygote, ended by its pidfd."""
+
+    def __init__(
+        self, sock: socket.socket, pid: int, pidfd: int, output: int, workdir: str, owner: ZygoteSpawner
+    ) -> None:
+        self.sock = sock
+        self._pid = pid
+        self._pidfd = pidfd
+        self._output = output
+        self._workdir = workdir
+        self._owner = owner
+        self._exit: Exit | None = None
+
+    def output(self) -> str:
+        return os.pread(self._output, MAX_OUTPUT, 0).decode("utf-8", "replace")
+
+    def finish(self) -> Exit:
+        if self._exit is None:
+            ended, _, _ = select.select([self._pidfd], [], [], 0)
+            if not ended:
+                with contextlib.suppress(ProcessLookupError):
+                    signal.pidfd_send_signal(self._pidfd, signal.SIGKILL)
+                ended, _, _ = select.select([self._pidfd], [], [], START_TIMEOUT)
+                if not ended:
+                    raise IsolationError("a worker does not end after SIGKILL")
+            try:
+                self._exit = self._owner.reap(self._pid)
+            finally:
+                self.sock.close()
+                os.close(self._pidfd)
+                os.close(self._output)
+                if self._owner.level is Level.L2:
+                    launch.remove_tree(Path(self._workdir))
+        return self._exit

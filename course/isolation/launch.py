@@ -1,0 +1,66 @@
+"""What every way of starting a worker shares: the files beside it, its command, cleaning up after it."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from course.isolation.view import View
+
+__all__ = ["command", "copy_flat_files", "environment", "remove_tree"]
+
+_FLAT_FILES = ("isolation/wire.py", "isolation/worker.py", "isolation/lockdown.py", "isolation/zygote.py")
+_RHS_FILE = "physics/systems.py"
+
+
+def copy_flat_files(target: Path) -> None:
+    package = Path(__file__).resolve().parents[1]
+    for name in (*_FLAT_FILES, _RHS_FILE):
+        shutil.copy(package / name, target)
+
+
+def command(view: View, folder: str, config: dict[str, Any]) -> list[str]:
+    # -S and -s: no site-packages, so nothing but the declared packages on the path; -P: no current folder.
+    flags = ["-S", "-s", "-P", "-B"]
+    return [str(view.interpreter), *flags, f"{folder}/zygote.py", json.dumps(config)]
+
+
+def environment() -> dict[str, str]:
+    kept = {
+        name: os.environ[name]
+        for name in ("SYSTEMROOT", "PATH")
+        if name in os.environ and sys.platform == "win32"
+    }
+    threads = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "VECLIB_MAXIMUM")}
+    return {**kept, **threads, "LANG": "C.UTF-8", "HOME": "/nonexistent", "PYTHONHASHSEED": "0"}
+
+
+def remove_tree(folder: Path) -> None:
+    """Delete a folder that a stranger filled: of any depth, with any permissions, with links to anywhere.
+
+    Folders inside folders are moved up before they are emptied, so that neither the length of a path nor
+    recursion sets a limit.
+    """
+    moved = 0
+    pending = [folder]
+    with contextlib.suppress(OSError):
+        while pending:
+            here = pending.pop()
+            here.chmod(0o700)
+            for entry in list(os.scandir(here)):
+                if entry.is_dir(follow_symlinks=False):
+                    moved += 1
+                    pending.append(folder / f"-{moved}")
+                    os.chmod(entry.path, 0o700)  # noqa: PTH101 - moving a folder needs to write to it
+                    os.rename(entry.path, pending[-1])  # noqa: PTH104
+                else:
+                    os.unlink(entry.path)  # noqa: PTH108
+            if here != folder:
+                here.rmdir()
+    shutil.rmtree(folder, ignore_errors=True)

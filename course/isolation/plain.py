@@ -1,0 +1,128 @@
+"""L1, on any system: a plain process per worker."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from course.isolation import launch
+from course.isolation.failures import IsolationError
+from course.isolation.levels import MAX_OUTPUT, Exit, Level
+
+if TYPE_CHECKING:
+    from course.isolation.levels import Handle, Limits
+    from course.isolation.view import View
+
+__all__ = ["ProcessSpawner"]
+
+
+class ProcessSpawner:
+    """Any system: a plain process per worker, the next one started ahead so that a restart costs no wait."""
+
+    def __init__(self, view: View, imports: tuple[str, ...], limits: Limits) -> None:
+        self.level = Level.L1
+        self._folder = Path(tempfile.mkdtemp(prefix="course-worker-"))
+        launch.copy_flat_files(self._folder)
+        self._view = view
+        self._imports = imports
+        self._limits = limits
+        self._standby: _ProcessHandle | None = None
+
+    def _start(self) -> _ProcessHandle:
+        workdir = Path(tempfile.mkdtemp(dir=self._folder))
+        packages = sorted({str(entry.parent) for entry in self._view.packages})
+        config: dict[str, Any] = {
+            "level": "L1",
+            "imports": list(self._imports),
+            "limits": vars(self._limits),
+            "path": [str(self._folder), *packages],
+            "workdir": str(workdir),
+        }
+        ours, theirs = socket.socketpair()
+        with theirs:
+            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir)
+
+    def spawn(self) -> Handle:
+        handle = self._standby or self._start()
+        self._standby = None
+        try:
+            self._standby = self._start()
+        except OSError as error:
+            handle.finish()
+            raise IsolationError(f"a worker process could not be started: {error}") from None
+        return handle
+
+    def close(self) -> None:
+        if self._standby is not None:
+            self._standby.finish()
+            self._standby = None
+        launch.remove_tree(self._folder)
+
+
+class _ProcessHandle:
+    """A worker that is a plain child process."""
+
+    def __init__(
+        self,
+        ours: socket.socket,
+        theirs: socket.socket,
+        view: View,
+        folder: str,
+        config: dict[str, Any],
+        workdir: Path,
+    ) -> None:
+        self.sock = ours
+        self._workdir = workdir
+        # Opened twice and at once: later that name may be anything the student's code put there.
+        with (workdir / ".output").open("wb") as output:
+            self._output = (workdir / ".output").open("rb")
+            streams: dict[str, Any] = {"stdout": output, "stderr": output, "env": launch.environment()}
+            if sys.platform == "win32":
+                self._process = self._start_windows(theirs, view, folder, config, streams)
+            else:
+                self._process = subprocess.Popen(
+                    launch.command(view, folder, {**config, "control": theirs.fileno()}),
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                    stdin=subprocess.DEVNULL,
+                    **streams,
+                )
+
+    @staticmethod
+    def _start_windows(
+        theirs: socket.socket, view: View, folder: str, config: dict[str, Any], streams: dict[str, Any]
+    ) -> subprocess.Popen[bytes]:
+        # A socket cannot be inherited there; it is shared with the child by its process id, over stdin.
+        shared_size = len(theirs.share(os.getpid()))  # type: ignore[attr-defined]
+        command = launch.command(view, folder, {**config, "share": shared_size})
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, **streams)
+        assert process.stdin is not None
+        process.stdin.write(theirs.share(process.pid))  # type: ignore[attr-defined]
+        process.stdin.close()
+        return process
+
+    def output(self) -> str:
+        if self._output.closed:
+            return ""
+        self._output.seek(0)
+        return self._output.read(MAX_OUTPUT).decode("utf-8", "replace")
+
+    def finish(self) -> Exit:
+        if sys.platform != "win32":
+            # What it started goes with it, also if it ended by itself; until it is waited for, its number
+            # cannot have become another's.
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.kill()
+        code = self._process.wait()
+        self.sock.close()
+        self._output.close()
+        launch.remove_tree(self._workdir)
+        return Exit(max(code, 0), max(-code, 0))

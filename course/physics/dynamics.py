@@ -1,0 +1,243 @@
+"""A planar arm of two links: forward dynamics, inverse dynamics, and motion without forces.
+
+    forward     joint torques -> joint accelerations       what a simulator asks
+    inverse     joint accelerations -> joint torques       what a controller asks
+    kinematic   a path of the hand -> joint angles         what a planner asks; no masses, no forces
+
+Angles: ``q = (q1, q2)`` in rad; q1 from the x axis, counter-clockwise, q2 from the first link. Gravity points
+along -y. All functions take leading axes: q of shape (..., 2).
+
+The two directions are derived independently, the forward one from Lagrange's equations, the inverse one link
+by link from Newton's and Euler's, so that each checks the other.
+
+Source: Craig, Introduction to Robotics, 3rd edition, 2005, chapter 6; Featherstone, Rigid Body Dynamics
+Algorithms, 2008, chapter 5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+__all__ = ["HandPath", "PassiveArm", "TwoLinkArm", "smooth_share"]
+
+
+@dataclass(frozen=True, slots=True)
+class TwoLinkArm:
+    """Two links in a vertical plane, hinged at the origin and at the elbow.
+
+    Attributes:
+        length1, length2: m.
+        mass1, mass2: kg.
+        centre1, centre2: from each link's hinge to its centre of mass, m.
+        inertia1, inertia2: about each link's centre of mass, kg m².
+        g: m/s².
+    """
+
+    length1: float = 1.0
+    length2: float = 1.0
+    mass1: float = 1.0
+    mass2: float = 1.0
+    centre1: float = 0.5
+    centre2: float = 0.5
+    inertia1: float = 1.0 / 12.0
+    inertia2: float = 1.0 / 12.0
+    g: float = 9.81
+
+    def __post_init__(self) -> None:
+        for name in ("length1", "length2", "mass1", "mass2"):
+            if not 0 < getattr(self, name) < float("inf"):
+                raise ValueError(f"{name} must be a positive number.")
+
+    @classmethod
+    def double_pendulum(cls, length: float = 1.0, mass: float = 1.0, g: float = 9.81) -> TwoLinkArm:
+        """Two equal point masses at the ends of two equal rods without mass."""
+        return cls(length, length, mass, mass, length, length, 0.0, 0.0, g)
+
+    def mass_matrix(self, q: ArrayLike) -> Array:
+        """How torques and accelerations hang together at rest, kg m², shape (..., 2, 2)."""
+        q = np.asarray(q, dtype=float)
+        swing = self.mass2 * self.length1 * self.centre2 * np.cos(q[..., 1])
+        far = self.inertia2 + self.mass2 * self.centre2**2 + 0.0 * swing
+        near = self.inertia1 + self.mass1 * self.centre1**2 + self.mass2 * self.length1**2
+        rows = [[near + far + 2 * swing, far + swing], [far + swing, far]]
+        return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+    def bias(self, q: ArrayLike, v: ArrayLike) -> Array:
+        """Torques that hold all accelerations at 0: centrifugal, Coriolis and weight, N m, shape (..., 2)."""
+        q, v = np.asarray(q, dtype=float), np.asarray(v, dtype=float)
+        pull = self.mass2 * self.length1 * self.centre2 * np.sin(q[..., 1])
+        spin1, spin2 = v[..., 0], v[..., 1]
+        weight2 = self.mass2 * self.g * self.centre2 * np.cos(q[..., 0] + q[..., 1])
+        weight1 = (self.mass1 * self.centre1 + self.mass2 * self.length1) * self.g * np.cos(q[..., 0])
+        shoulder = -pull * spin2 * (2 * spin1 + spin2) + weight1 + weight2
+        return np.stack([shoulder, pull * spin1**2 + weight2], axis=-1)
+
+    def forward(self, q: ArrayLike, v: ArrayLike, torque: ArrayLike) -> Array:
+        """Forward dynamics: joint accelerations (rad/s²) from joint torques (N m); all of shape (..., 2)."""
+        rest = np.asarray(torque, dtype=float) - self.bias(q, v)
+        m = self.mass_matrix(q)
+        determinant = m[..., 0, 0] * m[..., 1, 1] - m[..., 0, 1] ** 2
+        first = (m[..., 1, 1] * rest[..., 0] - m[..., 0, 1] * rest[..., 1]) / determinant
+        second = (m[..., 0, 0] * rest[..., 1] - m[..., 0, 1] * rest[..., 0]) / determinant
+        return np.stack([first, second], axis=-1)
+
+    def inverse(self, q: ArrayLike, v: ArrayLike, acceleration: ArrayLike) -> Array:
+        """Inverse dynamics: joint torques (N m) that make joint accelerations (rad/s²); shape (..., 2).
+
+        Outward, link by link, to find how each centre of mass accelerates; inward again, to find what each
+        hinge must do about it.
+        """
+        q, v, a = (np.asarray(x, dtype=float) for x in (q, v, acceleration))
+        angle1, angle2 = q[..., 0], q[..., 0] + q[..., 1]
+        spin1, spin2 = v[..., 0], v[..., 0] + v[..., 1]
+        turn1, turn2 = a[..., 0], a[..., 0] + a[..., 1]
+        up = np.array([0.0, self.g])  # standing still in gravity is accelerating upwards without it
+        elbow = up + _swing(self.length1, angle1, spin1, turn1)
+        force2 = self.mass2 * (elbow + _swing(self.centre2, angle2, spin2, turn2))
+        force1 = self.mass1 * (up + _swing(self.centre1, angle1, spin1, turn1))
+        torque2 = self.inertia2 * turn2 + _moment(self.centre2, angle2, force2)
+        torque1 = (
+            self.inertia1 * turn1
+            + _moment(self.centre1, angle1, force1)
+            + _moment(self.length1, angle1, force2)
+            + torque2
+        )
+        return np.stack([torque1, torque2], axis=-1)
+
+    def energy(self, q: ArrayLike, v: ArrayLike) -> Array:
+        """Kinetic and potential energy together, J, shape (...); 0 at rest, level with the shoulder."""
+        q, v = np.asarray(q, dtype=float), np.asarray(v, dtype=float)
+        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", v, self.mass_matrix(q), v)
+        height1 = self.centre1 * np.sin(q[..., 0])
+        height2 = self.length1 * np.sin(q[..., 0]) + self.centre2 * np.sin(q[..., 0] + q[..., 1])
+        return np.asarray(kinetic + self.g * (self.mass1 * height1 + self.mass2 * height2))
+
+    def hand(self, q: ArrayLike) -> Array:
+        """Where the end of the second link is, m, shape (..., 2)."""
+        q = np.asarray(q, dtype=float)
+        return self.elbow(q) + _along(self.length2, q[..., 0] + q[..., 1])
+
+    def elbow(self, q: ArrayLike) -> Array:
+        """Where the elbow is, m, shape (..., 2)."""
+        return _along(self.length1, np.asarray(q, dtype=float)[..., 0])
+
+    def jacobian(self, q: ArrayLike) -> Array:
+        """Hand velocity per joint velocity, m/rad, shape (..., 2, 2)."""
+        q = np.asarray(q, dtype=float)
+        far = _along(self.length2, q[..., 0] + q[..., 1])
+        whole = self.hand(q)
+        return np.stack([_left(whole), _left(far)], axis=-1)
+
+    def reach(self, hand: ArrayLike, *, elbow_up: bool = False) -> Array:
+        """Joint angles that put the hand somewhere (inverse kinematics), rad, shape (..., 2).
+
+        Args:
+            hand: the place, m, shape (..., 2).
+            elbow_up: the other one of the two ways to get there.
+
+        Raises:
+            ValueError: the place is out of reach.
+        """
+        hand = np.asarray(hand, dtype=float)
+        distance_sq = np.sum(hand**2, axis=-1)
+        cosine = (distance_sq - self.length1**2 - self.length2**2) / (2 * self.length1 * self.length2)
+        if np.any(np.abs(cosine) > 1 + 1e-12):
+            near, far = abs(self.length1 - self.length2), self.length1 + self.length2
+            raise ValueError(f"The hand reaches places {near:g} m to {far:g} m from the shoulder, not these.")
+        bend = np.arccos(np.clip(cosine, -1.0, 1.0)) * (-1.0 if elbow_up else 1.0)
+        aim = np.arctan2(hand[..., 1], hand[..., 0])
+        lean = np.arctan2(self.length2 * np.sin(bend), self.length1 + self.length2 * np.cos(bend))
+        return np.stack([aim - lean, bend], axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class PassiveArm:
+    """An arm whose joints nothing drives, as a system that any stepper integrates: a double pendulum."""
+
+    arm: TwoLinkArm
+
+    def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:  # noqa: ARG002 - a system takes (t, q, v)
+        """Joint accelerations, rad/s², shape (..., 2)."""
+        return self.arm.forward(q, v, np.zeros(2))
+
+    def params(self) -> dict[str, Any]:
+        """The numbers of the arm, by name."""
+        return asdict(self.arm)
+
+
+@dataclass(frozen=True, slots=True)
+class HandPath:
+    """A straight path of the hand, run through smoothly from rest to rest: kinematics, nothing else.
+
+    Attributes:
+        start, end: m.
+        duration: s.
+    """
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    duration: float
+
+    def hand(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """Place (m), velocity (m/s) and acceleration (m/s²) of the hand; times (...,) give (..., 2)."""
+        line = np.subtract(self.end, self.start)
+        share, rate, change = smooth_share(np.asarray(t, dtype=float) / self.duration)
+        place = np.asarray(self.start) + share[..., None] * line
+        return place, rate[..., None] * line / self.duration, change[..., None] * line / self.duration**2
+
+    def joints(self, arm: TwoLinkArm, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """Angles (rad), velocities and accelerations of the joints that draw the path; shapes (..., 2).
+
+        Raises:
+            ValueError: a part of the path is out of reach.
+        """
+        place, velocity, acceleration = self.hand(t)
+        q = arm.reach(place)
+        j = arm.jacobian(q)
+        v = np.linalg.solve(j, velocity[..., None])[..., 0]
+        far = arm.hand(q) - arm.elbow(q)
+        # d(J v)/dt without the accelerations: every link's end falls inwards as it turns.
+        inward = -(v[..., :1] ** 2) * arm.elbow(q) - (v[..., :1] + v[..., 1:]) ** 2 * far
+        return q, v, np.linalg.solve(j, (acceleration - inward)[..., None])[..., 0]
+
+
+def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:
+    """How far along at the share s of the time, with first and second derivative: the smoothest way.
+
+    The polynomial of degree five that begins and ends at rest without a jerk of the acceleration.
+
+    Source: Flash and Hogan, J. Neuroscience 5, 1985 (minimum jerk).
+    """
+    s = np.clip(np.asarray(s, dtype=float), 0.0, 1.0)
+    share = s**3 * (10 - 15 * s + 6 * s * s)
+    return share, 30 * s**2 * (1 - s) ** 2, 60 * s * (1 - s) * (1 - 2 * s)
+
+
+def _along(length: float, angle: Array) -> Array:
+    """A vector of this length in this direction, shape (..., 2)."""
+    return length * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def _left(vector: Array) -> Array:
+    """The vector turned a quarter counter-clockwise."""
+    return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
+
+
+def _swing(length: float, angle: Array, spin: Array, turn: Array) -> Array:
+    """Acceleration of the end of a turning rod relative to its hinge, m/s²."""
+    rod = _along(length, angle)
+    return turn[..., None] * _left(rod) - spin[..., None] ** 2 * rod
+
+
+def _moment(length: float, angle: Array, force: Array) -> Array:
+    """Torque about the hinge of a force at the end of a rod, N m."""
+    rod = _along(length, angle)
+    return np.asarray(rod[..., 0] * force[..., 1] - rod[..., 1] * force[..., 0])

@@ -1,0 +1,229 @@
+"""Answers from a file: the quiz without a terminal.
+
+TOML, or JSON of the same shape where the name ends in ``.json``::
+
+    format_version = 1     # may be left out
+    seed = 42              # which questions these answers are for; may be left out where --seed is given
+
+    [answers]              # every question once: the option's id, its letter or its number
+    sim-to-real-gap = "model-differs"
+    digital-twin = "c"
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+import tomllib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from course.catalog.toml_lines import LineMap, syntax_error_line
+from course.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from course.quizzing.bank import Bank, Posed
+
+__all__ = ["FORMAT_VERSION", "AnswerFile", "read_answers"]
+
+FORMAT_VERSION = 1
+MAX_BYTES = 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerFile:
+    """A file of answers, as far as it can be read without knowing the questions.
+
+    Attributes:
+        seed: which questions it is for; None if it does not say.
+    """
+
+    path: Path
+    text: str
+    seed: int | None
+    answers: dict[str, Any]
+
+    def fail(self, key: str, problem: str, fix: str, code: str) -> NoReturn:
+        """Raise the UsageError that points at the line of ``key`` (empty: the whole file)."""
+        raise UsageError(f"{self.path}{self._at(key)}: {problem}", help=fix, code=code)
+
+    def choose(self, posed: Sequence[Posed], bank: Bank, seed: int) -> dict[str, str]:
+        """Option ids by question id.
+
+        Args:
+            posed: the questions that are asked, posed with ``seed``.
+
+        Raises:
+            UsageError: an answer is missing, or is to a question or an option that is not there.
+        """
+        self._check_seed(seed)
+        asked = {question.question: question for question in posed}
+        for name in self.answers:
+            if name not in asked:
+                self._unknown_question(name, list(asked), bank)
+        missing = [name for name in asked if name not in self.answers]
+        if missing:
+            self.fail(
+                "answers",
+                f"{_count(len(missing), 'answer')} missing: {', '.join(missing)}.",
+                f'Add a line {missing[0]} = "..." under [answers]; a guess counts like any answer.',
+                "answers_missing",
+            )
+        return {name: self._option(name, asked[name], bank, seed) for name in asked}
+
+    def _check_seed(self, seed: int) -> None:
+        if self.seed is not None and self.seed != seed:
+            self.fail(
+                "seed",
+                f"these answers are for the questions of seed {self.seed}, and those of seed {seed} are asked.",
+                f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}.",
+                "answers_for_other_seed",
+            )
+
+    def _unknown_question(self, name: str, asked: list[str], bank: Bank) -> NoReturn:
+        if name in bank.ids:
+            self.fail(
+                name, f"{name} is not asked now.", f"Remove the line; asked: {', '.join(asked)}.", "question_not_asked"
+            )
+        close = difflib.get_close_matches(name, asked, n=1)
+        fix = f"Did you mean {close[0]}?" if close else f"The questions are {', '.join(asked)}."
+        self.fail(name, f"there is no question {name[:60]!r}.", fix, "question_not_found")
+
+    def _option(self, name: str, posed: Posed, bank: Bank, seed: int) -> str:
+        given = self.answers[name]
+        if isinstance(given, int) and not isinstance(given, bool):
+            given = str(given)
+        if not isinstance(given, str):
+            self.fail(name, f"the answer to {name} is no text.", 'Write an option\'s letter: "b".', "answer_not_text")
+        choice = posed.choice(given)
+        if choice is not None:
+            return choice.id
+        options = ", ".join(f"{choice.letter} ({choice.id})" for choice in posed.choices)
+        if any(given == option.id for variant in _variants(bank, name) for option in variant.option):
+            self.fail(
+                name,
+                f"{given!r} answers {name} as another seed asks it, not as seed {seed} does.",
+                f"Use the file with the questions it was written for, or choose among {options}.",
+                "answers_for_other_seed",
+            )
+        self.fail(name, f"{name} has no option {given[:60]!r}.", f"Choose among {options}.", "option_not_found")
+
+    def _at(self, key: str) -> str:
+        """``:line`` of a key, or nothing."""
+        if self.path.suffix.lower() == ".json":
+            found = re.search(rf"^.*?{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", self.text, re.M | re.S)
+            return f":{self.text.count(chr(10), 0, found.end()) + 1}" if key and found else ""
+        if not key:
+            return ""
+        where = (key,) if key in {"seed", "answers", "format_version"} else ("answers", key)
+        return f":{LineMap(self.text).line(where)}"
+
+
+def read_answers(path: Path) -> AnswerFile:
+    """Read a file of answers.
+
+    Raises:
+        UsageError: it is missing, unreadable, too large, or not of the form above.
+    """
+    text = _read(path)
+    data = _parse_json(path, text) if path.suffix.lower() == ".json" else _parse_toml(path, text)
+    seed = data.get("seed")
+    answers = data.get("answers")
+    file = AnswerFile(path, text, seed, answers if isinstance(answers, dict) else {})
+    version = data.get("format_version", FORMAT_VERSION)
+    if version != FORMAT_VERSION or isinstance(version, bool):
+        file.fail(
+            "format_version",
+            f"format_version is {version!r}, and this program knows {FORMAT_VERSION}.",
+            "Write `format_version = 1`, or install a newer version of the course.",
+            "answers_format",
+        )
+    unknown = sorted(set(data) - {"format_version", "seed", "answers"})
+    if unknown:
+        file.fail(
+            "",
+            f"unknown key {unknown[0]!r} outside of the answers.",
+            'A file has `seed` and a table [answers] with lines like why-simulate = "b".',
+            "answers_format",
+        )
+    if not isinstance(answers, dict):
+        file.fail(
+            "", "there is no table of answers.", 'Add [answers] with lines like why-simulate = "b".', "answers_format"
+        )
+    if seed is not None and (not isinstance(seed, int) or isinstance(seed, bool)):
+        file.fail("seed", "`seed` is no whole number.", "Write: seed = 42", "answers_format")
+    return file
+
+
+def _read(path: Path) -> str:
+    try:
+        with path.open("rb") as handle:
+            data = handle.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise UsageError(
+            f"{path} cannot be read: {error.strerror or error}.",
+            help="Name a file of answers; `course quiz take --questions` prints one to fill in.",
+            code="answers_unreadable",
+        ) from None
+    if len(data) > MAX_BYTES:
+        raise UsageError(
+            f"{path} is larger than {MAX_BYTES:,} bytes.", help="Name a file of answers.", code="answers_format"
+        )
+    try:
+        return data.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise UsageError(
+            f"{path}:{line}: this is not UTF-8 text.", help="Save it as UTF-8.", code="answers_format"
+        ) from None
+
+
+def _parse_toml(path: Path, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        reason = str(error).rsplit(" (at ", 1)[0]
+        raise _syntax(path, syntax_error_line(error, text), f"not valid TOML: {reason}") from None
+    except RecursionError:
+        raise _syntax(path, 1, "nested too deeply") from None
+
+
+def _parse_json(path: Path, text: str) -> dict[str, Any]:
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        names = [name for name, _ in pairs]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise UsageError(
+                f"{path}: {twice[:60]!r} is there twice.", help="Keep one of the two.", code="answers_format"
+            )
+        return dict(pairs)
+
+    try:
+        data = json.loads(text, object_pairs_hook=unique)
+    except json.JSONDecodeError as error:
+        raise _syntax(path, error.lineno, f"not valid JSON: {error.msg}") from None
+    except (RecursionError, ValueError):
+        raise _syntax(path, 1, "not usable JSON") from None
+    if not isinstance(data, dict):
+        raise _syntax(path, 1, "not a JSON object")
+    return data
+
+
+def _syntax(path: Path, line: int, problem: str) -> UsageError:
+    return UsageError(
+        f"{path}:{line}: this is {problem}.",
+        help='Write: seed = 42, then [answers] with lines like why-simulate = "b".',
+        code="answers_format",
+    )
+
+
+def _variants(bank: Bank, name: str) -> Sequence[Any]:
+    return next(d.value.variant for d in bank.documents if d.value.id == name)
+
+
+def _count(number: int, what: str) -> str:
+    return f"1 {what} is" if number == 1 else f"{number} {what}s are"

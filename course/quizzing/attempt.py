@@ -1,0 +1,120 @@
+"""One attempt at the quiz: its mark, its score, and a seed for the next one."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from course.errors import UsageError
+from course.quizzing.bank import MAX_SEED
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from course.quizzing.bank import Bank, Choice, Posed
+
+__all__ = ["PASS_SHARE", "Marked", "Result", "check_seed", "fresh_seed", "mark", "mark_sentence", "needed"]
+
+#: The share of the questions that passes. A fraction: 0.7 as a float is a little less than 7/10.
+PASS_SHARE = Fraction(7, 10)
+
+#: Seeds tried for one that asks everything differently. Four variants each give about one in four.
+_TRIES = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """A question, and what was answered."""
+
+    posed: Posed
+    chosen: Choice
+
+    @property
+    def right(self) -> bool:
+        return self.chosen.right
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A scored attempt; one point a question."""
+
+    marked: tuple[Marked, ...]
+
+    @property
+    def score(self) -> int:
+        return sum(marked.right for marked in self.marked)
+
+    @property
+    def total(self) -> int:
+        return len(self.marked)
+
+    @property
+    def passed(self) -> bool:
+        return self.score >= needed(self.total)
+
+    @property
+    def missed(self) -> tuple[Marked, ...]:
+        return tuple(marked for marked in self.marked if not marked.right)
+
+
+def needed(total: int) -> int:
+    """How many of ``total`` questions must be right: the smallest whole number that reaches the share."""
+    return -(-total * PASS_SHARE.numerator // PASS_SHARE.denominator)
+
+
+def mark_sentence(total: int) -> str:
+    """The pass mark as it is shown: "4 of 5 (80 %) needed: 70 % of 5 is 3.5"."""
+    least, exact = needed(total), float(total * PASS_SHARE)
+    sentence = f"{least} of {total} ({100 * least / total:.3g} %) needed"
+    return f"{sentence}: {100 * float(PASS_SHARE):g} % of {total} is {exact:g}"
+
+
+def mark(posed: Sequence[Posed], answers: Mapping[str, str]) -> Result:
+    """Score answers: option ids (or letters) by question id.
+
+    Raises:
+        KeyError: a question is not answered, or with an option it has not.
+    """
+    marked = []
+    for question in posed:
+        chosen = question.choice(answers[question.question])
+        if chosen is None:
+            raise KeyError(answers[question.question])
+        marked.append(Marked(question, chosen))
+    return Result(tuple(marked))
+
+
+def check_seed(seed: int) -> int:
+    """``seed`` itself.
+
+    Raises:
+        UsageError: it is out of range.
+    """
+    if not 0 <= seed <= MAX_SEED:
+        raise UsageError(
+            f"{seed} is no seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"
+        )
+    return seed
+
+
+def fresh_seed(
+    bank: Bank, seen: Mapping[str, int], draw: Callable[[], int] = lambda: secrets.randbelow(MAX_SEED + 1)
+) -> int:
+    """A seed that asks every question otherwise than it was last asked, as far as there are variants.
+
+    Args:
+        seen: by question id, the seed it was last asked with.
+        draw: gives a random seed.
+    """
+    best, least = draw(), len(bank.ids) + 1
+    last = {name: bank.variant(name, seed) for name, seed in seen.items() if name in bank.ids}
+    for _ in range(_TRIES):
+        seed = draw()
+        repeats = sum(bank.variant(name, seed) == variant for name, variant in last.items())
+        if repeats < least:
+            best, least = seed, repeats
+        if not repeats:
+            break
+    return best

@@ -1,0 +1,279 @@
+"""The bank of questions, and what one seed makes of it.
+
+A seed decides everything a student sees: for each question the variant, its numbers and the order of the
+options. Nothing but SHA-256 is used to draw, so a seed means the same questions on every machine and every
+version of Python, and a grading run can pose an attempt again from its seed alone.
+
+    >>> from course.catalog.load import Catalog
+    >>> bank = Bank.of(Catalog())
+    >>> [posed.question for posed in bank.pose(7)] == list(bank.ids)
+    True
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from course.catalog.formulas import Formula, FormulaError
+from course.catalog.questions import read_questions
+from course.errors import NotFoundError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from course.catalog.load import Catalog
+    from course.catalog.questions import Question, Variant
+    from course.catalog.reading import Document
+
+__all__ = ["LETTERS", "MAX_SEED", "Bank", "Choice", "Posed", "pose_case", "same_answer"]
+
+MAX_SEED = 2**31 - 1
+LETTERS = "abcd"
+
+#: Two numbers closer than this share of the larger one are too close to choose between.
+LEAST_GAP = 0.02
+
+_NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?")
+_WORDLESS = re.compile(r"[\s.;:!?]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One option as it is shown.
+
+    Attributes:
+        letter: its place, "a" first.
+        misconception: of a wrong one, the name of what is behind it; empty for the right one.
+        belief: that misconception in the words of who holds it.
+    """
+
+    letter: str
+    id: str
+    text: str
+    explanation: str
+    right: bool
+    misconception: str
+    belief: str
+
+
+@dataclass(frozen=True, slots=True)
+class Posed:
+    """One question as one seed asks it."""
+
+    question: str
+    title: str
+    variant: str
+    prompt: str
+    choices: tuple[Choice, ...]
+    source: str
+    lesson: str
+
+    @property
+    def key(self) -> Choice:
+        """The choice that is right."""
+        return next(choice for choice in self.choices if choice.right)
+
+    def choice(self, name: str) -> Choice | None:
+        """The choice with this id, letter or number ("1" is "a"); None if there is none."""
+        name = name.strip().lower()
+        return next((c for i, c in enumerate(self.choices, 1) if name in {c.id, c.letter, str(i)}), None)
+
+
+class Bank:
+    """The questions of one course, in their order.
+
+    Args:
+        documents: the files as ``read_questions`` gives them.
+    """
+
+    def __init__(self, documents: Sequence[Document[Question]]) -> None:
+        self.documents = tuple(documents)
+        self._by_id = {document.value.id: document for document in self.documents}
+
+    @classmethod
+    def of(cls, catalog: Catalog) -> Bank:
+        """The bank of a course.
+
+        Raises:
+            ContentError: a question is wrong.
+            NotFoundError: the course has no quiz.
+        """
+        documents = read_questions(catalog.content.quiz)
+        if not documents:
+            raise NotFoundError(
+                "This course has no quiz.",
+                help=f"Its questions would be in {catalog.content.quiz}.",
+                code="quiz_not_found",
+            )
+        return cls(documents)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        return tuple(self._by_id)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of all the question files: changes when any of them does."""
+        total = hashlib.sha256()
+        for document in self.documents:
+            total.update(hashlib.sha256(document.path.read_bytes()).digest())
+        return total.hexdigest()
+
+    def pose(self, seed: int, only: Sequence[str] | None = None) -> tuple[Posed, ...]:
+        """The questions as ``seed`` asks them; ``only`` these, or all.
+
+        Raises:
+            ContentError: a variant's numbers make two of its options the same.
+        """
+        chosen = self.ids if only is None else [name for name in self.ids if name in only]
+        return tuple(self._pose(self._by_id[name], seed) for name in chosen)
+
+    def variant(self, question: str, seed: int) -> str:
+        """Id of the variant that ``seed`` picks for a question."""
+        return self._pick(self._by_id[question].value, seed)[1].id
+
+    def _pick(self, question: Question, seed: int) -> tuple[int, Variant]:
+        index = draw(seed, question.id, "variant") % len(question.variant)
+        return index, question.variant[index]
+
+    def _pose(self, document: Document[Question], seed: int) -> Posed:
+        question = document.value
+        index, variant = self._pick(question, seed)
+        case = draw(seed, question.id, variant.id, "case") % variant.cases
+        posed = pose_case(document, index, case)
+        if (clash := clashing(posed.choices)) is not None:
+            one, other = clash
+            document.fail(
+                ("variant", index, "option", other, "text"),
+                f"in case {case} options {posed.choices[one].id} and {posed.choices[other].id} cannot be told "
+                "apart.",
+                fix="Change a formula, or the values it is computed from.",
+            )
+        shuffled = sorted(posed.choices, key=lambda choice: draw(seed, question.id, variant.id, choice.id))
+        return _replace_choices(posed, shuffled)
+
+
+def draw(seed: int, *words: str) -> int:
+    """A whole number that depends on all of its arguments and nothing else."""
+    return int.from_bytes(hashlib.sha256("/".join((str(seed), *words)).encode()).digest()[:8], "big")
+
+
+def pose_case(document: Document[Question], variant_index: int, case: int) -> Posed:
+    """A variant with the numbers of one of its cases, options in the order of the file.
+
+    Raises:
+        ContentError: a formula has no finite value there.
+    """
+    question = document.value
+    variant = question.variant[variant_index]
+    shown = _numbers(document, variant_index, case)
+    choices = tuple(
+        Choice(
+            letter=LETTERS[index],
+            id=option.id,
+            text=_fill(option.text, shown),
+            explanation=_fill(option.explanation, shown),
+            right=option.right,
+            misconception=option.misconception,
+            belief=question.misconceptions.get(option.misconception, ""),
+        )
+        for index, option in enumerate(variant.option)
+    )
+    return Posed(
+        question=question.id,
+        title=question.title,
+        variant=variant.id,
+        prompt=_fill(variant.prompt, shown),
+        choices=choices,
+        source=variant.source,
+        lesson=question.lesson,
+    )
+
+
+def _replace_choices(posed: Posed, choices: Sequence[Choice]) -> Posed:
+    from dataclasses import replace
+
+    placed = tuple(replace(choice, letter=letter) for choice, letter in zip(choices, LETTERS, strict=True))
+    return replace(posed, choices=placed)
+
+
+def _numbers(document: Document[Question], variant_index: int, case: int) -> dict[str, str]:
+    """The numbers of one case, as they are shown."""
+    values: dict[str, float] = {}
+    shown: dict[str, str] = {}
+    for index, number in enumerate(document.value.variant[variant_index].number):
+        if number.values:
+            case, place = divmod(case, len(number.values))
+            values[number.name] = number.values[place]
+            shown[number.name] = _exactly(number.values[place])
+            continue
+        try:
+            values[number.name] = Formula(number.formula).value(values)
+        except FormulaError as error:
+            given = ", ".join(f"{name} = {value:g}" for name, value in values.items())
+            document.fail(
+                ("variant", variant_index, "number", index, "formula"),
+                f"`formula` of {number.name} fails for {given}: {error}.",
+                fix="Change the formula, or the values it is computed from.",
+            )
+        shown[number.name] = significant(values[number.name], number.digits)
+    return shown
+
+
+def significant(value: float, digits: int) -> str:
+    """``value`` with so many significant digits and never an exponent; a whole number (int) in full."""
+    if isinstance(value, int):
+        return _exactly(value)
+    if value == 0:
+        return "0"
+    # The rounded value decides where the digits begin: 0.09996 with three of them is 0.100.
+    rounded = float(f"{value:.{digits - 1}e}")
+    decimals = digits - 1 - math.floor(math.log10(abs(rounded)))
+    return f"{rounded:,.{max(decimals, 0)}f}"
+
+
+def _exactly(value: float) -> str:
+    """A given number as it was given, thousands set apart."""
+    return f"{value:,}"
+
+
+def _fill(text: str, shown: Mapping[str, str]) -> str:
+    """``text`` on one line per paragraph, its placeholders replaced."""
+    paragraphs = (" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
+    return re.sub(r"\{([^{}]*)\}", lambda match: shown[match[1]], "\n\n".join(paragraphs))
+
+
+def clashing(choices: Sequence[Choice]) -> tuple[int, int] | None:
+    """The first two choices that cannot be told apart, by their places; None if all can."""
+    return next(_clashes(choices), None)
+
+
+def _clashes(choices: Sequence[Choice]) -> Iterator[tuple[int, int]]:
+    for other in range(len(choices)):
+        for one in range(other):
+            if same_answer(choices[one].text, choices[other].text):
+                yield one, other
+
+
+def same_answer(one: str, other: str) -> bool:
+    """True if two options say the same: the same words, and numbers that are equal or nearly so.
+
+    "0.10 m" and "0.1 m" are the same; so are 0.0980 and 0.0981, which a reader who rounds once more than
+    the author cannot tell apart.
+    """
+    if _skeleton(one) != _skeleton(other):
+        return False
+    pairs = zip(_values(one), _values(other), strict=True)
+    return all(abs(a - b) <= LEAST_GAP * max(abs(a), abs(b)) for a, b in pairs)
+
+
+def _skeleton(text: str) -> str:
+    return _WORDLESS.sub(" ", _NUMBER.sub("#", text.lower())).strip()
+
+
+def _values(text: str) -> list[float]:
+    return [float(match[0].replace(",", "")) for match in _NUMBER.finditer(text)]

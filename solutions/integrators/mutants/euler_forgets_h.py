@@ -1,0 +1,5 @@
+"""The slopes are added without multiplying them by h."""
+
+
+def explicit_euler_step(accel, t, q, v, h):
+    return q + v, v + accel(t, q, v)

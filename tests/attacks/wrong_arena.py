@@ -1,0 +1,28 @@
+"""Wrong throughout, but for the number of values: worth one point."""
+
+import numpy as np
+
+
+def scale(values, factor):
+    return values
+
+
+def advance(accel, t, q, v, h):
+    accel(t, q, v)
+    return q, v
+
+
+def sample(f, points):
+    return [f(x) + f(x) for x in points]
+
+
+def compose(f, g, x):
+    return x
+
+
+def double(x):
+    return [x]
+
+
+def draw(rng, n):
+    return [0.5] * n

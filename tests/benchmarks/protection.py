@@ -1,0 +1,175 @@
+"""What protection costs: the same graders over the same submissions, in workers and in one bare process.
+
+    python tests/benchmarks/protection.py [--rounds N]
+
+Both sides run in this process, in turn, submission by submission, so that a noisy machine disturbs both
+alike. The CPU of the protected side includes the zygote and every worker. The third side is what a simple
+autograder does: one `pytest` process per submission.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
+
+from local_submission import LocalSubmission  # noqa: E402
+
+from course.catalog.load import Catalog  # noqa: E402
+from course.grading.session import GradingSession, Submission  # noqa: E402
+from course.isolation.session import Connection  # noqa: E402
+
+TICK = os.sysconf("SC_CLK_TCK")
+
+
+class Unprotected(GradingSession):
+    """The same checks by the same pytest calls, the student's module loaded right here."""
+
+    def _load(self, submission: Submission) -> Any:
+        loaded: Any = LocalSubmission(submission.files[self.exercise.module].decode(), self._seed)
+        loaded.functions = frozenset(vars(loaded._module))
+        loaded.begin_check = lambda: None
+        loaded.printed = lambda: ""
+        loaded.close = lambda: None
+        return loaded
+
+
+def submissions() -> dict[str, bytes]:
+    """The model solution, every accepted variant and every mutant of ``integrators``."""
+    root = Path(__file__).resolve().parents[2] / "solutions" / "integrators"
+    model = (root / "integrators.py").read_bytes()
+    parts = sorted([*(root / "accepted").glob("*.py"), *(root / "mutants").glob("*.py")])
+    return {"solution": model, **{part.stem: model + b"\n\n" + part.read_bytes() for part in parts}}
+
+
+def descendants_cpu(pid: int) -> float:
+    """CPU seconds of the processes below ``pid``, those they have waited for included."""
+    parents: dict[int, list[tuple[int, float]]] = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            parents.setdefault(int(fields[1]), []).append(
+                (int(entry.name), sum(map(int, fields[11:15])) / TICK)
+            )
+    total, left = 0.0, [pid]
+    while left:
+        for child, cpu in parents.get(left.pop(), []):
+            total += cpu
+            left.append(child)
+    return total
+
+
+def protection(rounds: int) -> None:
+    catalog = Catalog()
+    exercise = catalog.exercise("integrators")
+    work = submissions()
+    guarded = GradingSession(exercise, catalog, scope="full", processor=0)
+    bare = Unprotected(exercise, catalog, scope="full", level="L1", processor=0)
+    print(f"level {guarded.level}, {len(guarded.checks)} checks, {len(work)} submissions, {rounds} rounds")
+    for session in (guarded, bare):  # warm both
+        session.grade(Submission({exercise.module: work["solution"]}))
+    ratios = []
+    for number in range(rounds):
+        cpu = {"guarded": -descendants_cpu(os.getpid()), "bare": 0.0}
+        for source in work.values():
+            handed_in = Submission({exercise.module: source})
+            for name, session in (("guarded", guarded), ("bare", bare)):
+                start = time.process_time()
+                verdict = session.grade(handed_in)
+                cpu[name] += time.process_time() - start
+                assert verdict.state == "graded", (name, verdict.error)
+        cpu["guarded"] += descendants_cpu(os.getpid())
+        each = {name: value / len(work) * 1e3 for name, value in cpu.items()}
+        ratios.append(each["guarded"] / each["bare"])
+        print(
+            f"round {number}: CPU per submission {each['guarded']:.1f} ms protected, {each['bare']:.1f} ms bare,"
+            f" ratio {ratios[-1]:.3f}, difference {each['guarded'] - each['bare']:.1f} ms"
+        )
+    print(f"median ratio {statistics.median(ratios):.3f} (target 1.2)")
+    worker_start(guarded, work["solution"], exercise.module)
+    callbacks(guarded)
+    per_pytest(guarded, exercise.module, work["solution"])
+    guarded.close()
+    bare.close()
+
+
+def worker_start(session: GradingSession, source: bytes, module: str) -> None:
+    """From asking for a worker to the answer of its first call, the submission loaded."""
+    times = []
+    for _ in range(200):
+        start = time.perf_counter()
+        connection = Connection(session._spawner, {module: source}, module, time.monotonic() + 10)
+        connection.call("observed_order", [0.1, 0.05], [0.01, 0.0025])
+        times.append((time.perf_counter() - start) * 1e3)
+        connection.close()
+    print(f"worker start to first call: median {statistics.median(times):.1f} ms (target 12)")
+
+
+def callbacks(session: GradingSession) -> None:
+    """Calls of a function of the grader's with a time and two arrays of 3."""
+    source = b"import numpy as np\ndef spin(f, n):\n    q = np.ones(3)\n    for i in range(n):\n        f(0.1, q, q)\n"
+    connection = Connection(session._spawner, {"m.py": source}, "m.py", time.monotonic() + 60)
+    rates = []
+    for _ in range(5):
+        start = time.perf_counter()
+        connection.call("spin", lambda _t, q, _v: -4.0 * q, 20_000)
+        rates.append(20_000 / (time.perf_counter() - start))
+    connection.close()
+    print(
+        f"callbacks: median {statistics.median(rates):,.0f} a second, best {max(rates):,.0f} (target 20,000)"
+    )
+
+
+def per_pytest(session: GradingSession, module: str, source: bytes) -> None:
+    """One `pytest` process per submission with the same checks, against the protected session."""
+    driver = Path(__file__).with_name("one_pytest.py")
+    ratios = []
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / module
+        path.write_bytes(source)
+        for _ in range(5):
+            before = os.times()
+            command = [
+                sys.executable,
+                "-m",
+                "pytest",
+                "-q",
+                "-c",
+                os.devnull,
+                "-p",
+                "no:cacheprovider",
+                str(driver),
+            ]
+            environment = {**os.environ, "COURSE_BENCH_SOURCE": str(path)}
+            done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+            after = os.times()
+            assert done.returncode == 0, done.stdout
+            simple = (
+                after.children_user + after.children_system - before.children_user - before.children_system
+            )
+            start = time.process_time() + descendants_cpu(os.getpid())
+            for _ in range(5):
+                session.grade(Submission({module: source}))
+            guarded = (time.process_time() + descendants_cpu(os.getpid()) - start) / 5
+            ratios.append(simple / guarded)
+            print(
+                f"pytest process {simple * 1e3:.0f} ms, protected session {guarded * 1e3:.0f} ms: {ratios[-1]:.1f}"
+            )
+    print(f"median {statistics.median(ratios):.1f} times less than a pytest process each (target 9)")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=5)
+    protection(parser.parse_args().rounds)

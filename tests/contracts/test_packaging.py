@@ -1,0 +1,206 @@
+"""What is inside the wheel and the source archive, and that the course works from each way to install it.
+
+The archives are built offline from a copy of the repository in which traps are laid: files that git ignores,
+and files in the folders that must never reach a student.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+#: Everything at the top level that building may look at; the build must choose from it by itself.
+COPIED = (
+    ".gitignore",
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "course",
+    "docs",
+    "exercises",
+    "quiz",
+    "solutions",
+    "tests",
+    ".ci",
+)
+
+#: Files that are there and must not be in any archive.
+TRAPS = (
+    "solutions/integrators/trap.py",
+    "solutions/trap.toml",
+    "tests/graders/integrators/trap.py",
+    "tests/trap.py",
+    "docs/trap.md",
+    ".ci/trap",
+    "exercises/integrators/__pycache__/trap.cpython-311.pyc",
+    "course/physics/__pycache__/trap.cpython-311.pyc",
+    "course/catalog/.mypy_cache/trap.json",
+    "exercises/.venv/trap.py",
+    "quiz/.hypothesis/trap",
+    "course/build/trap.py",
+    "trap.py",
+)
+
+FORBIDDEN = {"solutions", "tests", "graders", "docs", ".ci", "mutants", "accepted", "__pycache__"}
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository with the traps laid."""
+    folder = tmp_path_factory.mktemp("source") / "repo"
+    folder.mkdir()
+    ignore = shutil.ignore_patterns("__pycache__", ".*_cache", ".hypothesis")
+    for name in COPIED:
+        path = ROOT / name
+        if path.is_dir():
+            shutil.copytree(path, folder / name, ignore=ignore)
+        elif path.exists():
+            shutil.copy(path, folder / name)
+    for trap in TRAPS:
+        (folder / trap).parent.mkdir(parents=True, exist_ok=True)
+        (folder / trap).write_text("trap = 1\n")
+    return folder
+
+
+def _build(source: Path, out: Path, kind: str) -> Path:
+    """Build offline with the backend that is installed; ``kind`` is "wheel", "sdist" or "editable"."""
+    code = f"import hatchling.build as b, sys; print(b.build_{kind}(sys.argv[1]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(out)], cwd=source, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return out / done.stdout.split()[-1]
+
+
+@pytest.fixture(scope="module")
+def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return _build(source, tmp_path_factory.mktemp("wheel"), "wheel")
+
+
+@pytest.fixture(scope="module")
+def sdist(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return _build(source, tmp_path_factory.mktemp("sdist"), "sdist")
+
+
+def _names(archive: Path) -> list[str]:
+    """Files of an archive, without the folder an sdist wraps around them."""
+    if archive.suffix == ".whl":
+        with zipfile.ZipFile(archive) as wheel:
+            return wheel.namelist()
+    with tarfile.open(archive) as tar:
+        return [member.name.partition("/")[2] for member in tar.getmembers() if member.isfile()]
+
+
+def _student_files(folder: str) -> set[str]:
+    """What a student must get of a folder: everything that git would keep."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / folder).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts and not path.name.endswith(".pyc")
+    }
+
+
+@pytest.mark.parametrize("kind", ["wheel", "sdist"])
+def test_nothing_of_the_instructors_is_inside(kind: str, request: pytest.FixtureRequest) -> None:
+    names = _names(request.getfixturevalue(kind))
+    assert [name for name in names if "trap" in name] == []
+    assert [name for name in names if FORBIDDEN & set(name.split("/"))] == []
+    for secret in ("mutants.toml", "bundles.py"):
+        assert [name for name in names if name.endswith(secret)] == []
+
+
+def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel: Path) -> None:
+    """Moved or renamed, a hidden file would still be found by what it says."""
+    hidden = [*ROOT.glob("solutions/*/*.py"), *ROOT.glob("tests/graders/*/*.py")]
+    assert hidden
+    marks = {path: max(path.read_text(encoding="utf-8").splitlines(), key=len) for path in hidden}
+    with zipfile.ZipFile(wheel) as archive:
+        inside = "\n".join(
+            archive.read(name).decode("utf-8") for name in archive.namelist() if name.endswith(".py")
+        )
+    assert [str(path) for path, line in marks.items() if line in inside] == []
+
+
+def test_the_wheel_has_everything_a_student_needs(wheel: Path) -> None:
+    names = set(_names(wheel))
+    assert {f"course/content/{name}" for name in _student_files("exercises")} <= names
+    assert {f"course/content/{name}" for name in _student_files("quiz")} <= names
+    assert _student_files("course") <= names
+    for needed in ("exercise.toml", "README.md", "checks.py", "hints.toml", "integrators.py"):
+        assert f"course/content/exercises/integrators/{needed}" in names
+    assert "course/lessons/syllabus.toml" in names
+
+
+def test_the_wheel_installs_one_package_and_nothing_beside_it(wheel: Path) -> None:
+    tops = {name.split("/")[0] for name in _names(wheel)}
+    (metadata,) = tops - {"course"}
+    assert metadata.endswith(".dist-info")
+
+
+def test_the_source_archive_builds_the_same_wheel(sdist: Path, wheel: Path, tmp_path: Path) -> None:
+    with tarfile.open(sdist) as tar:
+        tar.extractall(tmp_path, filter="data")
+    (folder,) = tmp_path.iterdir()
+    again = _build(folder, tmp_path, "wheel")
+    assert sorted(_names(again)) == sorted(_names(wheel))
+
+
+_ASK = """
+import json
+from course.catalog.load import Catalog
+from course.catalog.locate import content
+found, catalog = content(), Catalog()
+print(json.dumps({
+    "checkout": found.is_checkout, "root": str(found.root), "lessons": len(catalog.lessons()),
+    "exercises": [e.id for e in catalog.exercises()],
+    "stubs": [e.stub_path.is_file() for e in catalog.exercises()],
+}))
+"""
+
+
+def _ask(folder: Path, code: str, **environment: str) -> str:
+    """What a fresh interpreter says that finds the package only as given."""
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("COURSE_", "PYTHON"))}
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", code],
+        cwd=folder,
+        env={**kept, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_an_unpacked_wheel_finds_its_content_and_is_a_students(wheel: Path, tmp_path: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    said = json.loads(_ask(tmp_path, _ASK, PYTHONPATH=str(tmp_path / "site")))
+    assert said["checkout"] is False
+    assert "integrators" in said["exercises"]
+    assert all(said["stubs"])
+    assert said["lessons"] >= 1
+
+
+def test_an_editable_installation_reads_the_checkout(source: Path, tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    with zipfile.ZipFile(_build(source, tmp_path, "editable")) as archive:
+        archive.extractall(site)
+    assert list(site.glob("*.pth")), "an editable wheel points at the checkout"
+    said = json.loads(_ask(tmp_path, f"import site; site.addsitedir({str(site)!r})\n{_ASK}"))
+    assert said["checkout"] is True
+    assert said["root"] == str(source)
+    assert "integrators" in said["exercises"]

@@ -1,0 +1,132 @@
+"""A copy of the miniature course to break, and a grader that answers without running anything."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.audit import audit
+from course.authoring.source import CheckSource, checks_in, parse
+from course.catalog.load import Catalog
+from course.catalog.locate import content
+from course.grading.verdict import CheckResult, Status, Verdict, Visibility
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from course.authoring.report import AuditProblem, AuditReport
+    from course.catalog.models import Exercise
+
+MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
+
+
+@pytest.fixture
+def mini(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a private copy of the miniature course, in use as the course."""
+    folder = (tmp_path / "mini").resolve()
+    shutil.copytree(MINI, folder)
+    monkeypatch.setenv("COURSE_CONTENT", str(folder))
+    return folder
+
+
+class Oracle:
+    """Grades as the miniature course means to be graded, by looking at the first words of a file.
+
+    Attributes:
+        changes: what to answer differently: file name (of stub, solution or variant) to a function from the
+            right verdict to the one to give.
+        graded: names of the files that were graded.
+    """
+
+    def __init__(self) -> None:
+        self.changes: dict[str, Callable[[Verdict], Verdict]] = {}
+        self.graded: list[str] = []
+
+    @contextlib.contextmanager
+    def open(self, exercise: Exercise, catalog: Catalog) -> Iterator[Callable[[bytes], Verdict]]:
+        graders = catalog.content.graders
+        assert graders is not None
+        checks = (
+            *checks_in(exercise.checks_path, parse(exercise.checks_path), hidden=False),
+            *checks_in(path := graders / exercise.id / "checks.py", parse(path), hidden=True),
+        )
+        names = self._names(exercise, catalog)
+
+        def grade(source: bytes) -> Verdict:
+            name = next((n for text, n in names.items() if source.decode().endswith(text)), "?")
+            self.graded.append(name)
+            verdict = _verdict(exercise, catalog, checks, name)
+            return self.changes.get(name, lambda v: v)(verdict)
+
+        yield grade
+
+    @staticmethod
+    def _names(exercise: Exercise, catalog: Catalog) -> dict[str, str]:
+        assert catalog.content.solutions is not None
+        folder = catalog.content.solutions / exercise.id
+        paths = [*folder.glob("accepted/*.py"), *folder.glob("mutants/*.py")]
+        names = {path.read_text(encoding="utf-8"): path.name for path in paths}
+        names[(folder / exercise.module).read_text(encoding="utf-8")] = "solution"
+        names[exercise.stub_path.read_text(encoding="utf-8")] = "stub"
+        return names
+
+
+def _verdict(exercise: Exercise, catalog: Catalog, checks: tuple[CheckSource, ...], name: str) -> Verdict:
+    mutant = next((m for m in catalog.mutants(exercise) if m.file == name), None)
+
+    def passes(check: CheckSource) -> bool:
+        return name != "stub" and not (mutant and check.id == mutant.check)
+
+    results = tuple(
+        CheckResult(
+            id=check.id,
+            title=check.title,
+            task=check.task or "",
+            status=Status.PASS if passes(check) else Status.FAIL,
+            visibility=Visibility.HIDDEN if check.hidden else Visibility.PUBLIC,
+            points=(check.points or 0.0) * passes(check),
+            max_points=check.points or 0.0,
+            diagnosis=mutant.diagnosis if mutant and not passes(check) else None,
+            message="" if passes(check) else "It is wrong.",
+        )
+        for check in checks
+    )
+    score = sum(r.points for r in results)
+    most = sum(r.max_points for r in results)
+    return Verdict(
+        exercise=exercise.id,
+        scope="full",
+        state="graded",
+        score=score,
+        max_score=most,
+        passed=score >= 0.7 * most,
+        checks=results,
+        isolation="L3",
+    )
+
+
+@pytest.fixture
+def oracle() -> Oracle:
+    return Oracle()
+
+
+@pytest.fixture
+def run(mini: Path, oracle: Oracle) -> Callable[..., AuditReport]:
+    """Audit the copy with the oracle."""
+    return lambda only=None: audit(Catalog(content()), only, open_grader=oracle.open)
+
+
+@pytest.fixture
+def only_problem(run: Callable[..., AuditReport]) -> Callable[[], AuditProblem]:
+    """Audit the copy; there must be exactly one problem, which is returned."""
+
+    def single() -> AuditProblem:
+        problems = run().problems
+        assert len(problems) == 1, [f"{p.where} {p.code} {p.message}" for p in problems]
+        return problems[0]
+
+    return single

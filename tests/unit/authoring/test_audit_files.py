@@ -1,0 +1,267 @@
+"""What the audit finds by reading."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.audit import audit
+from course.catalog.load import Catalog
+from course.errors import MissingCapabilityError, NotFoundError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from course.authoring.report import AuditProblem, AuditReport
+
+TOML = "exercises/doubling/exercise.toml"
+README = "exercises/doubling/README.md"
+STUB = "exercises/doubling/doubling.py"
+CHECKS = "exercises/doubling/checks.py"
+HINTS = "exercises/doubling/hints.toml"
+GRADERS = "graders/doubling/checks.py"
+SOLUTION = "solutions/doubling/doubling.py"
+MUTANTS = "solutions/doubling/mutants.toml"
+LESSON = "lessons/half-as-much.md"
+SYLLABUS = "lessons/syllabus.toml"
+
+REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def line_of(path: Path, text: str) -> int:
+    """The line of a file that holds a text."""
+    return next(n for n, line in enumerate(path.read_text().split("\n"), start=1) if text in line)
+
+
+def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
+    report = run()
+    assert report.problems == ()
+    assert report.ok
+    assert report.lessons == ("twice-as-much", "half-as-much")
+    assert report.exercises == ("doubling", "halving")
+    assert (report.checks, report.graded, report.isolation) == (6, 14, "L3")
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "at", "code", "says"),
+    [
+        (README, "(lesson:twice-as-much)", "(lesson:thrice)", "lesson:thrice", "link", "does not exist"),
+        (README, "(lesson:twice-as-much)", "(exercise:x)", "exercise:x", "link", "does not exist"),
+        (README, "(lesson:twice-as-much)", "(#example)", None, "", ""),
+        (README, "(lesson:twice-as-much)", "(#examples)", "#examples", "link", "heading that does not"),
+        (README, "(lesson:twice-as-much)", "(lesson:twice-as-much#once)", None, "", ""),
+        (README, "(lesson:twice-as-much)", "(lesson:twice-as-much#one)", "#one", "link", "heading that does"),
+        (README, "(lesson:twice-as-much)", "(exercise:halving#halving)", None, "", ""),
+        (README, "(lesson:twice-as-much)", "(exercise:halving#no)", "#no", "link", "heading that does not"),
+        (README, "(lesson:twice-as-much)", "(doubling.py)", None, "", ""),
+        (README, "(lesson:twice-as-much)", "(picture.png)", "picture", "link", "leads to no file"),
+        (README, "(lesson:twice-as-much)", "(../halving/README.md)", "../", "link", "leaves its folder"),
+        (README, "(lesson:twice-as-much)", "(ftp://x)", "ftp:", "link", "unknown kind"),
+        (README, "(lesson:twice-as-much)", "(https://example.org/x#y)", None, "", ""),
+        (README, "[the lesson](lesson:twice-as-much)", "a\n![b](c.png)", "c.png", "link", "leads to no file"),
+        (LESSON, "(exercise:halving)", "(exercise:thirds)", "exercise:thirds", "link", "does not exist"),
+        (LESSON, "Half of twice", "<b>Half</b> of twice", "<b>", "content", "HTML"),
+        (LESSON, '["twice-as-much"]', '["later"]', '"later"', "lesson", "does not come before"),
+        (LESSON, '["halving"]', '["halving", "no"]', '"no"', "lesson", "no exercise no"),
+        (LESSON, '["halving"]', "[]", None, "exercise", "does not name this exercise"),
+        (LESSON, "Half of twice", "[3](=1+1) of twice", "[3]", "lesson", "gives 2"),
+        (TOML, 'lesson = "twice-as-much"', 'lesson = "thrice"', "thrice", "exercise", "no lesson thrice"),
+        (TOML, "points = 4", "points = 7", "points = 7", "points", "has 7 points, and its checks 4"),
+        (TOML, "hidden_checks = 2", "hidden_checks = 3", "_checks", "points", "there are 2"),
+        (TOML, "hidden_points = 5", "hidden_points = 4", "_points", "points", "checks have 5"),
+        (TOML, "order = 1", "order = 2", None, "exercise", "order 2 too"),
+        (TOML, "order = 1", "order = one", "order", "content", "not valid TOML"),
+        (HINTS, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
+        (HINTS, '[[task]]\nid = "double"', '[[task]]\nid = "x"', 'id = "x"', "content", "no task 'x'"),
+        (README, "`double(x) -> float`", "`double` -> float", None, "readme", "signature double(x)"),
+        (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
+        (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),
+        (STUB, '"""Doubling, once', 'import scipy\n"""Doubling, once', "scipy", "imports", "scipy"),
+        (SOLUTION, "import numpy as np", "import numpy as np\nimport course", "course", "imports", "course"),
+        (SOLUTION, "def double(x)", "def double(x, y=1)", "def double(", "signature", "double(x, y=1)"),
+        (CHECKS, '@pytest.mark.task("double")\n', "", "def test_double_of_three", "check", "has no task"),
+        (CHECKS, 'task("double")', 'task("doble")', "def test_double_of_three", "check", "'doble' that"),
+        (CHECKS, "@pytest.mark.points(2)\n", "", "def test_double_of_three", "check", "has no points"),
+        (CHECKS, "points(2)", "points(-2)", "def test_double_of_three", "check", "no points that"),
+        (CHECKS, "points(2)", "points(1 + 2)", None, "points", "has 4 points, and its checks 5"),
+        (
+            CHECKS,
+            "points(2)",
+            "points(1 + 2)\n@pytest.mark.requires('double_of_three')",
+            "_three(s",
+            "check",
+            "itself",
+        ),
+        (CHECKS, '    """Twice three is six"""\n', "", "def test_double_of_three", "check", "no title"),
+        (GRADERS, 'requires("doublings_length")', 'requires("no")', "def test_doublings_v", "check", "'no'"),
+        (
+            CHECKS,
+            "points(3)",
+            REQUIRING,
+            "length(s",
+            "check",
+            "public and requires",
+        ),
+        (
+            GRADERS,
+            "test_double_of_negative",
+            "test_double_of_three",
+            "def test_double_of_three",
+            "check",
+            "twice",
+        ),
+        (GRADERS, '"Try a negative number by hand."', '"Try -18.5 by hand."', "18.5", "leak", "18.5"),
+        (GRADERS, '"Try a negative number by hand."', 'f"Try {1} and 2.5e-3."', "2.5e-3", "leak", "2.5e-3"),
+        (GRADERS, '"Try a negative number by hand."', '"Try 3.0 by hand."', None, "", ""),
+        (MUTANTS, '"squares.py"', '"cubes.py"', "cubes", "mutants", "does not exist"),
+    ],
+)
+def test_each_fault_is_found_at_its_line(
+    mini: Path,
+    run: Callable[..., AuditReport],
+    file: str,
+    old: str,
+    new: str,
+    at: str | None,
+    code: str,
+    says: str,
+) -> None:
+    """One fault is planted; ``at`` is a text on the line to blame, None where there is none to look for."""
+    edit(mini / file, old, new)
+    found = [p for p in run().problems if p.code == code and says in p.message]
+    if not code:
+        assert run().ok
+        return
+    assert found, [f"{p.where} {p.code} {p.message}" for p in run().problems]
+    assert found[0].fix
+    if at is not None:
+        assert (found[0].file, found[0].line) == (file, line_of(mini / file, at))
+
+
+@pytest.mark.parametrize(
+    ("file", "code", "says"),
+    [
+        (README, "content", "missing"),
+        (CHECKS, "content", "missing"),
+        (GRADERS, "content", "missing"),
+        (HINTS, "content", "missing"),
+        (STUB, "content", "missing"),
+        (SOLUTION, "content", "missing"),
+        (TOML, "content", "missing"),
+        (MUTANTS, "content", "missing"),
+        (SYLLABUS, "content", "missing"),
+        ("solutions/doubling/mutants/squares.py", "mutants", "does not exist"),
+    ],
+)
+def test_a_missing_file_is_named(
+    mini: Path, run: Callable[..., AuditReport], file: str, code: str, says: str
+) -> None:
+    (mini / file).unlink()
+    blamed = MUTANTS if code == "mutants" else file
+    found = [p for p in run().problems if (p.file, p.code) == (blamed, code)]
+    assert len(found) == 1
+    assert says in found[0].message
+
+
+def test_a_lesson_that_is_only_listed_is_named_at_its_line(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    edit(mini / SYLLABUS, '"half-as-much"', '"half-as-much",\n  "thirds"')
+    (problem,) = run().problems
+    assert problem.where == f"{SYLLABUS}:6"
+    assert "lesson thirds has no file" in problem.message
+
+
+def test_a_lesson_that_nothing_lists_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+    text = (mini / LESSON).read_text().replace('id = "half-as-much"', 'id = "thirds"')
+    (mini / "lessons" / "thirds.md").write_text(text)
+    (problem,) = run().problems
+    assert problem.file == "lessons/thirds.md"
+    assert '"thirds"' in problem.fix
+
+
+def test_an_exercise_folder_without_an_exercise_is_named(
+    mini: Path, only_problem: Callable[[], AuditProblem]
+) -> None:
+    (mini / "exercises" / "thirds").mkdir()
+    assert only_problem().file == "exercises/thirds/exercise.toml"
+
+
+def test_an_exercise_nobody_accepts_variants_of_is_named(
+    mini: Path, only_problem: Callable[[], AuditProblem]
+) -> None:
+    shutil.rmtree(mini / "solutions" / "halving" / "accepted")
+    assert "no accepted variant" in only_problem().message
+
+
+def test_a_task_that_no_mutant_breaks_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
+    text = (mini / MUTANTS).read_text()
+    (mini / MUTANTS).write_text(text[: text.index('[[mutant]]\nfile = "one_short.py"')])
+    for name in ("one_short.py", "starts_late.py"):
+        (mini / "solutions" / "doubling" / "mutants" / name).unlink()
+    assert "no mutant breaks task doublings" in only_problem().message
+
+
+def test_a_mutant_that_is_not_listed_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
+    path = mini / "solutions" / "doubling" / "mutants" / "extra.py"
+    path.write_text('"""Wrong."""\n')
+    assert only_problem().file == "solutions/doubling/mutants/extra.py"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        ("def double(x):\n    return x + x\n", 1, "does not say what is unusual"),
+        ('"""Odd."""\n\ndef double(x:\n', 3, "not valid Python"),
+        ('"""Odd."""\nfrom __future__ import annotations\n', 2, "not valid Python"),
+    ],
+)
+def test_a_variant_that_cannot_follow_the_solution_is_named(
+    mini: Path, run: Callable[..., AuditReport], text: str, line: int, says: str
+) -> None:
+    path = mini / "solutions" / "doubling" / "accepted" / "adds.py"
+    path.write_text(text)
+    (problem,) = [p for p in run().problems if p.file == "solutions/doubling/accepted/adds.py"]
+    assert problem.line == line
+    assert says in problem.message
+
+
+def test_checks_without_markers_are_not_graded(
+    mini: Path,
+    oracle,
+    run: Callable[..., AuditReport],  # type: ignore[no-untyped-def]
+) -> None:
+    edit(mini / CHECKS, "@pytest.mark.points(2)\n", "")
+    assert not run().ok
+    assert set(oracle.graded) == {"stub", "solution", "multiplies.py", "rounds_down.py"}
+
+
+def test_one_exercise_or_lesson_can_be_audited_alone(mini: Path, run: Callable[..., AuditReport]) -> None:
+    edit(mini / TOML, "points = 4", "points = 5")
+    assert run("halving").ok
+    assert run("halving").exercises == ("halving",)
+    assert run("twice-as-much").lessons == ("twice-as-much",)
+    assert run("twice-as-much").ok
+    assert not run("doubling").ok
+
+
+def test_an_unknown_id_is_not_found(run: Callable[..., AuditReport]) -> None:
+    with pytest.raises(NotFoundError, match="Neither a lesson nor an exercise"):
+        run("thirds")
+
+
+@pytest.mark.parametrize("folder", ["solutions", "graders"])
+def test_a_student_cannot_audit(mini: Path, folder: str) -> None:
+    (mini / folder).rename(mini / "gone")
+    with pytest.raises(MissingCapabilityError) as caught:
+        audit(Catalog())
+    assert caught.value.code == "needs_checkout"

@@ -1,0 +1,124 @@
+"""The audit with the real grader: a few faults that only running the code can show."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.authoring.audit import audit
+from course.authoring.mutants import run_mutants
+from course.catalog.load import Catalog
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def test_the_miniature_course_is_right(mini: Path) -> None:
+    report = audit(Catalog())
+    assert [f"{p.where} {p.message}" for p in report.problems] == []
+    assert report.graded == 14
+    assert report.isolation in {"L1", "L2", "L3"}
+
+
+def test_a_wrong_solution_is_found_at_its_function(mini: Path) -> None:
+    edit(mini / "solutions/halving/halving.py", "x / 2", "x // 2")
+    problems = audit(Catalog(), "halving").problems
+    assert [p.where for p in problems if p.code == "solution"] == [
+        "solutions/halving/halving.py",
+        "solutions/halving/halving.py:4",
+    ]
+
+
+def test_a_stub_that_already_works_is_found(mini: Path) -> None:
+    edit(mini / "exercises/halving/halving.py", "raise NotImplementedError", "return x / 2")
+    found = [p for p in audit(Catalog(), "halving").problems if p.code == "stub"]
+    assert any("the untouched stub passes check half_of_odd" in p.message for p in found)
+    assert any("no check of task halve fails" in p.message for p in found)
+
+
+def test_a_stub_that_cannot_be_loaded_is_found(mini: Path) -> None:
+    edit(mini / "exercises/halving/halving.py", "def halve", "import nothing_of_that_name\n\n\ndef halve")
+    found = [p.message for p in audit(Catalog(), "halving").problems if p.code == "stub"]
+    assert any("cannot be graded" in message for message in found)
+
+
+def test_a_mutant_that_is_right_is_found(mini: Path) -> None:
+    edit(mini / "solutions/halving/mutants/rounds_down.py", "x // 2", "0.5 * x")
+    (problem,) = audit(Catalog(), "halving").problems
+    assert "mutant rounds_down.py survives" in problem.message
+    assert problem.where == "solutions/halving/mutants.toml:7"
+
+
+def test_a_mutant_that_breaks_two_tasks_is_found(mini: Path) -> None:
+    path = mini / "solutions/doubling/mutants/squares.py"
+    path.write_text(path.read_text() + "\n\ndef doublings(x, n):\n    return [x]\n")
+    problems = audit(Catalog(), "doubling").problems
+    assert any("fails check doublings_length of task doublings" in p.message for p in problems)
+
+
+def test_a_check_that_breaks_is_not_the_solutions_fault(mini: Path) -> None:
+    edit(mini / "graders/halving/checks.py", "3.5,", "3.5 / 0,")
+    problems = audit(Catalog(), "halving").problems
+    assert {p.code for p in problems} == {"grader"}
+    assert any("ZeroDivisionError" in p.message for p in problems)
+
+
+def test_the_words_of_a_hidden_check_are_read_as_a_student_gets_them(mini: Path) -> None:
+    edit(
+        mini / "graders/halving/checks.py",
+        'message="Half of an odd number has lost its fraction."',
+        'message=f"It is not {7 / 2}."',
+    )
+    problems = audit(Catalog(), "halving").problems
+    assert {p.code for p in problems} == {"leak"}
+    assert {p.where for p in problems} == {"graders/halving/checks.py:10"}
+
+
+def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
+    catalog = Catalog()
+    steps: list[int] = []
+    outcomes = run_mutants(
+        catalog, catalog.exercise("doubling"), on_progress=lambda done, *_: steps.append(done)
+    )
+    first = outcomes[0]
+    assert (first.mutant.file, first.diagnosis, first.lost) == ("squares.py", "SQUARES_INSTEAD", 4.0)
+    assert first.caught_by == ("double_of_three", "double_of_negative")
+    assert "multiplied by itself" in first.message
+    assert first.help == "Add the number to itself, or multiply it by two."
+    assert all(outcome.faults == () for outcome in outcomes)
+    assert steps == [0, 1, 2, 3, 4]
+
+
+def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini: Path) -> None:
+    edit(
+        mini / "exercises/halving/checks.py",
+        "import pytest\n",
+        "import pytest\nimport nothing_of_that_name\n",
+    )
+    problems = audit(Catalog()).problems
+    assert [p.file for p in problems] == ["exercises/halving/checks.py"]
+    assert "nothing_of_that_name" in problems[0].message
+
+
+def test_a_misspelt_mark_is_a_problem(mini: Path) -> None:
+    edit(
+        mini / "graders/halving/checks.py",
+        "@pytest.mark.points(1)",
+        "@pytest.mark.points(1)\n@pytest.mark.slow",
+    )
+    (problem,) = audit(Catalog(), "halving").problems
+    assert "'slow' not found" in problem.message
+
+
+def test_a_marker_may_be_computed(mini: Path) -> None:
+    edit(mini / "graders/halving/checks.py", 'task("halve")', "task(TASK)")
+    edit(mini / "graders/halving/checks.py", "points(1)", "points(3 - 2)")
+    edit(
+        mini / "graders/halving/checks.py", "import pytest\n", 'import pytest\n\nTASK, OTHER = "halve", ""\n'
+    )
+    assert audit(Catalog(), "halving").problems == ()

@@ -1,0 +1,232 @@
+"""What the audit finds by grading; the grader here answers from a script."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import pytest
+
+from course.authoring.audit import audit
+from course.catalog.load import Catalog
+from course.grading.verdict import Problem, Status, Verdict
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.authoring.report import AuditProblem, AuditReport
+
+MUTANTS = "solutions/doubling/mutants.toml"
+Change = Callable[[Verdict], Verdict]
+
+
+def with_check(check_id: str, **fields: Any) -> Change:
+    def change(verdict: Verdict) -> Verdict:
+        checks = tuple(
+            msgspec.structs.replace(check, **fields) if check.id == check_id else check
+            for check in verdict.checks
+        )
+        return msgspec.structs.replace(verdict, checks=checks, score=sum(check.points for check in checks))
+
+    return change
+
+
+def ending(state: str, message: str) -> Change:
+    return lambda verdict: msgspec.structs.replace(
+        verdict, state=state, checks=(), score=0.0, error=Problem("code", message, "Do this.")
+    )
+
+
+passing = {"status": Status.PASS, "diagnosis": None}
+failing = {"status": Status.FAIL, "points": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "where", "code", "says"),
+    [
+        (
+            "stub",
+            with_check("double_of_three", **passing, points=2.0),
+            "exercises/doubling/checks.py:12",
+            "stub",
+            "the untouched stub passes check double_of_three",
+        ),
+        ("stub", ending("ungradable", "It raises."), "exercises/doubling/doubling.py", "stub", "It raises."),
+        (
+            "solution",
+            with_check(
+                "double_of_three", status=Status.FAIL, points=0.0, message="No.", expected=6.0, actual=5.0
+            ),
+            "solutions/doubling/doubling.py:6",
+            "solution",
+            "check double_of_three ends with fail: No. (expected 6.0, got 5.0)",
+        ),
+        (
+            "solution",
+            with_check("double_of_three", points=1.0),
+            "solutions/doubling/doubling.py",
+            "solution",
+            "scores 9 of 10",
+        ),
+        (
+            "adds.py",
+            with_check("double_of_negative", status=Status.TIMEOUT, points=0.0, message="Slow."),
+            "solutions/doubling/accepted/adds.py:4",
+            "accepted",
+            "ends with timeout: Slow.",
+        ),
+        (
+            "adds.py",
+            ending("ungradable", "No such module."),
+            "solutions/doubling/accepted/adds.py",
+            "accepted",
+            "No such module.",
+        ),
+        (
+            "squares.py",
+            with_check("double_of_three", **passing, points=2.0),
+            f"{MUTANTS}:7",
+            "mutant",
+            "mutant squares.py survives",
+        ),
+        (
+            "squares.py",
+            with_check("double_of_three", diagnosis="SIGN_LOST"),
+            f"{MUTANTS}:8",
+            "mutant",
+            "is diagnosed as SIGN_LOST by double_of_three (fail), not as SQUARES_INSTEAD",
+        ),
+        (
+            "squares.py",
+            with_check("doublings_length", status=Status.FAIL, points=0.0, message="No."),
+            f"{MUTANTS}:5",
+            "mutant",
+            "fails check doublings_length of task doublings, and should break double only",
+        ),
+        (
+            "squares.py",
+            with_check("doublings_values", status=Status.SKIP, points=0.0, blocked_by="x"),
+            f"{MUTANTS}:5",
+            "mutant",
+            "fails check doublings_values of task doublings",
+        ),
+        (
+            "squares.py",
+            with_check("double_of_three", points=2.0),
+            f"{MUTANTS}:7",
+            "mutant",
+            "loses no points",
+        ),
+        (
+            "squares.py",
+            ending("ungradable", "Syntax."),
+            f"{MUTANTS}:4",
+            "mutant",
+            "mutant squares.py could not be graded: Syntax.",
+        ),
+        (
+            "squares.py",
+            ending("grader_error", "KeyError in a check."),
+            "exercises/doubling/checks.py",
+            "grader",
+            "the checks break on squares.py: KeyError in a check.",
+        ),
+    ],
+)
+def test_a_verdict_that_should_be_another_is_reported(
+    oracle: Any, run: Callable[..., AuditReport], name: str, change: Change, where: str, code: str, says: str
+) -> None:
+    oracle.changes[name] = change
+    found = [p for p in run().problems if p.where == where and p.code == code]
+    assert found, [f"{p.where} {p.code} {p.message}" for p in run().problems]
+    assert says in found[0].message
+    assert found[0].fix
+
+
+def test_a_mutant_caught_only_by_another_check_is_reported(
+    oracle: Any, only_problem: Callable[[], AuditProblem]
+) -> None:
+    def by_the_other(verdict: Verdict) -> Verdict:
+        verdict = with_check("double_of_three", **passing, points=2.0)(verdict)
+        return with_check("double_of_negative", status=Status.FAIL, points=0.0)(verdict)
+
+    oracle.changes["squares.py"] = by_the_other
+    assert "is not caught by double_of_three" in only_problem().message
+
+
+@pytest.mark.parametrize(
+    ("check", "says"), [("no_such", "does not exist"), ("doublings_length", "belongs to task")]
+)
+def test_a_mutant_must_name_a_check_of_its_task(
+    mini: Path, oracle: Any, run: Callable[..., AuditReport], check: str, says: str
+) -> None:
+    path = mini / MUTANTS
+    path.write_text(path.read_text().replace('check = "double_of_three"', f'check = "{check}"'))
+    oracle.changes["squares.py"] = with_check("double_of_three", status=Status.FAIL, points=0.0)
+    found = [p for p in run().problems if says in p.message and "squares.py" in p.message]
+    assert [p.where for p in found] == [f"{MUTANTS}:7"]
+
+
+def test_a_check_that_breaks_is_reported_at_its_line(oracle: Any, run: Callable[..., AuditReport]) -> None:
+    oracle.changes["starts_late.py"] = with_check(
+        "doublings_values", status=Status.GRADER_ERROR, message="ZeroDivisionError"
+    )
+    found = [p for p in run().problems if p.code == "grader"]
+    assert [p.where for p in found] == ["graders/doubling/checks.py:30"]
+    assert "breaks on starts_late.py: ZeroDivisionError" in found[0].message
+
+
+def test_a_check_that_does_not_run_is_reported(oracle: Any, run: Callable[..., AuditReport]) -> None:
+    oracle.changes["solution"] = lambda v: msgspec.structs.replace(v, checks=v.checks[1:])
+    assert any("check double_of_three is declared, but did not run" in p.message for p in run().problems)
+
+
+def test_a_check_that_nothing_declares_is_reported(oracle: Any, run: Callable[..., AuditReport]) -> None:
+    oracle.changes["solution"] = lambda v: msgspec.structs.replace(
+        v, checks=(*v.checks, msgspec.structs.replace(v.checks[0], id="made_by_a_loop"))
+    )
+    assert any("check made_by_a_loop ran, but no plain" in p.message for p in run().problems)
+
+
+@pytest.mark.parametrize(
+    ("fields", "number"),
+    [
+        ({"message": "It is not 34.5."}, "34.5"),
+        ({"message": "Wrong.", "help": "Within 1e-12."}, "1e-12"),
+        ({"message": "There are 29 of them.", "expected": 29, "actual": 28}, "29"),
+        ({"message": "There are 29 of them.", "input": {"n": [1, 29]}}, "29"),
+    ],
+)
+def test_a_hidden_check_must_not_say_its_values(
+    oracle: Any, run: Callable[..., AuditReport], fields: dict[str, Any], number: str
+) -> None:
+    oracle.changes["loses_the_sign.py"] = with_check("double_of_negative", **fields)
+    found = [p for p in run().problems if p.code == "leak"]
+    assert [p.where for p in found] == ["graders/doubling/checks.py:12"]
+    assert f"shows the number {number}" in found[0].message
+
+
+@pytest.mark.parametrize(
+    ("check", "fields"),
+    [
+        ("double_of_negative", {"message": "Use RK4, see section 12.", "expected": 4}),
+        ("double_of_negative", {"message": "There are 2 of them.", "expected": 2}),
+        ("double_of_three", {"message": "It is not 34.5."}),
+    ],
+)
+def test_small_numbers_and_public_checks_may_be_said(
+    oracle: Any, run: Callable[..., AuditReport], check: str, fields: dict[str, Any]
+) -> None:
+    oracle.changes["loses_the_sign.py" if check == "double_of_negative" else "squares.py"] = with_check(
+        check, **fields
+    )
+    assert run().ok
+
+
+def test_progress_counts_up_to_the_end(mini: Path, oracle: Any) -> None:
+    steps: list[tuple[int, int, str]] = []
+    report = audit(Catalog(), on_progress=lambda *step: steps.append(step), open_grader=oracle.open)
+    assert [done for done, _, _ in steps] == [*range(14), 14]
+    assert {total for _, total, _ in steps} == {report.graded}
+    assert steps[0][2] == "doubling: stub doubling.py"

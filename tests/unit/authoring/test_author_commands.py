@@ -1,0 +1,140 @@
+"""``course author`` as it is typed."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.cli.app import run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[str, Any]]:
+    """Exit code and the one JSON object of a command."""
+    code = run([*line, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_right_course_exits_with_zero(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["author", "check"]) == 0
+    assert "All is well: 2 lessons, 2 exercises, 6 checks, 14 submissions graded" in capsys.readouterr().out
+
+
+def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = mini / "exercises" / "halving" / "exercise.toml"
+    path.write_text(path.read_text().replace("hidden_checks = 1", "hidden_checks = 4"))
+    assert run(["author", "check", "halving"]) == 1
+    out = capsys.readouterr().out.split("\n")
+    place = out.index("exercises/halving/exercise.toml:8")
+    assert out[place + 1 : place + 3] == ["  `hidden_checks` is 4, and there are 1.", "  Write 1."]
+    code, body = answer(capsys, "author", "check", "halving")
+    assert (code, body["schema"], body["ok"], body["exit_code"]) == (1, "course.author-check/1", False, 1)
+    assert body["course"] == {"id": "mini", "version": "0.1.0"}
+    assert body["problems"] == [
+        {
+            "file": "exercises/halving/exercise.toml",
+            "line": 8,
+            "code": "points",
+            "message": "`hidden_checks` is 4, and there are 1.",
+            "help": "Write 1.",
+        }
+    ]
+
+
+def test_a_broken_syllabus_is_reported_and_not_a_crash(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (mini / "lessons" / "syllabus.toml").write_text("format_version = 9\n")
+    code, body = answer(capsys, "author", "check")
+    assert code == 1
+    assert body["problems"][0]["file"] == "lessons/syllabus.toml"
+    assert body["problems"][0]["line"] == 1
+
+
+def test_mutants_are_listed_with_what_their_authors_read(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["author", "mutants", "halving"]) == 0
+    out = capsys.readouterr().out
+    assert "halving: rounds_down.py: breaks halve, loses 1 points" in out
+    assert "reads: Half of an odd number has lost its fraction." in out
+    code, body = answer(capsys, "author", "mutants")
+    assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 5)
+    assert body["mutants"][0]["diagnosis"] == "SQUARES_INSTEAD"
+
+
+def test_a_surviving_mutant_exits_with_one(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = mini / "solutions" / "halving" / "mutants" / "rounds_down.py"
+    path.write_text(path.read_text().replace("x // 2", "x / 2"))
+    assert run(["author", "mutants", "halving"]) == 1
+    out = capsys.readouterr().out
+    assert "survives: every check passes" in out
+    assert "1 mutant: 1 not caught" in out
+
+
+def test_a_new_exercise_is_written_and_listed(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, body = answer(capsys, "author", "new", "exercise", "tripling")
+    assert (code, body["schema"], body["kind"]) == (0, "course.author-new/1", "exercise")
+    assert "exercises/tripling/exercise.toml" in body["files"]
+    assert all((mini / name).is_file() for name in body["files"])
+    assert run(["author", "new", "exercise", "tripling"]) == 2
+    assert "nothing is overwritten" in capsys.readouterr().err
+
+
+def test_a_new_lesson_says_where_to_list_it(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["author", "new", "lesson", "three-times"]) == 0
+    assert "syllabus.toml" in capsys.readouterr().out
+    assert (mini / "lessons" / "three-times.md").is_file()
+
+
+def test_a_pack_is_written(mini: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    output = tmp_path / "s.coursepack"
+    code, body = answer(capsys, "author", "pack", "--solutions", "doubling", "halving", "-o", str(output))
+    assert (code, body["schema"]) == (0, "course.author-pack/1")
+    assert body["solutions"] == {"doubling": ["README.md", "doubling.py"], "halving": ["halving.py"]}
+    assert output.is_file()
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "name"),
+    [
+        (["author", "check", "thirds"], 5, "not_found"),
+        (["author", "mutants", "thirds"], 5, "exercise_not_found"),
+        (["author", "new", "exercise", "No!"], 2, "invalid_id"),
+        (["author", "pack", "-o", "x"], 2, "usage"),
+    ],
+)
+def test_a_wrong_line_has_its_exit_code(
+    mini: Path, capsys: pytest.CaptureFixture[str], line: list[str], code: int, name: str
+) -> None:
+    got, body = answer(capsys, *line)
+    assert (got, body["exit_code"], body["error"]["code"]) == (code, code, name)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        ["author", "check"],
+        ["author", "mutants"],
+        ["author", "new", "exercise", "thirds"],
+        ["author", "new", "lesson", "thirds"],
+        ["author", "pack", "--solutions", "doubling", "-o", "x"],
+    ],
+)
+def test_a_student_is_told_that_it_needs_a_checkout(
+    mini: Path, capsys: pytest.CaptureFixture[str], line: list[str]
+) -> None:
+    (mini / "solutions").rename(mini / "gone")
+    got, body = answer(capsys, *line)
+    assert (got, body["error"]["code"]) == (4, "needs_checkout")
+    assert "checkout" in body["error"]["help"]
+
+
+def test_every_author_command_has_a_help_page_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    for line in (["check"], ["mutants"], ["pack"], ["new", "exercise"], ["new", "lesson"]):
+        assert run(["author", *line, "--help", "--plain"]) == 0
+        assert "Example: course author" in capsys.readouterr().out

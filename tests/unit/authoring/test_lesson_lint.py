@@ -1,0 +1,105 @@
+"""What a lesson must have, and what it must not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from course.authoring.lesson_lint import Finding, findings
+from course.catalog.markdown import parse_lesson
+
+GOOD = """
+> **Myth.** A.
+
+> **Fact.** B.
+
+> **Analogy.** C.
+
+## Before you start
+
+- Numbers.
+
+## Worked example: one
+
+> **Predict.** What?
+
+```python
+x = 29.5
+```
+
+![Two lines that cross at one](figure:lines)
+They cross at [1](=1), 12 times in 2005, with 29.5 of [these](exercise:one).
+
+> **Answer.** That.
+
+## Try it
+
+```console
+$ course lessons
+```
+
+## What to do next
+
+Read [on](lesson:two#here).
+
+## Sources
+
+- A. Author, 123 pages, 2003.
+"""
+
+
+def lint(text: str) -> list[Finding]:
+    blocks = parse_lesson(text, Path("a.md"))
+    return findings(blocks, figures=["lines"], lessons=["two"], exercises=["one"])
+
+
+def test_a_lesson_with_everything_has_no_findings() -> None:
+    assert lint(GOOD) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("> **Myth.** A.", "", "the lesson has no myth"),
+        ("> **Analogy.** C.", "", "the lesson has no analogy"),
+        ("## Worked example: one", "## One", "no section begins 'worked example'"),
+        ("## Before you start", "## Start", "no section begins 'before you start'"),
+        ("```console\n$ course lessons\n```", "x", "the lesson has no command to try"),
+        ("- A. Author, 123 pages, 2003.", "x", "the lesson has no list of sources"),
+        ("x = 29.5", "x = 29", "29.5 is produced by no code"),
+        (
+            "> **Predict.** What?",
+            "> **Predict.** What?\n\n> **Answer.** A.\n\n## Two",
+            "a figure that nobody was asked about",
+        ),
+        ("> **Answer.** That.", "", "a prediction that is not answered"),
+        (
+            "> **Answer.** That.",
+            "> **Predict.** And?\n\n> **Answer.** That.",
+            "a prediction that is not answered",
+        ),
+        ("figure:lines", "figure:line", "there is no figure 'line'"),
+        ("exercise:one", "exercise:on", "there is no exercise 'on'"),
+        ("lesson:two#here", "lesson:too#here", "there is no lesson 'too'"),
+        ("12 times", "13 times", "13 is produced by no code"),
+        ("12 times", "0.5 times", "0.5 is produced by no code"),
+        ("x = 29.5", f"x = 29.5  # {'-' * 50}", "code 62 columns wide"),
+    ],
+)
+def test_what_is_missing_or_wrong_is_found(old: str, new: str, problem: str) -> None:
+    assert old in GOOD
+    assert [finding.problem for finding in lint(GOOD.replace(old, new))] == [problem]
+
+
+def test_a_run_needs_a_prediction_and_a_cell_that_shows_nothing_does_not() -> None:
+    text = "## One\n\n```python\nprint(4)\n```\n\n```output\n4\n```\n"
+    assert "a run that nobody was asked about" in [finding.problem for finding in lint(text)]
+    silent = "## One\n\n```python\nx = 4\n```\n"
+    assert "a run that nobody was asked about" not in [finding.problem for finding in lint(silent)]
+
+
+def test_an_unanswered_prediction_at_the_very_end_is_found() -> None:
+    assert "a prediction that is not answered" in [
+        finding.problem for finding in lint("> **Predict.** What?")
+    ]

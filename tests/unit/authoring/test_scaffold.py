@@ -1,0 +1,154 @@
+"""New exercises and lessons: blanks, then a course that passes its audit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.audit import audit
+from course.authoring.files import BLANK
+from course.authoring.scaffold import new_exercise, new_lesson
+from course.catalog.load import Catalog
+from course.errors import MissingCapabilityError, UsageError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SOLVED = {
+    "exercises/tripling/exercise.toml": [
+        "Tripling",
+        "drop this line",
+        "Three times.",
+        "Three times a number",
+    ],
+    "exercises/tripling/README.md": ["Tripling", "gives three times `x`.", "tripling(1.0) is 3.0."],
+    "exercises/tripling/tripling.py": ["Tripling.", "Three times ``x``, float."],
+    "exercises/tripling/hints.toml": ["What is once more than twice?", "Add three times.", "Return 3 * x."],
+    "graders/tripling/checks.py": [
+        "Three times two is six",
+        "",
+        "",
+        "round-off",
+        "tripling(x)",
+        "The result is not three times the number.",
+        "Add the number three times.",
+        "DOUBLES",
+    ],
+    "solutions/tripling/tripling.py": ["Tripling.", "Three times ``x``.", "solved"],
+    "solutions/tripling/README.md": ["Three times is twice and once more."],
+    "solutions/tripling/mutants.toml": ["Three is two.", "DOUBLES"],
+    "solutions/tripling/accepted/unusual.py": ["Adds.", "added"],
+    "solutions/tripling/mutants/wrong.py": ["Doubles.", "doubled"],
+}
+SOLVED["exercises/tripling/checks.py"] = SOLVED["graders/tripling/checks.py"]
+
+#: Lines of the templates that hold code, and what an author makes of them.
+CODE = {
+    'raise NotImplementedError("solved")': "return 3 * x",
+    'raise NotImplementedError("added")': "return x + x + x",
+    'raise NotImplementedError("doubled")': "return 2 * x",
+    "expected = 1.0": "expected = 3.0",
+    "expected = 2.0": "expected = 6.0",
+    "# drop\n": "",
+    "  # \n": "\n",
+}
+
+
+def fill(mini: Path) -> None:
+    """Fill every blank as an author would, and list the exercise in its lesson."""
+    for name, words in SOLVED.items():
+        path, left = mini / name, list(words)
+        text = BLANK.sub(lambda _, left=left: left.pop(0), path.read_text(encoding="utf-8"))
+        assert not left
+        for old, new in CODE.items():
+            text = text.replace(old, new)
+        path.write_text(text, encoding="utf-8")
+    lesson = mini / "lessons" / "half-as-much.md"
+    lesson.write_text(lesson.read_text().replace('["halving"]', '["halving", "tripling"]'))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(mini: Path) -> None:
+    new_exercise(Catalog(), "tripling")
+    fill(mini)
+    report = audit(Catalog())
+    assert [f"{p.where} {p.message}" for p in report.problems] == []
+    assert report.exercises == ("doubling", "halving", "tripling")
+    assert Catalog().exercise("tripling").order == 3
+
+
+def test_the_audit_names_every_blank_with_its_line(mini: Path) -> None:
+    files = new_exercise(Catalog(), "tripling")
+    expected = {
+        (str(path.relative_to(mini)), number)
+        for path in files
+        for number, line in enumerate(path.read_text().split("\n"), start=1)
+        if "<<FILL IN" in line
+    }
+    report = audit(Catalog(), "tripling")
+    assert {(p.file, p.line) for p in report.problems} == expected
+    assert {p.code for p in report.problems} == {"blank"}
+    assert {file for file, _ in expected} == set(SOLVED)
+    assert report.graded == 0
+
+
+def test_one_blank_left_over_is_one_problem(mini: Path) -> None:
+    new_exercise(Catalog(), "tripling")
+    fill(mini)
+    path = mini / "solutions" / "tripling" / "README.md"
+    path.write_text("<<FILL IN: why it works>>\n")
+    (problem,) = audit(Catalog()).problems
+    assert problem.where == "solutions/tripling/README.md:1"
+    assert problem.message == "still to be filled in: why it works."
+
+
+def test_a_name_of_several_words_becomes_a_module(mini: Path) -> None:
+    files = new_exercise(Catalog(), "three-times-as-much")
+    assert mini / "exercises" / "three-times-as-much" / "three_times_as_much.py" in files
+    assert Catalog().exercise("three-times-as-much").module == "three_times_as_much.py"
+
+
+@pytest.mark.parametrize(
+    "taken",
+    ["exercises/tripling/hints.toml", "solutions/tripling/mutants/wrong.py", "graders/tripling/checks.py"],
+)
+def test_nothing_is_overwritten_and_nothing_half_written(mini: Path, taken: str) -> None:
+    (mini / taken).parent.mkdir(parents=True)
+    (mini / taken).write_text("mine")
+    before = contents(mini)
+    with pytest.raises(UsageError, match="nothing is overwritten") as caught:
+        new_exercise(Catalog(), "tripling")
+    assert caught.value.code == "exists"
+    assert contents(mini) == before
+
+
+@pytest.mark.parametrize("name", ["Tripling", "../x", "checks", "diagnosis", "a_b", ""])
+def test_a_name_that_cannot_be_used_is_refused(mini: Path, name: str) -> None:
+    before = contents(mini)
+    with pytest.raises(UsageError):
+        new_exercise(Catalog(), name)
+    assert contents(mini) == before
+
+
+def test_a_new_lesson_passes_once_it_is_filled_and_listed(mini: Path) -> None:
+    (path,) = new_lesson(Catalog(), "three-times")
+    problems = audit(Catalog()).problems
+    assert {p.code for p in problems} == {"blank", "syllabus"}
+    path.write_text(BLANK.sub("Three times.", path.read_text()))
+    syllabus = mini / "lessons" / "syllabus.toml"
+    syllabus.write_text(syllabus.read_text().replace('"half-as-much"]', '"half-as-much", "three-times"]'))
+    assert audit(Catalog()).problems == ()
+    with pytest.raises(UsageError, match="nothing is overwritten"):
+        new_lesson(Catalog(), "three-times")
+
+
+def test_a_student_has_no_place_for_new_exercises(mini: Path) -> None:
+    (mini / "graders").rename(mini / "gone")
+    with pytest.raises(MissingCapabilityError):
+        new_exercise(Catalog(), "tripling")
+    with pytest.raises(MissingCapabilityError):
+        new_lesson(Catalog(), "three-times")

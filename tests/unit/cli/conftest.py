@@ -1,0 +1,149 @@
+"""The command line, run in this process on the miniature course, with a stand-in for the sandbox."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+
+
+@dataclass
+class Ran:
+    """How a command line ended, and what it said."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self):
+        """The one object on standard output; fails if there is anything else."""
+        return json.loads(self.out)
+
+
+class FakeSession:
+    """Grades by reading: a function passes if its body says RIGHT; UNREADABLE makes a file ungradable."""
+
+    def __init__(self, exercise):
+        from course.grading.verdict import CheckResult
+
+        self.exercise = exercise
+        self.checks = [
+            CheckResult(
+                id=f"{task.id}_works",
+                title=f"{task.title} works",
+                task=task.id,
+                status="pass",
+                visibility="public",
+                points=0,
+                max_points=2.0,
+            )
+            for task in exercise.task
+        ]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        return None
+
+    def grade(self, submission, only=None):
+        from course.grading.verdict import Problem, Verdict
+
+        source = submission.files[self.exercise.module].decode()
+        common = {"exercise": self.exercise.id, "scope": "public", "isolation": "L1"}
+        if "UNREADABLE" in source or "FAULT" in source:
+            state = "ungradable" if "UNREADABLE" in source else "grader_error"
+            problem = Problem("syntax_error", "Line 1 cannot be read.", "Look at line 1.")
+            return Verdict(
+                state=state, score=0, max_score=4.0, passed=False, checks=(), error=problem, **common
+            )
+        results = [self._result(check, source) for check in self.checks]
+        results = [result for result in results if only in {None, result.id}]
+        score, most = sum(r.points for r in results), sum(r.max_points for r in results)
+        passed = score >= self.exercise.pass_mark * most
+        return Verdict(
+            state="graded", score=score, max_score=most, passed=passed, checks=tuple(results), **common
+        )
+
+    def _result(self, check, source):
+        import msgspec
+
+        from course.grading.verdict import Status, Tolerance
+
+        body = source.partition(f"def {check.task}(")[2].partition("\ndef ")[0]
+        if "RIGHT" in body:
+            return msgspec.structs.replace(check, status=Status.PASS, points=2.0)
+        return msgspec.structs.replace(
+            check,
+            status=Status.FAIL,
+            message="It is not right.",
+            help="Write RIGHT.",
+            diagnosis="NOT_RIGHT",
+            expected=1.00000001,
+            actual=float("nan") if "NAN" in body else 1.0,
+            units="m",
+            input={"h": 0.05},
+            tolerance=Tolerance(rel=1e-9, source="closed form"),
+            stdout="\x1b[31mprinted\n",
+        )
+
+
+@pytest.fixture
+def course(monkeypatch, tmp_path, capsys):
+    """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err."""
+    from course.cli import app, checking
+
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
+    monkeypatch.setenv("COLUMNS", "80")
+    for name in ("FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(checking, "open_session", lambda exercise, catalog: FakeSession(exercise))
+
+    def run(*words):
+        capsys.readouterr()
+        code = app.run(words)
+        captured = capsys.readouterr()
+        return Ran(code, captured.out, captured.err)
+
+    return run
+
+
+@pytest.fixture
+def workspace(course, tmp_path, monkeypatch):
+    """A workspace with ``doubling`` started; the current folder."""
+    root = tmp_path / "my course é"
+    assert course("init", str(root)).code == 0
+    monkeypatch.chdir(root)
+    assert course("start", "doubling").code == 0
+    return root
+
+
+@pytest.fixture
+def write(workspace):
+    """Write a ``doubling.py`` whose functions have these bodies."""
+
+    def save(double="pass", doublings="pass", extra=""):
+        path = workspace / "doubling" / "doubling.py"
+        path.write_text(
+            f"def double(x):\n    '{double}'\n\n\ndef doublings(x, n):\n    '{doublings}'\n{extra}"
+        )
+        return path
+
+    return save
+
+
+@pytest.fixture
+def students_content(course, monkeypatch, tmp_path):
+    """The miniature course as a student has it: no solutions, no graders."""
+    copy = tmp_path / "students"
+    for name in ("exercises", "lessons"):
+        shutil.copytree(MINI_COURSE / name, copy / name)
+    monkeypatch.setenv("COURSE_CONTENT", str(copy))
+    return copy

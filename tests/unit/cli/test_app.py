@@ -1,0 +1,296 @@
+"""The program as a whole: its help, its one object, and the one place where errors end."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from course.cli import registry
+from course.errors import (
+    ContentError,
+    CourseError,
+    IntegrityError,
+    MissingCapabilityError,
+    NotFoundError,
+    UngradableError,
+    UsageError,
+)
+
+ROOT = Path(__file__).resolve().parents[3]
+
+#: The student's commands, as they are promised.
+STUDENT = [
+    *("init", "lessons", "lesson", "start", "check", "watch", "hint", "solution", "diff", "reset"),
+    *("update", "progress", "submit", "doctor", "demo"),
+]
+HEAVY = {"numpy", "matplotlib", "pymunk", "pytest", "msgspec", "sqlite3", "watchfiles", "textual", "nbformat"}
+
+
+def _python(*words, **environ):
+    return subprocess.run(
+        [sys.executable, *words],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environ},
+        timeout=120,
+        check=False,
+    )
+
+
+def _real(entry):
+    import importlib
+
+    return getattr(importlib.import_module(f"course.cli.{entry.module}"), entry.name)
+
+
+def test_every_promised_command_is_there():
+    assert set(STUDENT) <= set(registry.COMMANDS)
+
+
+@pytest.mark.parametrize("name", STUDENT)
+def test_every_command_has_help_with_an_example(course, name):
+    ran = course(name, "--help")
+    assert ran.code == 0
+    entry = registry.COMMANDS[name]
+    assert entry.summary in ran.out
+    assert f"Example: {entry.example}" in ran.out
+    assert entry.example.startswith(f"course {name}")
+
+
+@pytest.mark.parametrize("name", STUDENT)
+def test_the_summary_in_the_list_is_the_command_s_own(name):
+    entry = registry.COMMANDS[name]
+    assert _real(entry).__doc__.splitlines()[0] == entry.summary
+
+
+def test_the_list_of_commands_names_them_all(course):
+    words = course("--help").out
+    for name, entry in registry.COMMANDS.items():
+        assert re.search(rf"^\s+{name}\s+{re.escape(entry.summary)}", words, re.MULTILINE)
+
+
+def test_help_loads_nothing_heavy():
+    ran = _python("-X", "importtime", "-m", "course", "--help")
+    assert ran.returncode == 0
+    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
+    assert "typer" in loaded
+    assert not loaded & HEAVY
+
+
+def test_help_on_a_terminal_loads_nothing_heavy_either():
+    ran = _python("-X", "importtime", "-m", "course", "--help", FORCE_COLOR="1")
+    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
+    assert "rich" in loaded
+    assert not loaded & HEAVY
+
+
+@pytest.mark.parametrize("words", [["--version"], ["--version", "--json"], ["check", "--version"]])
+def test_version_wins_wherever_it_stands(course, words):
+    ran = course(*words)
+    assert ran.code == 0
+    assert "course " in ran.out + ran.err
+
+
+# -- one object ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "schema", "code"),
+    [
+        ("", "course.status/1", 0),
+        ("init", "course.init/1", 0),
+        ("lessons", "course.lessons/1", 0),
+        ("lesson", "course.lesson/1", 0),
+        ("start doubling", "course.start/1", 0),
+        ("check doubling", "course.check/1", 1),
+        ("check --all", "course.check-all/1", 1),
+        ("hint doubling", "course.hint/1", 0),
+        ("solution doubling", "course.solution/1", 5),
+        ("diff doubling", "course.diff/1", 0),
+        ("reset doubling --yes", "course.reset/1", 0),
+        ("update", "course.update/1", 0),
+        ("progress", "course.progress/1", 0),
+        ("submit", "course.submit/1", 3),
+        ("--version", "course.version/1", 0),
+        ("--help", "course.help/1", 0),
+        ("check --help", "course.help/1", 0),
+        ("check --nonsense", "course.check/1", 2),
+        ("chekc", "course.error/1", 2),
+        ("check one two", "course.check/1", 2),
+        ("author", "course.author/1", 2),
+        ("-C nowhere check", "course.check/1", 5),
+        ("check -C", "course.check/1", 2),
+        ("reset", "course.reset/1", 2),
+    ],
+)
+@pytest.mark.parametrize("where", ["before", "after"])
+def test_every_command_prints_exactly_one_object(course, workspace, line, schema, code, where):
+    words = line.split()
+    words = ["--json", *words] if where == "before" else [*words, "--json"]
+    if line == "check -C":
+        words = ["--json", *line.split()]
+    ran = course(*words)
+    body = ran.json
+    assert ran.out.count("\n") == 1
+    assert (body["schema"], body["exit_code"], ran.code) == (schema, code, code)
+    assert body["ok"] is (code == 0)
+    if "error" in body:
+        assert set(body["error"]) == {"code", "message", "help"}
+        assert body["error"]["message"] in ran.err
+
+
+def test_a_typo_is_answered_with_the_nearest_command(course):
+    assert "'check'" in course("chekc").err
+
+
+# -- the boundary ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def failing(course, monkeypatch):
+    """Make ``course doctor`` end by raising something."""
+    from course.cli import doctor
+
+    def arrange(error):
+        def doctor_that_fails() -> int:
+            """Say what works on this machine."""
+            raise error
+
+        monkeypatch.setattr(doctor, "doctor", doctor_that_fails)
+        return course
+
+    return arrange
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (UsageError("m", help="h"), 2),
+        (UngradableError("m", help="h"), 3),
+        (MissingCapabilityError("m", help="h"), 4),
+        (NotFoundError("m", help="h"), 5),
+        (IntegrityError("m", help="h"), 7),
+        (ContentError(Path("f.toml"), 3, "m", help="h"), 70),
+        (CourseError("m", help="h"), 70),
+    ],
+)
+def test_a_deliberate_error_is_message_help_and_exit_code(failing, error, code):
+    ran = failing(error)("doctor")
+    assert (ran.code, ran.out) == (code, "")
+    assert ran.err == f"{error.message}\nh\n"
+
+
+@pytest.mark.parametrize(
+    "error", [ZeroDivisionError("secret"), RecursionError(), MemoryError(), OSError("disk")]
+)
+def test_anything_else_is_one_line_and_a_report_in_a_file(failing, error, tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    ran = failing(error)("doctor")
+    assert ran.code == 70
+    assert ran.err.count("\n") == 1
+    assert "Traceback" not in ran.err
+    report = Path(re.search(r"details are in (.+)\.$", ran.err.strip())[1])
+    assert "Traceback" in report.read_text()
+    assert type(error).__name__ in report.read_text()
+
+
+def test_a_crash_is_in_the_envelope_too(failing, tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    ran = failing(ZeroDivisionError())("doctor", "--json")
+    assert (ran.code, ran.json["error"]["code"], ran.json["schema"]) == (70, "internal", "course.doctor/1")
+
+
+def test_a_crash_whose_report_cannot_be_written_is_still_one_line(failing, tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "not there"))
+    ran = failing(ZeroDivisionError())("doctor")
+    assert (ran.code, ran.err.count("\n")) == (70, 1)
+
+
+def test_ctrl_c_exits_130_and_says_that_nothing_is_lost(failing):
+    ran = failing(KeyboardInterrupt())("doctor")
+    assert ran.code == 130
+    assert "kept" in ran.err
+    assert failing(KeyboardInterrupt())("doctor", "--json").json["error"]["code"] == "interrupted"
+
+
+def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
+    from course.cli import doctor
+
+    def noisy() -> int:
+        """Say what works on this machine."""
+        print("noise")
+        return 0
+
+    monkeypatch.setattr(doctor, "doctor", noisy)
+    ran = course("doctor", "--json")
+    assert ran.json == {"schema": "course.doctor/1", "ok": True, "exit_code": 0}
+    assert "noise" in ran.err
+
+
+def test_a_reader_that_stops_reading_is_no_error(tmp_path):
+    script = (
+        "import subprocess, sys\n"
+        "p = subprocess.Popen([sys.executable, '-m', 'course', 'lessons'], stdout=subprocess.PIPE,"
+        " stderr=subprocess.PIPE)\n"
+        "p.stdout.close()\n"
+        "print(p.wait(), p.stderr.read())\n"
+    )
+    content = ROOT / "tests" / "fixtures" / "mini_course"
+    assert _python("-c", script, COURSE_CONTENT=str(content)).stdout == "0 b''\n"
+
+
+def test_the_folder_of_the_student_is_not_importable(tmp_path):
+    (tmp_path / "typer.py").write_text("raise SystemExit('hijacked')")
+    ran = subprocess.run(
+        [sys.executable, "-m", "course", "--version"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 0
+    assert "hijacked" not in ran.stderr
+
+
+# -- completion ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("typed", "expected"),
+    [
+        ("course check do", {"doubling"}),
+        ("course check --json ", {"doubling", "halving"}),
+        ("course --plain lesson ha", {"half-as-much"}),
+        ("course hi", {"hint"}),
+    ],
+)
+def test_the_shell_completes_commands_and_ids(typed, expected):
+    content = ROOT / "tests" / "fixtures" / "mini_course"
+    ran = _python(
+        "-m",
+        "course",
+        _COURSE_COMPLETE="complete_bash",
+        COMP_WORDS=typed,
+        COMP_CWORD=str(typed.count(" ")),
+        COURSE_CONTENT=str(content),
+    )
+    assert set(ran.stdout.split()) == expected
+
+
+def test_every_schema_in_the_code_is_named_after_a_command():
+    from course.cli import schemas
+
+    tags = {
+        kind.__struct_config__.tag
+        for kind in vars(schemas).values()
+        if isinstance(kind, type) and issubclass(kind, schemas.Envelope) and kind is not schemas.Envelope
+    }
+    known = {*registry.COMMANDS, "status", "check-all", "version", "help"}
+    assert {tag.removeprefix("course.").removesuffix("/1") for tag in tags} <= known

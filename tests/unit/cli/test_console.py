@@ -1,0 +1,155 @@
+"""What is said, in each of the three shapes."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import re
+
+import msgspec
+import pytest
+
+from course.cli.console import Console, Settings
+from course.cli.schemas import Bare, encode
+from course.errors import InternalError
+
+
+class Terminal(io.StringIO):
+    encoding = "utf-8"
+
+    def isatty(self):
+        return True
+
+
+def _console(*, terminal=True, environ=None, **settings):
+    out = Terminal() if terminal else io.StringIO()
+    err = io.StringIO()
+    return Console(Settings(**settings), stdout=out, stderr=err, environ=environ or {}), out, err
+
+
+def test_a_pipe_gets_one_fact_a_line_however_long():
+    console, out, _ = _console(terminal=False)
+    console.item("fail", "word " * 60, "end", indent=2)
+    assert out.getvalue() == "  fail: " + "word " * 60 + "end\n"
+
+
+def test_a_terminal_gets_lines_that_fit_it(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    console, out, _ = _console(environ={"NO_COLOR": "1"})
+    console.item("fail", "word " * 60, style="red")
+    console.line("word " * 60, indent=4)
+    console.table(("Exercise", "State"), [("integrators", "every public check passes")])
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()
+    assert len(lines) > 8
+    assert max(map(len, lines)) <= 60
+
+
+@pytest.mark.parametrize(
+    ("environ", "settings", "fancy"),
+    [
+        ({}, {}, True),
+        ({"TERM": "dumb"}, {}, False),
+        ({"TERM": "dumb", "FORCE_COLOR": "1"}, {}, False),
+        ({}, {"plain": True}, False),
+        ({"FORCE_COLOR": "1"}, {"json": True}, False),
+    ],
+)
+def test_which_shape_a_terminal_gets(environ, settings, fancy):
+    assert _console(environ=environ, **settings)[0].fancy is fancy
+
+
+def test_colour_can_be_forced_into_a_pipe_and_forbidden_on_a_terminal():
+    console, out, _ = _console(terminal=False, environ={"FORCE_COLOR": "1"})
+    console.line(("red", "red"))
+    assert "\x1b[31m" in out.getvalue()
+    console, out, _ = _console(environ={"NO_COLOR": "1"})
+    console.line(("red", "red"))
+    assert "\x1b[31m" not in out.getvalue()
+
+
+def test_a_table_in_a_pipe_names_every_value():
+    console, out, _ = _console(terminal=False)
+    console.table(("Id", "Score"), [("one", "3/4"), ("two", "")])
+    assert out.getvalue() == "Id: one; Score: 3/4\nId: two\n"
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_control_characters_are_shown_and_not_obeyed(terminal):
+    console, out, err = _console(terminal=terminal, environ={"NO_COLOR": "1"})
+    evil = "a\x1b]0;title\x07b\x9b2Jc\rd"
+    console.line(evil)
+    console.item("x", evil)
+    console.block(evil)
+    console.table(("x",), [(evil,)])
+    console.error(evil, evil)
+    console.warn(evil)
+    for text in (out.getvalue(), err.getvalue()):
+        assert not {"\x1b]", "\x07", "\x9b", "\r"} & {*text, *(text[i : i + 2] for i in range(len(text)))}
+        assert "\\x1b" in text
+
+
+def test_under_json_people_are_spoken_to_on_standard_error():
+    console, out, err = _console(json=True)
+    console.line("words")
+    console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
+    assert err.getvalue() == "words\n"
+    assert json.loads(out.getvalue()) == {"schema": "course.x/1", "ok": True, "exit_code": 0}
+
+
+def test_a_second_object_is_refused():
+    console, _, _ = _console(json=True)
+    console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
+    with pytest.raises(InternalError):
+        console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
+
+
+def test_quiet_drops_advice_and_keeps_results():
+    console, out, _ = _console(terminal=False, quiet=True)
+    console.note("advice")
+    console.line("result")
+    assert out.getvalue() == "result\n"
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    class Gone(io.StringIO):
+        writes = 0
+
+        def write(self, text):
+            self.writes += 1
+            raise BrokenPipeError
+
+    gone = Gone()
+    console = Console(Settings(), stdout=gone, stderr=io.StringIO(), environ={})
+    console.line("one")
+    console.line("two")
+    console.error("three")
+    console.flush()
+    assert gone.writes == 1
+
+
+def test_nobody_there_means_no(monkeypatch):
+    monkeypatch.setattr("sys.stdin", io.StringIO("y\n"))
+    console, out, _ = _console()
+    assert not console.confirm("Really?")
+    assert out.getvalue() == ""
+
+
+@pytest.mark.parametrize(("answer", "agreed"), [("y\n", True), ("Yes\n", True), ("\n", False), ("", False)])
+def test_a_person_is_asked(monkeypatch, answer, agreed):
+    class Person(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setattr("sys.stdin", Person(answer))
+    console, out, _ = _console()
+    assert console.confirm("Really?") is agreed
+    assert out.getvalue() == "Really? [y/N] "
+
+
+def test_numbers_that_json_has_not_are_words():
+    class Values(msgspec.Struct):
+        values: object
+
+    body = Values([math.nan, {"a": math.inf}, (-math.inf, 1.5, True, None)])
+    assert encode(body) == b'{"values":["nan",{"a":"inf"},["-inf",1.5,true,null]]}'

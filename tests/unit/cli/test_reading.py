@@ -1,0 +1,329 @@
+"""A lesson on the screen and for a screen reader."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+from rich.console import Console
+
+from course.catalog.models import Lesson
+from course.cli.lesson_words import value_spoken, value_text
+from course.cli.pictures import InlinePicture, protocol_of
+from course.cli.reading import Reader, lesson_pages, render_lesson
+from course.cli.reading_plain import sentences
+from course.errors import NotFoundError
+
+TEXT = """+++
+ignored = true
++++
+
+Opening words with $h\\omega$ and [4.4e8](=x) in *one* line.
+
+A long paragraph has words enough to fill more than one line of the widest screen that anybody would read a \
+lesson on, and then a few more of them, so that it has to be wrapped wherever it is shown.
+
+> **Myth.** All is well.
+
+## First section
+
+| method | order |
+|:--|--:|
+| a rather long name | 1 |
+| b | $z^2$ |
+
+> **Predict.** What comes out?
+
+```python
+print("four", 2 + 2)
+```
+
+```output
+four 4
+```
+
+```python hidden
+x = 1
+```
+
+![Two lines that cross at one](figure:integrators-stability)
+They cross.
+
+> **Answer.** Four. Then [more](lesson:other) of it.
+
+## Second section
+
+1. one
+2. two
+
+$$
+q_{n+1} = q_n
+$$
+
+```mermaid
+flowchart LR
+  accDescr: A leads to B.
+  A --> B
+```
+
+```drawing
+A ──▶ B
+```
+
+```console
+$ course check integrators  # looks at your file
+```
+
+## Sources
+
+- E. Hairer, *A book*, 2003. [example.org](https://example.org)
+"""
+
+
+class StubCatalog:
+    """Knows one other lesson."""
+
+    def lesson(self, name: str) -> str:
+        if name != "other":
+            raise NotFoundError("no such lesson")
+        return name
+
+
+CATALOG = cast("Any", StubCatalog())
+
+
+@pytest.fixture
+def lesson(tmp_path: Path) -> Lesson:
+    path = tmp_path / "a-lesson.md"
+    path.write_text(TEXT, encoding="utf-8")
+    return Lesson(1, "a-lesson", "A lesson", 5, "What it is.", ("do this",), (), ("an-exercise",), str(path))
+
+
+def console_of(width: int = 60, **options: Any) -> Console:
+    return Console(file=io.StringIO(), width=width, markup=False, emoji=False, highlight=False, **options)
+
+
+def written(console: Console) -> str:
+    return cast("io.StringIO", console.file).getvalue()
+
+
+def shown(lesson: Lesson, width: int = 60, **options: Any) -> str:
+    console = console_of(width)
+    render_lesson(CATALOG, lesson, console, **options)
+    return written(console)
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 120])
+def test_no_line_is_wider_than_the_screen_or_than_prose_should_be(lesson: Lesson, width: int) -> None:
+    assert max(map(len, shown(lesson, width).splitlines())) <= min(width, 80)
+
+
+def test_no_line_ends_in_blanks_that_would_be_copied_along(lesson: Lesson) -> None:
+    assert not [line for line in shown(lesson).splitlines() if line != line.rstrip()]
+
+
+def test_the_screen_shows_formulae_numbers_code_output_drawing_and_commands(lesson: Lesson) -> None:
+    text = shown(lesson)
+    for part in ("hω", "4.4 × 10⁸", "z²", 'print("four", 2 + 2)', "four 4", "qₙ₊₁ = qₙ", "A ──▶ B"):
+        assert part in text
+    assert "$ course check integrators\n      looks at your file" in text
+    assert "more (course lesson other)" in text
+    assert "1. one" in text
+    assert "Then practise: course start an-exercise" in text
+
+
+@pytest.mark.parametrize("width", range(30, 60))
+def test_a_short_formula_is_never_broken_over_two_lines(lesson: Lesson, width: int) -> None:
+    Path(lesson.path).write_text(
+        "+++\n+++\n\nThe growth of it all is $1 + z^2$ on each step.", encoding="utf-8"
+    )
+    assert "1 + z²" in shown(lesson, width)
+
+
+def test_a_hidden_cell_is_not_shown(lesson: Lesson) -> None:
+    assert "x = 1" not in shown(lesson)
+    assert "x = 1" not in shown(lesson, plain=True)
+
+
+def test_passages_are_named_in_words_and_not_by_colour_alone(lesson: Lesson) -> None:
+    assert "┃ Myth\n  ┃ All is well." in shown(lesson)
+    assert "Myth: All is well." in shown(lesson, plain=True)
+
+
+def test_a_figure_without_pictures_is_its_caption_what_is_seen_and_the_command(lesson: Lesson) -> None:
+    text = shown(lesson)
+    assert "Figure 1. They cross." in text
+    assert "To be seen: Two lines that cross at one" in text
+    assert "course lesson a-lesson --figures DIR" in text
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_figures_are_written_where_asked_and_their_path_is_said(
+    lesson: Lesson, tmp_path: Path, plain: bool
+) -> None:
+    console = console_of(400)
+    (picture,) = render_lesson(CATALOG, lesson, console, plain=plain, figures_dir=tmp_path / "f", width=400)
+    assert picture == tmp_path / "f" / "integrators-stability.png"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert f"Picture:{picture}" in "".join(written(console).split())
+
+
+def test_a_table_too_wide_for_the_screen_becomes_facts(lesson: Lesson) -> None:
+    words = ("extraordinarily", "incomprehensible", "circumstantially")
+    table = f"| {' | '.join(words)} |\n|--|--|--|\n| one | two | three |\n"
+    Path(lesson.path).write_text(f"+++\n+++\n\n{table}", encoding="utf-8")
+    assert "incomprehensible: two" in shown(lesson, 40)
+    assert "incomprehensible: two" not in shown(lesson, 80)
+
+
+def test_a_table_that_fits_breaks_no_word(lesson: Lesson) -> None:
+    lines = shown(lesson, 40).splitlines()
+    assert any(re.fullmatch(r"  method +order", line) for line in lines)
+    assert "…" not in "".join(lines)
+
+
+def test_plain_is_words_only(lesson: Lesson) -> None:
+    text = shown(lesson, 60, plain=True)
+    assert not set(text) & set("─│┃┌▶•ωₙ²")
+    for line in (
+        "Opening words with h omega and 4.4 times 10 to the power 8 in one line.",
+        "Section: First section",
+        "Row 2",
+        "order: z squared",
+        "Formula: q sub n plus 1 end sub equals q sub n",
+        "Diagram: A leads to B.",
+        "Step 1: one",
+        "Try: course check integrators",
+        "What it does: looks at your file",
+        "It prints, 1 line:",
+        "Source 1: E. Hairer, A book, 2003. example.org",
+    ):
+        assert f"{line}\n" in text
+
+
+def test_plain_breaks_no_line_to_the_width(lesson: Lesson) -> None:
+    assert shown(lesson, 20, plain=True) == shown(lesson, 120, plain=True)
+
+
+def test_a_terminal_that_cannot_show_the_letters_gets_what_a_screen_reader_gets(lesson: Lesson) -> None:
+    ascii_file = io.TextIOWrapper(io.BytesIO(), encoding="ascii", errors="replace")
+    render_lesson(CATALOG, lesson, Console(file=ascii_file, width=60, markup=False))
+    ascii_file.seek(0)
+    assert "Section: First section" in ascii_file.read()
+
+
+def test_colour_is_left_out_where_it_is_not_wanted(lesson: Lesson, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm-256color")
+    coloured = console_of(60, force_terminal=True, color_system="256")
+    quiet = console_of(60, force_terminal=True, color_system="256", no_color=True)
+    for console in (coloured, quiet):
+        render_lesson(CATALOG, lesson, console)
+    colours = re.compile(r"\x1b\[[\d;]*\b3[1-7]\b[\d;]*m")
+    assert colours.search(written(coloured))
+    assert not colours.search(written(quiet))
+
+
+def test_a_page_ends_where_a_section_or_a_prediction_does(lesson: Lesson) -> None:
+    pages = lesson_pages(lesson)
+    assert [page.section for page in pages] == [
+        "",
+        "First section",
+        "First section",
+        "Second section",
+        "Sources",
+    ]
+    assert [page.first for page in pages] == [True, False, False, False, False]
+
+
+def test_the_page_with_a_prediction_does_not_show_its_answer(lesson: Lesson) -> None:
+    console = console_of()
+    reader = Reader(CATALOG, lesson, console)
+    reader.show(reader.pages[1])
+    assert "What comes out?" in written(console)
+    assert "four 4" not in written(console)
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_the_pages_in_order_are_the_lesson(lesson: Lesson, plain: bool) -> None:
+    console = console_of()
+    reader = Reader(CATALOG, lesson, console, plain=plain)
+    for page in reader.pages:
+        reader.show(page)
+    assert written(console) == shown(lesson, plain=plain)
+
+
+@pytest.mark.parametrize(
+    ("environ", "protocol"),
+    [
+        ({"KITTY_WINDOW_ID": "1"}, "kitty"),
+        ({"TERM_PROGRAM": "ghostty"}, "kitty"),
+        ({"TERM_PROGRAM": "iTerm.app"}, "iterm2"),
+        ({"TERM_PROGRAM": "WezTerm"}, "iterm2"),
+        ({"TERM": "xterm-256color"}, None),
+        ({"KITTY_WINDOW_ID": "1", "TMUX": "/tmp/tmux"}, None),
+        ({"KITTY_WINDOW_ID": "1", "TERM": "dumb"}, None),
+    ],
+)
+def test_pictures_are_shown_only_where_the_terminal_is_known_to_show_them(
+    environ: dict[str, str], protocol: str | None
+) -> None:
+    assert protocol_of(console_of(force_terminal=True), environ) == protocol
+
+
+def test_a_pipe_gets_no_pictures() -> None:
+    assert protocol_of(console_of(), {"KITTY_WINDOW_ID": "1"}) is None
+
+
+def test_a_kitty_picture_arrives_whole_in_chunks_of_4096() -> None:
+    png = bytes(range(256)) * 40
+    codes = re.findall(r"\x1b_G([^;]*);([^\x1b]*)\x1b\\", InlinePicture(png, "kitty", 70).escape_codes())
+    assert codes[0][0] == "a=T,f=100,q=2,c=70,m=1"
+    assert [head for head, _ in codes[1:]] == ["m=1"] * (len(codes) - 2) + ["m=0"]
+    assert all(len(data) <= 4096 for _, data in codes)
+    assert base64.b64decode("".join(data for _, data in codes)) == png
+
+
+def test_an_iterm_picture_arrives_whole() -> None:
+    code = InlinePicture(b"abc", "iterm2", 70).escape_codes()
+    assert code == "\x1b]1337;File=inline=1;size=3;width=70;preserveAspectRatio=1:YWJj\x07"
+
+
+def test_a_picture_is_sent_to_a_terminal_that_shows_it(
+    lesson: Lesson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("KITTY_WINDOW_ID", "1")
+    for name in ("TMUX", "STY", "ZELLIJ"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", "xterm-kitty")
+    console = console_of(60, force_terminal=True)
+    render_lesson(CATALOG, lesson, console)
+    text = written(console)
+    assert "\x1b_Ga=T,f=100" in text
+    assert "To be seen" not in text
+    assert text.index("\x1b_Ga=T") < text.index("They cross.")
+
+
+def test_sentences_end_at_full_stops_and_not_at_initials() -> None:
+    assert sentences('One by E. Hairer. "Two" at 0.5 s! Three? (Four.)') == [
+        "One by E. Hairer.",
+        '"Two" at 0.5 s!',
+        "Three?",
+        "(Four.)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "on_screen", "spoken"),
+    [
+        ("-0.0981", "−0.0981", "minus 0.0981"),
+        ("1e-14", "10⁻¹⁴", "1 times 10 to the power minus 14"),
+        ("4.4e8 J", "4.4 × 10⁸ J", "4.4 times 10 to the power 8 J"),
+        ("180,000", "180,000", "180,000"),
+    ],
+)
+def test_a_number_is_written_and_spoken_as_people_do(text: str, on_screen: str, spoken: str) -> None:
+    assert (value_text(text), value_spoken(text)) == (on_screen, spoken)

@@ -1,0 +1,208 @@
+"""A verdict on the screen."""
+
+from __future__ import annotations
+
+import io
+
+import msgspec
+import pytest
+
+from course.catalog.models import Exercise, Task
+from course.cli.console import Console, Settings
+from course.cli.verdicts import show_verdict
+from course.grading.verdict import CheckResult, Divergence, Status, Tolerance, Verdict
+
+EXERCISE = Exercise(
+    format_version=1,
+    id="integrators",
+    title="Integrators",
+    module="integrators.py",
+    lesson="integration",
+    order=1,
+    summary="",
+    task=(Task("euler", "Explicit Euler", 4), Task("verlet", "Velocity Verlet", 4), Task("rk4", "RK4", 4)),
+    hidden_checks=7,
+)
+
+
+def _check(name, task, status=Status.PASS, **fields):
+    base = CheckResult(
+        id=name,
+        title=f"{name} works",
+        task=task,
+        status=status,
+        visibility="public",
+        points=2.0 if status == "pass" else 0.0,
+        max_points=2.0,
+    )
+    return msgspec.structs.replace(base, **fields)
+
+
+def _unwritten(name, task):
+    return _check(
+        name,
+        task,
+        Status.ERROR,
+        message="Not written.",
+        help="Write it.",
+        diagnosis="NOT_IMPLEMENTED",
+        traceback="line 3",
+    )
+
+
+def _shown(*checks, verbose=False, plain=True, columns=60, monkeypatch=None, **fields):
+    score, most = sum(c.points for c in checks), sum(c.max_points for c in checks)
+    verdict = Verdict(
+        exercise="integrators",
+        scope="public",
+        state="graded",
+        score=score,
+        max_score=most,
+        passed=score >= 0.7 * most,
+        checks=checks,
+        isolation="L3",
+        **fields,
+    )
+    out = io.StringIO()
+    environ = {} if plain else {"FORCE_COLOR": "1", "NO_COLOR": "1"}
+    show_verdict(Console(Settings(), stdout=out, environ=environ), EXERCISE, verdict, verbose=verbose)
+    return out.getvalue()
+
+
+def test_checks_stand_under_their_task_with_its_points():
+    rows = _shown(_check("a", "euler"), _check("b", "verlet"), _check("c", "euler")).splitlines()
+    assert rows == [
+        "Explicit Euler: 4/4 points",
+        "  pass: a works",
+        "  pass: c works",
+        "Velocity Verlet: 2/2 points",
+        "  pass: b works",
+        "All 3 public checks pass; 7 hidden checks run when you submit.",
+        "Score 6/6.",
+    ]
+
+
+def test_a_failure_says_what_was_measured_expected_why_and_where():
+    words = _shown(
+        _check(
+            "a",
+            "euler",
+            Status.FAIL,
+            message="Energy grows.",
+            help="Look at the order.",
+            actual=1.0,
+            expected=1.01,
+            units="J",
+            input={"h": 0.05},
+            tolerance=Tolerance(rel=0.02, source="closed form"),
+            first_divergence=Divergence(t=0.05, step=1, quantity="q[0]"),
+            diagnosis="EULER_IS_SEMI_IMPLICIT",
+        )
+    )
+    assert words.splitlines()[1:9] == [
+        "  FAIL: a works  [a]",
+        "    Energy grows.",
+        "    Look at the order.",
+        "    measured: 1 J",
+        "    expected: 1.01 J, within 2 % (closed form)",
+        "    input: h = 0.05",
+        "    first off: q[0] at step 1, t = 0.05 s",
+        "    diagnosis: EULER_IS_SEMI_IMPLICIT",
+    ]
+
+
+def test_functions_not_written_yet_are_listed_once_at_the_end():
+    words = _shown(
+        _unwritten("a", "euler"), _check("b", "verlet"), _unwritten("c", "rk4"), _unwritten("d", "rk4")
+    )
+    assert words.count("Write it.") == 1
+    assert words.index("b works") < words.index("to do: Explicit Euler") < words.index("to do: RK4")
+    assert "Not written yet: 0/6 points" in words
+    assert "verbose" not in words
+
+
+def test_one_cause_for_all_checks_of_a_task_is_said_once():
+    checks = [
+        _check(
+            name,
+            "rk4",
+            Status.ERROR,
+            message="No such function.",
+            help="Define it.",
+            diagnosis="MISSING_FUNCTION",
+        )
+        for name in "ab"
+    ]
+    words = _shown(*checks)
+    assert words.count("No such function.") == 1
+    assert "a works" not in words
+
+
+def test_two_failures_with_the_same_words_keep_their_titles():
+    checks = [_check(name, "rk4", Status.FAIL, message="Wrong.", help="Try.") for name in "ab"]
+    words = _shown(*checks)
+    assert "a works" in words
+    assert "b works" in words
+    assert words.count("Try.") == 1
+
+
+def test_a_skipped_check_names_what_it_waits_for():
+    words = _shown(
+        _check("a", "euler", Status.FAIL, message="No."), _check("b", "euler", Status.SKIP, blocked_by="a")
+    )
+    assert "skip: b works" in words
+    assert "Runs once a passes." in words
+
+
+def test_a_task_that_is_all_skipped_is_not_called_unwritten():
+    words = _shown(
+        _check("a", "euler", Status.FAIL, message="No."), _check("b", "rk4", Status.SKIP, blocked_by="a")
+    )
+    assert "Not written" not in words
+    assert "RK4: 0/2 points" in words
+
+
+def test_a_check_of_an_unlisted_task_does_not_vanish():
+    assert "stray works" in _shown(_check("stray", "elsewhere"))
+
+
+def test_tracebacks_are_shown_on_request_and_offered_otherwise():
+    check = _check(
+        "a", "euler", Status.ERROR, message="It raised.", traceback="line 3 in euler", stdout="hello"
+    )
+    assert "line 3" not in _shown(check)
+    assert _shown(check).count("--verbose") == 1
+    shown = _shown(check, verbose=True)
+    assert "line 3 in euler" in shown
+    assert "hello" in shown
+
+
+def test_every_status_is_a_word_of_its_own():
+    for status in Status:
+        word = status if status in {"pass", "skip"} else status.upper()
+        assert f"{word}: a works" in _shown(_check("a", "euler", status, message="m"), _check("b", "euler"))
+
+
+@pytest.mark.parametrize("columns", [60, 120])
+def test_lines_fit_the_terminal(monkeypatch, columns):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    long = "a sentence that goes on and on about energy and momentum " * 4
+    words = _shown(
+        _check(
+            "a_rather_long_identifier_of_a_check",
+            "euler",
+            Status.FAIL,
+            message=long,
+            help=long,
+            actual=[0.1] * 20,
+        ),
+        _unwritten("b", "rk4"),
+        plain=False,
+    )
+    import re
+
+    assert max(len(re.sub(r"\x1b\[[0-9;]*m", "", row)) for row in words.splitlines()) <= columns
+
+
+def test_warnings_are_shown():
+    assert "Note: careful" in _shown(_check("a", "euler"), warnings=("careful",))

@@ -1,0 +1,210 @@
+"""The diagnosis of ``integrators``: every wrong formula is recognised as itself and none as another."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+from course.physics import systems
+
+probes = kit.companion("integrators", "probes")
+formulas = kit.companion("integrators", "formulas")
+words = kit.companion("integrators", "diagnosis").WORDS
+
+
+class Fake:
+    """A submission that consists of the given functions."""
+
+    def __init__(self, **functions):
+        self._functions = functions
+
+    def call(self, name, *args):
+        return self._functions[name](*args)
+
+    def march(self, name, system, q0, v0, h, n, t0=0.0):
+        q, v = [np.array(q0, float)], [np.array(v0, float)]
+        for i in range(n):
+            q_next, v_next = self._functions[name](system, t0 + i * h, q[-1], v[-1], h)
+            q.append(q_next)
+            v.append(v_next)
+        return t0 + h * np.arange(n + 1), np.array(q), np.array(v)
+
+
+CASES = [(task, code, step) for task, wrong in formulas.WRONG.items() for code, step in wrong]
+
+
+@pytest.mark.parametrize(
+    ("task", "code", "step"), CASES, ids=lambda value: value if isinstance(value, str) else ""
+)
+def test_each_wrong_formula_is_given_its_own_code(task, code, step):
+    damping = 0.0 if task == "velocity_verlet_step" else 0.7
+    run = (systems.DrivenPendulum(3.1, damping, 1.9, 2.3), [0.7], [0.3], 0.1, 12, 0.6)
+    diagnosis = probes.of_step(Fake(**{task: step}), task, run)
+    assert diagnosis.code == code
+    assert diagnosis.divergence.step == 1
+
+
+@pytest.mark.parametrize("task", formulas.RIGHT)
+def test_a_right_formula_is_given_no_code(task):
+    for step in formulas.RIGHT[task]:
+        assert probes.of_step(Fake(**{task: step}), task) is None
+
+
+@pytest.mark.parametrize("task", formulas.RIGHT)
+def test_no_two_codes_of_a_task_stand_for_the_same_step(task):
+    system = systems.DrivenPendulum(3.1, 0.0 if task == "velocity_verlet_step" else 0.7, 1.9, 2.3)
+    q, v = np.array([0.7, -0.4]), np.array([0.3, 1.1])
+    for (first, a), (second, b) in itertools.combinations(formulas.WRONG[task], 2):
+        if first != second:
+            ends = [np.concatenate(step(system, 0.6, q, v, 0.31)) for step in (a, b)]
+            assert np.abs(ends[0] - ends[1]).max() > 1e-4, (first, second)
+
+
+@pytest.mark.parametrize("task", formulas.RIGHT)
+@pytest.mark.parametrize(
+    ("code", "slip"),
+    [
+        ("RETURNS_SWAPPED", lambda right, *args: right(*args)[::-1]),
+        ("RETURNS_INCREMENT", lambda right, a, t, q, v, h: np.subtract(right(a, t, q, v, h), (q, v))),
+        ("WRONG_SIGN", lambda right, a, *rest: right(lambda *state: -a(*state), *rest)),
+        ("STEP_SIZE_MISSING", lambda right, a, t, q, v, h: right(a, t, q, v, 1.0)),
+        ("STATE_NOT_ADVANCED", lambda right, a, t, q, v, h: (q, v)),
+    ],
+)
+def test_a_slip_around_a_right_formula_is_recognised(task, code, slip):
+    for right in formulas.RIGHT[task]:
+        fake = Fake(**{task: lambda *args, right=right: slip(right, *args)})
+        assert probes.of_step(fake, task).code == code
+
+
+def test_frozen_times_are_recognised_in_a_runge_kutta_method_of_another_form():
+    def three_eighths_without_clock(accel, t, q, v, h):
+        def f(q, v):
+            return np.array([v, accel(t, q, v)])
+
+        y = np.array([q, v])
+        k1 = f(*y)
+        k2 = f(*(y + h / 3 * k1))
+        k3 = f(*(y + h * (k2 - k1 / 3)))
+        k4 = f(*(y + h * (k1 - k2 + k3)))
+        return tuple(y + h / 8 * (k1 + 3 * k2 + 3 * k3 + k4))
+
+    fake = Fake(rk4_step=three_eighths_without_clock)
+    assert probes.of_step(fake, "rk4_step").code == "STAGE_TIMES_FROZEN"
+
+
+def test_an_unknown_formula_is_described_by_how_it_converges():
+    def off_by_a_tenth(accel, t, q, v, h):
+        q_next, v_next = formulas.RIGHT["rk4_step"][0](accel, t, q, v, h)
+        return q_next + 0.1 * h * v, v_next
+
+    def ralston(accel, t, q, v, h):
+        a = accel(t, q, v)
+        b = accel(t + 2 * h / 3, q + 2 * h / 3 * v, v + 2 * h / 3 * a)
+        return q + h * (0.25 * v + 0.75 * (v + 2 * h / 3 * a)), v + h * (0.25 * a + 0.75 * b)
+
+    assert probes.of_step(Fake(rk4_step=off_by_a_tenth), "rk4_step").code == "DOES_NOT_CONVERGE"
+    assert probes.of_step(Fake(rk4_step=ralston), "rk4_step").code == "ORDER_TOO_LOW"
+
+
+def test_energy_that_an_unknown_formula_gains_or_loses_is_said():
+    fake = Fake(rk4_step=lambda *args: None)
+    assert probes.of_energy(fake, "rk4_step", 0.1).code == "ENERGY_GROWS"
+    assert probes.of_energy(fake, "rk4_step", -0.1).code == "ENERGY_FADES"
+
+
+COUNTING = {
+    "TRUNCATED_STEP_COUNT": lambda t_end, h: int(t_end / h),
+    "STEP_COUNT_ROUNDED_UP": lambda t_end, h: math.ceil(t_end / h),
+    "OFF_BY_ONE_SAMPLE": lambda t_end, h: round(t_end / h) - 1,
+    "TIME_ACCUMULATES": lambda t_end, h: len(np.arange(0, t_end + h, h)) - 1,
+    None: lambda t_end, h: round(t_end / h),
+}
+
+
+@pytest.mark.parametrize(("code", "count"), COUNTING.items(), ids=str)
+def test_the_rule_behind_a_wrong_number_of_samples_is_recognised(code, count):
+    def integrate(step, accel, q0, v0, t_end, h):
+        n = count(t_end, h)
+        return [h * np.arange(n + 1), np.zeros((n + 1, 1)), np.zeros((n + 1, 1))]
+
+    found = probes.of_count(Fake(integrate=integrate))
+    assert (found and found.code) == code
+
+
+HS = np.array([0.2, 0.11, 0.04, 0.03])
+ERRORS = np.array([0.9, 0.31, 0.04, 0.015])
+X, Y = np.log(HS), np.log(ERRORS)
+
+
+@pytest.mark.parametrize(
+    ("code", "value"),
+    [
+        ("ORDER_SLOPE_INVERTED", np.polyfit(Y, X, 1)[0]),
+        ("ORDER_SIGN_FLIPPED", -np.polyfit(X, Y, 1)[0]),
+        ("LOGARITHM_MISSING", np.polyfit(HS, ERRORS, 1)[0]),
+        ("LOGARITHM_MISSING", np.polyfit(X, ERRORS, 1)[0]),
+        ("LOGARITHMS_MIXED", np.polyfit(X, np.log10(ERRORS), 1)[0]),
+        ("ORDER_FROM_ENDS", (Y[0] - Y[-1]) / (X[0] - X[-1])),
+        ("ORDER_THROUGH_ORIGIN", X @ Y / (X @ X)),
+        ("ORDER_MEAN_OF_PAIRS", np.mean(np.diff(Y) / np.diff(X))),
+        ("ORDER_ROUNDED", float(round(np.polyfit(X, Y, 1)[0]))),
+    ],
+)
+def test_a_wrong_slope_is_recognised(code, value):
+    assert probes.of_order(float(value), HS, ERRORS).code == code
+
+
+def search(size, dz=0.01, zero=0.0, infinity=math.inf):
+    """A max_stable_step that walks up and asks ``size`` of the matrix to stay below one."""
+
+    def max_stable_step(step, omega):
+        grid = np.arange(0.05, 10.0, dz)
+        fails = np.flatnonzero(size(step.matrix(grid)) > 1 + 1e-8)
+        z = infinity if not fails.size else grid[fails[0]] if fails[0] else zero
+        return float(z / omega)
+
+    return max_stable_step
+
+
+RADIUS = lambda m: abs(np.linalg.eigvals(m)).max(axis=-1)  # noqa: E731
+SHEARED = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
+EULER = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
+CALM = systems.LinearStep([0.5], [0.1], [0.0], [0.4])
+
+
+@pytest.mark.parametrize(
+    ("code", "function", "step", "limit"),
+    [
+        ("RETURNS_Z", lambda step, omega: search(RADIUS)(step, 1.0), SHEARED, 2.0),
+        ("ASSUMES_ITS_LIMIT", lambda step, omega: 1.7 / omega, SHEARED, 2.0),
+        ("STABILITY_BY_NORM", search(lambda m: np.linalg.norm(m, 2, axis=(-2, -1))), SHEARED, 2.0),
+        ("STABILITY_BY_DETERMINANT", search(lambda m: abs(np.linalg.det(m))), SHEARED, 2.0),
+        (
+            "EIGENVALUES_WITHOUT_MODULUS",
+            search(lambda m: np.linalg.eigvals(m).real.max(axis=-1)),
+            SHEARED,
+            2.0,
+        ),
+        ("NO_ZERO", search(RADIUS, zero=0.05), EULER, 0.0),
+        ("NO_INFINITY", search(RADIUS, infinity=10.0), CALM, math.inf),
+        ("TOLERANCE_TOO_TIGHT", search(lambda m: RADIUS(m) + 2e-8), SHEARED, 2.0),
+        ("SEARCH_TOO_COARSE", search(RADIUS, dz=0.5), SHEARED, 2.0),
+    ],
+)
+def test_a_wrong_stability_search_is_recognised(code, function, step, limit):
+    omega = 3.0
+    fake = Fake(max_stable_step=function)
+    assert probes.of_stability(fake, function(step, omega), step, omega, limit).code == code
+
+
+def test_every_code_that_the_probes_can_name_has_a_sentence_and_advice():
+    for code, (looks_like, advice) in words.items():
+        assert code == code.upper()
+        assert looks_like.endswith(".")
+        assert advice.endswith((".", ")."))
+        assert len(advice) > 20

@@ -1,0 +1,41 @@
+"""The miniature course, its model solution, and warm sessions over it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.grading.session import GradingSession
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.catalog.models import Exercise
+
+MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+
+
+@pytest.fixture(scope="module")
+def catalog() -> Iterator[Catalog]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COURSE_CONTENT", str(MINI))
+        yield Catalog()
+
+
+@pytest.fixture(scope="module")
+def doubling(catalog: Catalog) -> Exercise:
+    return catalog.exercise("doubling")
+
+
+@pytest.fixture(scope="module")
+def solution() -> bytes:
+    return (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def session(catalog: Catalog, doubling: Exercise) -> Iterator[GradingSession]:
+    with GradingSession(doubling, catalog, scope="full", timeout=1.0) as opened:
+        yield opened

@@ -1,0 +1,230 @@
+"""A class folder as data: every odd thing in it is refused with a reason and read as nothing else."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import stat
+import zipfile
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.errors import NotFoundError
+from course.grading.intake import MAX_FILE, Entry, read_class, read_student, students
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+SOURCE = b"def double(x):\n    return 2 * x\n"
+
+
+def entry(folder: Path, exercise: Exercise, *, required: bool = True) -> Entry:
+    (found,) = read_student("ada", folder, [exercise], required=required)
+    return found
+
+
+def reason(folder: Path, exercise: Exercise) -> str:
+    found = entry(folder, exercise)
+    assert found.submission is None
+    assert found.problem is not None
+    assert found.problem.message
+    assert found.problem.help
+    return found.problem.code
+
+
+def archive(path: Path, members: dict[str, bytes], *, manifest: bool = True, mode: int = 0o100644) -> Path:
+    sums = {name: hashlib.sha256(content).hexdigest() for name, content in members.items()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
+        for name, content in members.items():
+            info = zipfile.ZipInfo(name)
+            info.external_attr = mode << 16
+            target.writestr(info, content, zipfile.ZIP_DEFLATED)
+        if manifest:
+            target.writestr("submission.json", json.dumps({"format_version": 1, "files": sums}))
+    return path
+
+
+@pytest.mark.parametrize("place", ["doubling.py", "doubling/doubling.py"])
+def test_a_module_is_found_in_both_places(tmp_path: Path, doubling: Exercise, place: str) -> None:
+    path = tmp_path / place
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(SOURCE)
+    found = entry(tmp_path, doubling)
+    assert found.submission is not None
+    assert dict(found.submission.files) == {"doubling.py": SOURCE}
+
+
+def test_a_zip_made_by_submit_is_read(tmp_path: Path, doubling: Exercise) -> None:
+    archive(tmp_path / "mine.zip", {"doubling/doubling.py": SOURCE})
+    found = entry(tmp_path, doubling)
+    assert found.submission is not None
+    assert found.submission.files["doubling.py"] == SOURCE
+
+
+def test_a_zip_made_by_hand_is_read_and_what_systems_add_is_ignored(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    members = {"doubling/doubling.py": SOURCE, "__MACOSX/doubling/._doubling.py": b"x", ".DS_Store": b"y"}
+    archive(tmp_path / "mine.zip", members, manifest=False)
+    assert entry(tmp_path, doubling).submission is not None
+
+
+def test_without_a_file_it_is_ungradable_if_asked_for_and_else_not_submitted(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    assert reason(tmp_path, doubling) == "no_file"
+    quiet = entry(tmp_path, doubling, required=False)
+    assert quiet.submission is None
+    assert quiet.problem is None
+
+
+def test_two_candidates_are_never_guessed_between(tmp_path: Path, doubling: Exercise) -> None:
+    (tmp_path / "doubling.py").write_bytes(SOURCE)
+    archive(tmp_path / "mine.zip", {"doubling/doubling.py": SOURCE})
+    assert reason(tmp_path, doubling) == "ambiguous_files"
+
+
+def test_a_notebook_is_refused_with_a_reason(tmp_path: Path, doubling: Exercise) -> None:
+    (tmp_path / "doubling.ipynb").write_text("{}", "utf-8")
+    assert reason(tmp_path, doubling) == "notebook"
+
+
+def test_what_is_not_a_plain_file_of_reasonable_size_is_refused(tmp_path: Path, doubling: Exercise) -> None:
+    target = tmp_path / "doubling.py"
+    target.write_bytes(b"#" * (MAX_FILE + 1))
+    assert reason(tmp_path, doubling) == "too_large"
+    target.write_bytes(b" \n\t")
+    assert reason(tmp_path, doubling) == "empty_file"
+    target.unlink()
+    target.mkdir()
+    assert reason(tmp_path, doubling) == "not_a_file"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="links and pipes as POSIX has them")
+def test_links_and_pipes_are_refused_and_never_followed_or_waited_for(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    secret = tmp_path / "secret.py"
+    secret.write_bytes(SOURCE)
+    target = tmp_path / "student" / "doubling.py"
+    target.parent.mkdir()
+    target.symlink_to(secret)
+    assert reason(target.parent, doubling) == "symlink"
+    target.unlink()
+    os.mkfifo(target)
+    assert reason(target.parent, doubling) == "not_a_file"
+    target.unlink()
+    (target.parent / "doubling").symlink_to(tmp_path, target_is_directory=True)
+    (tmp_path / "doubling.py").write_bytes(SOURCE)
+    assert reason(target.parent, doubling) == "symlink"
+    linked = tmp_path / "linked"
+    linked.symlink_to(target.parent, target_is_directory=True)
+    assert reason(linked, doubling) == "symlink"
+
+
+def _bomb(path: Path) -> None:
+    archive(path, {"doubling/doubling.py": b"#" * (4 << 20)})
+
+
+def _many(path: Path) -> None:
+    archive(path, {f"file{number}.txt": b"" for number in range(21)})
+
+
+def _lying_size(path: Path) -> None:
+    archive(path, {"doubling/doubling.py": b"#" * (MAX_FILE + 1)}, manifest=False)
+    raw = bytearray(path.read_bytes())
+    size = (MAX_FILE + 1).to_bytes(4, "little")
+    while (at := raw.find(size)) >= 0:
+        raw[at : at + 4] = (100).to_bytes(4, "little")
+    path.write_bytes(raw)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        _bomb,
+        _many,
+        _lying_size,
+        lambda path: archive(path, {"../doubling.py": SOURCE}),
+        lambda path: archive(path, {"/etc/doubling.py": SOURCE}),
+        lambda path: archive(path, {"doubling\\doubling.py": SOURCE}),
+        lambda path: archive(path, {"C:/doubling.py": SOURCE}),
+        lambda path: archive(path, {"doubling/doubling.py": b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777),
+        lambda path: archive(path, {"inner.zip": b"PK", "doubling/doubling.py": SOURCE}),
+        lambda path: path.write_bytes(b"PK\x03\x04 and nothing that follows"),
+        lambda path: path.write_bytes(b""),
+        lambda path: path.mkdir(),
+    ],
+    ids=[
+        "bomb", "many files", "lying size", "parent path", "absolute path", "backslash", "drive", "link",
+        "nested", "damaged", "empty", "a folder",
+    ],
+)  # fmt: skip
+def test_hostile_archives_are_refused(
+    tmp_path: Path, doubling: Exercise, make: Callable[[Path], object]
+) -> None:
+    make(tmp_path / "mine.zip")
+    assert reason(tmp_path, doubling) == "refused_archive"
+
+
+def test_a_changed_archive_fails_its_checksum(tmp_path: Path, doubling: Exercise) -> None:
+    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
+        target.writestr("doubling/doubling.py", SOURCE)
+        target.writestr(
+            "submission.json", json.dumps({"format_version": 1, "files": {"doubling/doubling.py": "0" * 64}})
+        )
+    assert reason(tmp_path, doubling) == "checksum_mismatch"
+
+
+@pytest.mark.parametrize(
+    ("manifest", "code"),
+    [
+        ('{"format_version": 2, "files": {}}', "newer_format"),
+        ("[1, 2", "refused_archive"),
+        ("[" * 100_000, "refused_archive"),
+        ('{"format_version": 1, "files": [1]}', "refused_archive"),
+        ("null", "refused_archive"),
+    ],
+)
+def test_a_manifest_that_cannot_be_trusted_is_refused(
+    tmp_path: Path, doubling: Exercise, manifest: str, code: str
+) -> None:
+    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
+        target.writestr("doubling/doubling.py", SOURCE)
+        target.writestr("submission.json", manifest)
+    assert reason(tmp_path, doubling) == code
+
+
+def test_names_of_students_are_data(tmp_path: Path, catalog: Catalog, doubling: Exercise) -> None:
+    names = ["=1+1", "Ada\nLovelace", "; rm -rf ~", "<b>x", "..evil", "ÅÄÖ 漢字", "'quoted'", "a b"]
+    for name in names:
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "doubling.py").write_bytes(SOURCE)
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "stray.txt").write_text("not a student", "utf-8")
+    found = list(read_class(tmp_path, [doubling], required=True))
+    assert sorted(item.student for item in found) == sorted(names)
+    assert all(item.submission is not None for item in found)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="file names are text there")
+def test_names_that_are_no_text_stay_apart(tmp_path: Path, doubling: Exercise) -> None:
+    for raw in (b"\xff", b"\\xff"):
+        folder = tmp_path / os.fsdecode(raw)
+        folder.mkdir()
+        (folder / "doubling.py").write_bytes(SOURCE)
+    names = [name for name, _ in students(tmp_path)]
+    assert len(set(names)) == 2
+    for name in names:
+        name.encode("utf-8")
+
+
+def test_no_such_class_is_said_plainly(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match="not a folder of submissions"):
+        students(tmp_path / "nowhere")

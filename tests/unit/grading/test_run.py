@@ -1,0 +1,201 @@
+"""A whole grading run: many submissions, several graders, and what happens when it is killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.errors import UsageError
+from course.grading.batch import BatchOptions, grade_all
+from course.grading.gradebook import Gradebook
+from course.grading.intake import read_class
+from course.grading.run import RunOptions, grade_class
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+ROOT = Path(__file__).resolve().parents[3]
+
+WRONG = b"\ndef double(x):\n    return x\n"
+
+
+def make_class(folder: Path, solution: bytes, students: int) -> None:
+    """Every third student is wrong about one function."""
+    for number in range(students):
+        place = folder / f"student-{number:03}"
+        place.mkdir(parents=True)
+        (place / "doubling.py").write_bytes(
+            solution + (WRONG if number % 3 == 0 else b"") + b"# %d\n" % number
+        )
+
+
+def scores(out: Path) -> dict[str, float]:
+    with Gradebook(out / "gradebook.sqlite") as book:
+        return {result.key.student: result.verdict.score for result in book.results()}
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "course", "grade", "run", *map(str, arguments), "--exercise", "doubling"]
+
+
+def environment() -> dict[str, str]:
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    return {**os.environ, "COURSE_CONTENT": str(MINI), "PYTHONPATH": path}
+
+
+def test_two_graders_give_what_one_gives(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
+    make_class(tmp_path / "class", solution, 12)
+    seen: list[tuple[str, float]] = []
+    for graders in (1, 2):
+        options = RunOptions(exercises=("doubling",), graders=graders, at_least="L1", seed=3)
+        out = tmp_path / f"out{graders}"
+        summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None)
+        assert (summary.exit_code, summary.states["graded"], summary.passed) == (0, 12, 8)
+        seen.append(tuple(sorted(scores(out).items())))  # type: ignore[arg-type]
+    assert seen[0] == seen[1]
+    assert {score for _, score in seen[0]} == {6.0, 10.0}  # type: ignore[misc]
+
+
+def test_an_existing_folder_is_not_touched_without_resume(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "mine.txt").write_text("keep", "utf-8")
+    with pytest.raises(UsageError, match="nothing was touched"):
+        grade_class(tmp_path / "class", out, catalog, RunOptions(), lambda *_: None)
+    assert [path.name for path in out.iterdir()] == ["mine.txt"]
+
+
+def test_results_do_not_go_among_the_submissions(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    with pytest.raises(UsageError, match="among the submissions"):
+        grade_class(tmp_path / "class", tmp_path / "class" / "out", catalog, RunOptions(), lambda *_: None)
+
+
+def test_resume_grades_only_what_is_new_and_with_the_same_seed(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 4)
+    first = RunOptions(exercises=("doubling",), at_least="L1", seed=5)
+    grade_class(tmp_path / "class", tmp_path / "out", catalog, first, lambda *_: None)
+    (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + WRONG)
+    again = RunOptions(exercises=("doubling",), at_least="L1", resume=True)
+    graded: list[str] = []
+    summary = grade_class(
+        tmp_path / "class",
+        tmp_path / "out",
+        catalog,
+        again,
+        lambda result, *_: graded.append(result.key.student),
+    )
+    assert graded == ["student-001"]
+    assert (summary.already, summary.seed) == (3, 5)
+    assert scores(tmp_path / "out")["student-001"] == 6
+
+
+def test_a_grader_that_dies_costs_no_other_submission(
+    tmp_path: Path, catalog: Catalog, doubling: Exercise, solution: bytes
+) -> None:
+    """The grader is killed from outside as soon as the first result is out; its work is done again."""
+    make_class(tmp_path / "class", solution, 8)
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    found = {}
+    for number, graded in enumerate(grade_all(entries, BatchOptions(at_least="L1"))):
+        found[graded.entry.student] = graded.verdict
+        if number == 2:
+            for pid in _children(os.getpid()):
+                os.kill(pid, signal.SIGKILL)
+    assert len(found) == 8
+    assert {verdict.state for verdict in found.values()} == {"graded"}
+
+
+def _children(parent: int) -> list[int]:
+    found = subprocess.run(
+        ["ps", "-o", "pid=,args=", "--ppid", str(parent)], capture_output=True, text=True, check=False
+    )
+    return [int(line.split()[0]) for line in found.stdout.splitlines() if "course.grading.grader" in line]
+
+
+def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution: bytes) -> None:
+    make_class(tmp_path / "class", solution, 2)
+    (tmp_path / "class" / "nobody").mkdir()
+    done = subprocess.run(
+        command(tmp_path / "class", "--out", tmp_path / "out", "--json", "--isolation", "process"),
+        env=environment(), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 6, done.stderr
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [line["schema"] for line in lines] == ["course.grade/1"] * 3 + ["course.grade-summary/1"]
+    summary: dict[str, Any] = lines[-1]
+    assert (summary["graded"], summary["ungradable"], summary["exit_code"]) == (2, 1, 6)
+    assert summary["troubled"][0]["code"] == "no_file"
+    assert summary["isolation"] == {"L1": 2}
+    again = subprocess.run(
+        command(tmp_path / "class", "--out", tmp_path / "out", "--json"),
+        env=environment(), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert again.returncode == 2
+    assert json.loads(again.stdout)["error"]["code"] == "out_exists"
+
+
+def test_a_run_killed_at_random_moments_leaves_a_readable_gradebook_and_resumes(
+    tmp_path: Path, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 40)
+    out = tmp_path / "out"
+    rng = random.Random(20261121)
+    arguments = (tmp_path / "class", "--out", out, "-j", 2, "--seed", 9, "--quiet")
+    kills = 0
+    for number in range(6):
+        resume = ["--resume"] if out.exists() else []
+        process = subprocess.Popen(command(*arguments, *resume), env=environment(), stdout=subprocess.DEVNULL)
+        if not resume:
+            _wait_for(out / "gradebook.sqlite")
+        time.sleep(rng.uniform(0.0, 1.0) + 0.4 * number)
+        if process.poll() is None:
+            process.kill()
+            kills += 1
+        process.wait()
+        with Gradebook(out / "gradebook.sqlite") as book:
+            assert all(result.verdict.score in (6, 10) for result in book.results())
+    assert kills >= 1
+    last = subprocess.run(
+        command(*arguments, "--resume"), env=environment(), capture_output=True, text=True, check=False
+    )
+    assert last.returncode == 0, last.stderr
+    assert scores(out) == {f"student-{number:03}": 6.0 if number % 3 == 0 else 10.0 for number in range(40)}
+    assert not _left_behind()
+
+
+def _wait_for(path: Path) -> None:
+    deadline = time.monotonic() + 30
+    while not path.exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+
+
+def _left_behind() -> list[str]:
+    """Graders and zygotes of killed runs: they must end by themselves."""
+    deadline = time.monotonic() + 10
+    while True:
+        found = subprocess.run(
+            ["ps", "-eo", "ppid=,args="], capture_output=True, text=True, check=False
+        ).stdout
+        left = [
+            line for line in found.splitlines() if "course.grading.grader" in line and line.split()[0] == "1"
+        ]
+        if not left or time.monotonic() > deadline:
+            return left
+        time.sleep(0.2)

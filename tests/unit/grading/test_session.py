@@ -1,0 +1,251 @@
+"""Grading one submission: what each way of ending becomes in the verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.errors import ContentError, MissingCapabilityError
+from course.grading.session import GradingSession, Submission, grader_version
+from course.grading.verdict import Status, for_student
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+    from course.grading.verdict import CheckResult, Verdict
+
+
+def grade(session: GradingSession, source: bytes | str) -> Verdict:
+    raw = source.encode() if isinstance(source, str) else source
+    return session.grade(Submission({"doubling.py": raw}))
+
+
+def results(verdict: Verdict, task: str) -> list[CheckResult]:
+    return [check for check in verdict.checks if check.task == task]
+
+
+def test_the_model_solution_gets_full_marks(session: GradingSession, solution: bytes) -> None:
+    verdict = grade(session, solution)
+    assert verdict.state == "graded"
+    assert verdict.score == verdict.max_score == 10
+    assert verdict.passed
+    assert verdict.all_pass
+
+
+def test_one_wrong_function_costs_only_its_own_points(session: GradingSession, solution: bytes) -> None:
+    verdict = grade(session, solution + b"\ndef double(x):\n    return x\n")
+    assert all(check.status is Status.FAIL for check in results(verdict, "double"))
+    assert all(check.status is Status.PASS for check in results(verdict, "doublings"))
+    assert verdict.score == 6
+
+
+def test_a_missing_function_costs_only_its_own_points(session: GradingSession, solution: bytes) -> None:
+    verdict = grade(session, solution + b"\ndel double\n")
+    for check in results(verdict, "double"):
+        assert check.status is Status.ERROR
+        assert check.diagnosis == "MISSING_FUNCTION"
+
+
+def test_an_exception_names_the_students_own_line(session: GradingSession, solution: bytes) -> None:
+    source = solution + b"\ndef double(x):\n    return 1 / 0\n"
+    check = results(grade(session, source), "double")[0]
+    assert check.status is Status.ERROR
+    assert "ZeroDivisionError" in check.message
+    line = source.decode().splitlines().index("    return 1 / 0") + 1
+    assert f"doubling.py:{line} in double" in (check.traceback or "")
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        ("while True: pass", Status.TIMEOUT),
+        ("import os; os._exit(3)", Status.CRASH),
+        ("return bytearray(10**11)", Status.MEMORY),
+        ("return {1, 2}", Status.ERROR),
+        ("return None", Status.FAIL),
+        ("return float('nan')", Status.FAIL),
+        ("raise SystemExit", Status.ERROR),
+        ("raise KeyboardInterrupt", Status.ERROR),
+    ],
+)
+def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
+    session: GradingSession, solution: bytes, body: str, status: Status
+) -> None:
+    verdict = grade(session, solution + f"\ndef double(x):\n    {body}\n".encode())
+    assert {check.status for check in results(verdict, "double")} == {status}
+    assert all(check.status is Status.PASS for check in results(verdict, "doublings"))
+    assert all(check.message and check.help for check in results(verdict, "double"))
+
+
+@pytest.mark.parametrize(
+    ("source", "code"),
+    [
+        (b"def double(", "syntax_error"),
+        (b"x = '\xe9'\n", "syntax_error"),
+        (b"def double(x):\0\n", "syntax_error"),
+        (b"raise ValueError('no')", "import_error"),
+        (b"import sys; sys.exit(0)", "import_error"),
+        (b"import os; os._exit(0)", "import_crash"),
+        (b"while True: pass", "import_timeout"),
+        (b"def other(): pass", "no_declared_functions"),
+        (b"import course.physics.integrators", "import_error"),
+        (b"import pytest", "import_error"),
+    ],
+)
+def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
+    session: GradingSession, source: bytes, code: str
+) -> None:
+    verdict = grade(session, source)
+    assert verdict.state == "ungradable"
+    assert (verdict.score, verdict.max_score, verdict.checks) == (0, 10, ())
+    assert verdict.error is not None
+    assert verdict.error.code == code
+    assert verdict.error.help
+
+
+@pytest.mark.parametrize(
+    "rewrite",
+    [
+        lambda text: b"\xef\xbb\xbf" + text,
+        lambda text: text.replace(b"\n", b"\r\n"),
+        lambda text: b"# -*- coding: latin-1 -*-\n# caf\xe9\n" + text,
+        lambda text: b"from __future__ import annotations\n" + text.replace(b"from __future__", b"# "),
+    ],
+    ids=["byte-order mark", "CRLF", "declared latin-1", "future import"],
+)
+def test_encodings_are_read_as_python_reads_them(
+    session: GradingSession, solution: bytes, rewrite: object
+) -> None:
+    assert callable(rewrite)
+    assert grade(session, rewrite(solution)).score == 10
+
+
+def test_a_check_that_requires_a_failed_one_is_skipped_and_names_it(
+    session: GradingSession, solution: bytes
+) -> None:
+    verdict = grade(session, solution + b"\ndef doublings(x, n):\n    return [x]\n")
+    by_id = {check.id: check for check in verdict.checks}
+    assert by_id["doublings_values"].status is Status.SKIP
+    assert by_id["doublings_values"].blocked_by == "doublings_length"
+
+
+def test_grading_one_submission_leaves_nothing_for_the_next(session: GradingSession, solution: bytes) -> None:
+    spy = b"""
+import builtins, sys
+def double(x):
+    open("left.txt", "w").write("mine")
+    builtins.left = True
+    sys.modules["numpy"].pi = 3
+    return 2 * x
+"""
+    grade(session, solution + spy)
+    probe = b"""
+import builtins, os, numpy
+assert not hasattr(builtins, "left") and numpy.pi > 3.1
+assert os.listdir(".") == ["doubling.py"], os.listdir(".")
+"""
+    assert grade(session, probe + solution).score == 10
+
+
+def test_hidden_findings_lose_their_values_for_the_student(session: GradingSession, solution: bytes) -> None:
+    wrong = solution + b"\ndef double(x):\n    print('SEEN', x)\n    return x\n"
+    hidden = [
+        check for check in grade(session, wrong).checks if check.visibility == "hidden" and not check.points
+    ]
+    assert hidden
+    assert any(check.actual is not None and check.stdout for check in hidden)
+    for check in map(for_student, hidden):
+        values = (check.input, check.expected, check.actual, check.tolerance, check.first_divergence)
+        assert values == (None,) * 5
+        assert check.traceback is None
+        assert check.stdout is None
+        assert check.message
+        assert check.help
+
+
+def test_the_same_seed_draws_the_same_inputs(catalog: Catalog, doubling: Exercise, solution: bytes) -> None:
+    wrong = Submission(
+        {"doubling.py": solution + b"\ndef doublings(x, n):\n    return [x + k for k in range(n+1)]\n"}
+    )
+    seen = []
+    for seed in (1, 1, 2):
+        with GradingSession(doubling, catalog, scope="full", seed=seed) as session:
+            seen.append(next(c.input for c in session.grade(wrong).checks if c.id == "doublings_values"))
+    assert seen[0] == seen[1] != seen[2]
+
+
+def test_a_public_session_runs_only_public_checks(
+    catalog: Catalog, doubling: Exercise, solution: bytes
+) -> None:
+    with GradingSession(doubling, catalog, scope="public") as session:
+        verdict = grade(session, solution)
+    assert {check.visibility for check in verdict.checks} == {"public"}
+    assert verdict.max_score == 5
+
+
+def test_one_check_can_be_run_alone(session: GradingSession, solution: bytes) -> None:
+    verdict = session.grade(Submission({"doubling.py": solution}), only="doublings_values")
+    assert {check.id for check in verdict.checks} == {"doublings_length", "doublings_values"}
+
+
+def test_a_fault_of_a_check_is_never_the_students_zero(
+    catalog: Catalog,
+    doubling: Exercise,
+    solution: bytes,
+    session: GradingSession,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("a bug of ours")
+
+    monkeypatch.setattr(session._checks, "run", lambda *_: RuntimeError("a bug of ours"))
+    verdict = grade(session, solution)
+    assert verdict.state == "grader_error"
+    assert {check.status for check in verdict.checks} <= {Status.GRADER_ERROR, Status.SKIP}
+    assert verdict.error is not None
+    assert "a bug of ours" in verdict.error.message
+
+
+def test_hidden_checks_need_a_checkout(catalog: Catalog, doubling: Exercise) -> None:
+    import dataclasses
+
+    student = type(catalog)(dataclasses.replace(catalog.content, graders=None, solutions=None))
+    with pytest.raises(MissingCapabilityError, match="hidden graders"):
+        GradingSession(doubling, student, scope="full")
+
+
+def test_a_check_without_its_marks_names_the_file_and_the_line(
+    catalog: Catalog, doubling: Exercise, tmp_path: Path
+) -> None:
+    from course.grading.collected import CollectedChecks
+    from course.grading.verdict import Visibility
+
+    path = tmp_path / "checks.py"
+    path.write_text('import pytest\n\n\ndef test_it(submission):\n    """It"""\n', "utf-8")
+    with pytest.raises(ContentError, match=r"checks\.py:4.*lacks a mark"):
+        CollectedChecks([(path, Visibility.PUBLIC)])
+    path.write_text("import no_such_module\n", "utf-8")
+    with pytest.raises(ContentError, match="no_such_module"):
+        CollectedChecks([(path, Visibility.PUBLIC)])
+
+
+def test_checks_are_not_disturbed_by_what_lies_around(
+    catalog: Catalog, doubling: Exercise, solution: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "conftest.py").write_text("raise SystemExit('conftest was read')\n", "utf-8")
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --no-such-option\n", "utf-8")
+    (tmp_path / "numpy.py").write_text("raise SystemExit('numpy was shadowed')\n", "utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
+    monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
+    with GradingSession(doubling, catalog, scope="full") as session:
+        assert grade(session, solution).score == 10
+
+
+def test_the_graders_version_follows_what_decides_a_score(catalog: Catalog, doubling: Exercise) -> None:
+    first = grader_version(doubling, catalog)
+    assert first == grader_version(doubling, catalog)
+    assert first != grader_version(catalog.exercise("halving"), catalog)

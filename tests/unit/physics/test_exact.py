@@ -1,0 +1,71 @@
+"""The reference that every order is measured against is itself compared with closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from course.physics import exact, systems
+
+TIMES = [0.6, 1.1, 2.9, 5.0]
+Q0, V0 = [0.8, -0.3], [-0.4, 1.1]
+
+
+@pytest.mark.parametrize(
+    ("system", "closed"),
+    [
+        (systems.FreeFall(9.81), exact.free_fall),
+        (systems.Oscillator(2.3), exact.oscillator),
+        (systems.DampedOscillator(2.3, 0.7), exact.damped_oscillator),
+    ],
+    ids=lambda value: getattr(value, "__name__", type(value).__name__),
+)
+def test_the_reference_agrees_with_the_closed_form(system, closed):
+    q, v = exact.reference(system, Q0, V0, TIMES)
+    for row, t in enumerate(TIMES):
+        q_true, v_true = closed(system, Q0, V0, t)
+        assert q[row] == pytest.approx(q_true, rel=1e-11, abs=1e-11)
+        assert v[row] == pytest.approx(v_true, rel=1e-11, abs=1e-11)
+
+
+def test_the_reference_agrees_with_the_driven_spring_from_a_late_start():
+    system, t0 = systems.ForcedOscillator(2.3, 1.5, 3.1), 0.7
+    q, v = exact.reference(system, Q0, V0, [2.0, 3.3], t0)
+    for row, t in enumerate([2.0, 3.3]):
+        q_true, v_true = exact.forced_oscillator(system, Q0, V0, t, t0)
+        assert q[row] == pytest.approx(q_true, abs=1e-11)
+        assert v[row] == pytest.approx(v_true, abs=1e-11)
+
+
+def test_the_reference_brings_an_eccentric_orbit_back_after_one_period():
+    e = 0.6
+    q0, v0 = [1 - e, 0.0], [0.0, math.sqrt((1 + e) / (1 - e))]
+    q, v = exact.reference(systems.Kepler(1.0), q0, v0, [2 * math.pi])
+    assert q[0] == pytest.approx(q0, abs=1e-10)
+    assert v[0] == pytest.approx(v0, abs=1e-10)
+
+
+def test_times_that_run_backwards_are_refused():
+    with pytest.raises(ValueError, match="rise"):
+        exact.reference(systems.Oscillator(1.0), [1.0], [0.0], [1.0, 0.5])
+
+
+def test_a_solution_that_blows_up_is_refused_instead_of_returned():
+    class Explosion:
+        def __call__(self, t, q, v):
+            return np.exp(np.minimum(q, 300.0))
+
+        def params(self):
+            return {}
+
+    with np.errstate(all="ignore"), pytest.raises(ValueError, match="converge"):
+        exact.reference(Explosion(), [1.0], [5.0], [3.0])
+
+
+def test_closed_forms_refuse_parameters_they_do_not_cover():
+    with pytest.raises(ValueError, match="omega"):
+        exact.damped_oscillator(systems.DampedOscillator(1.0, 2.0), Q0, V0, 1.0)
+    with pytest.raises(ValueError, match="resonance"):
+        exact.forced_oscillator(systems.ForcedOscillator(2.0, 1.0, 2.0), Q0, V0, 1.0)

@@ -1,0 +1,179 @@
+"""The textbook steppers: orders, closed forms, invariants. The numbers are theory's, not theirs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from course.physics import exact, systems
+from course.physics.integrators import (
+    RK4,
+    STEPPERS,
+    ExplicitEuler,
+    SemiImplicitEuler,
+    State,
+    VelocityVerlet,
+    trajectory,
+)
+from course.physics.invariants import (
+    convergence_order,
+    energy,
+    jacobian,
+    relative_change,
+    symplecticity_defect,
+)
+
+ALL = [
+    ExplicitEuler(),
+    SemiImplicitEuler(),
+    SemiImplicitEuler(position_first=True),
+    VelocityVerlet(),
+    VelocityVerlet(drift_first=True),
+    RK4(),
+]
+PROBLEMS = [
+    (systems.Oscillator(1.3), [0.8, -0.5], [0.4, 0.9]),
+    (systems.Pendulum(9.81, 6.0), [1.1], [-0.4]),
+    (systems.ForcedOscillator(1.3, 1.5, 2.1), [0.8], [-0.6]),
+    (systems.Kepler(1.0), [0.9, 0.1], [0.1, 1.1]),
+]
+DISSIPATIVE = [
+    (systems.DampedOscillator(1.3, 0.5), [0.8], [0.6]),
+    (systems.VanDerPol(0.5, 1.1), [0.8], [0.6]),
+]
+
+
+def measured_order(stepper, system, q0, v0, span=1.3, t0=0.4):
+    first = {1: 128, 2: 32, 4: 16}[stepper.order]
+    times = t0 + span * np.array([0.25, 0.5, 0.75, 1.0])
+    q_true, v_true = exact.reference(system, q0, v0, times, t0)
+    hs, errors = [], []
+    for n in (first, 2 * first, 4 * first):
+        path = trajectory(stepper, system, State.of(q0, v0, t0), span / n, n)
+        rows = slice(n // 4, None, n // 4)
+        hs.append(span / n)
+        errors.append(max(np.abs(path.q[rows] - q_true).max(), np.abs(path.v[rows] - v_true).max()))
+    return convergence_order(hs, errors)
+
+
+@pytest.mark.parametrize("stepper", ALL, ids=repr)
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: type(p[0]).__name__)
+def test_every_method_has_the_order_it_declares(stepper, problem):
+    assert measured_order(stepper, *problem) == pytest.approx(stepper.order, abs=0.12)
+
+
+@pytest.mark.parametrize("stepper", [ExplicitEuler(), RK4()], ids=repr)
+@pytest.mark.parametrize("problem", DISSIPATIVE, ids=lambda p: type(p[0]).__name__)
+def test_methods_without_a_splitting_keep_their_order_under_damping(stepper, problem):
+    assert measured_order(stepper, *problem) == pytest.approx(stepper.order, abs=0.12)
+
+
+@pytest.mark.parametrize("stepper", [VelocityVerlet(), VelocityVerlet(drift_first=True)], ids=repr)
+def test_verlet_drops_to_first_order_under_damping_as_its_docstring_says(stepper):
+    assert measured_order(stepper, *DISSIPATIVE[0]) == pytest.approx(1.0, abs=0.15)
+
+
+def test_explicit_euler_multiplies_the_energy_of_a_spring_by_one_plus_z_squared():
+    system, h = systems.Oscillator(2.0), 0.05
+    path = trajectory(ExplicitEuler(), system, State.of([1.0], [0.6]), h, 10)
+    e = energy(system, path.q, path.v)
+    assert e[1:] / e[:-1] == pytest.approx(1 + (2.0 * h) ** 2)
+
+
+def test_rk4_loses_the_energy_of_a_spring_at_the_rate_of_its_stability_polynomial():
+    z = 0.8
+    system = systems.Oscillator(2.0)
+    path = trajectory(RK4(), system, State.of([1.0], [0.6]), z / 2.0, 5)
+    e = energy(system, path.q, path.v)
+    assert 1 - e[1:] / e[:-1] == pytest.approx(z**6 / 72 - z**8 / 576)
+
+
+@pytest.mark.parametrize(("position_first", "worst"), [(False, 0.310), (True, 0.517)])
+def test_semi_implicit_eulers_energy_swing_from_a_moving_start_depends_on_its_form(position_first, worst):
+    system, h = systems.Oscillator(2.0), 0.25
+    path = trajectory(SemiImplicitEuler(position_first), system, State.of([1.0], [0.6]), h, 2000)
+    assert np.abs(relative_change(energy(system, path.q, path.v))).max() == pytest.approx(worst, abs=0.001)
+
+
+@pytest.mark.parametrize("position_first", [False, True])
+def test_semi_implicit_eulers_energy_swing_from_rest_is_z_over_two_minus_z(position_first):
+    system, z = systems.Oscillator(1.0), 0.54
+    path = trajectory(SemiImplicitEuler(position_first), system, State.at_rest([1.0]), z, 2000)
+    swing = np.abs(relative_change(energy(system, path.q, path.v))).max()
+    assert swing == pytest.approx(z / (2 - z), rel=1e-3)
+
+
+def test_verlet_turns_a_spring_at_two_over_h_times_asin_of_half_z():
+    omega, h = 2.0, 0.35
+    x = trajectory(VelocityVerlet(), systems.Oscillator(omega), State.of([0.7], [1.0]), h, 50).q[:, 0]
+    turn = math.acos((x[2] + x[0]) / (2 * x[1]))
+    assert turn / h == pytest.approx(2 / h * math.asin(omega * h / 2))
+
+
+@pytest.mark.parametrize("stepper", ALL, ids=repr)
+def test_a_method_is_symplectic_exactly_if_it_says_so(stepper):
+    system, h = systems.Kepler(1.0), 0.6
+
+    def flow(y):
+        end = stepper.advance(system, State.of(y[:2], y[2:]), h)
+        return np.concatenate([end.q, end.v])
+
+    defect = symplecticity_defect(jacobian(flow, [0.9, 0.1, 0.1, 1.1]))
+    assert (defect < 1e-8) == stepper.symplectic
+    assert stepper.symplectic or defect > 1e-5
+
+
+@pytest.mark.parametrize("drift_first", [False, True])
+def test_verlet_retraces_its_path_when_turned_round(drift_first):
+    system, stepper, h = systems.Pendulum(9.81, 1.0), VelocityVerlet(drift_first), 0.1
+    there = trajectory(stepper, system, State.of([1.1], [0.4]), h, 80)
+    back = trajectory(stepper, system, State.of(there.q[-1], -there.v[-1]), h, 80)
+    assert back.q[-1] == pytest.approx(there.q[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("stepper", ALL, ids=repr)
+def test_a_step_takes_the_declared_number_of_evaluations(stepper):
+    calls = []
+
+    class Counting:
+        def __call__(self, t, q, v):
+            calls.append(t)
+            return -q
+
+        def params(self):
+            return {}
+
+    stepper.advance(Counting(), State.of([1.0], [0.5], t=2.0), 0.1)
+    declared = 1 if stepper == VelocityVerlet(drift_first=True) else stepper.evaluations
+    assert len(calls) == declared
+
+
+@pytest.mark.parametrize("stepper", ALL, ids=repr)
+def test_a_step_leaves_the_old_state_alone_and_shares_no_memory_with_it(stepper):
+    state = State.of([1.0, 2.0], [0.5, -0.5])
+    end = stepper.advance(systems.Kepler(1.0), state, 0.1)
+    assert np.array_equal(state.q, [1.0, 2.0])
+    assert np.array_equal(state.v, [0.5, -0.5])
+    assert not np.may_share_memory(end.q, state.q)
+    assert not np.may_share_memory(end.v, state.v)
+    assert end.t == pytest.approx(0.1)
+
+
+def test_a_trajectory_has_one_sample_more_than_steps_and_times_that_do_not_drift():
+    path = trajectory(VelocityVerlet(), systems.Oscillator(2.0), State.at_rest([1.0]), 0.01, 500)
+    assert path.t.shape == (501,)
+    assert path.t[-1] == 5.0
+    assert path.q.shape == path.v.shape == (501, 1)
+    assert path.q[0] == 1.0
+
+
+def test_the_registry_has_each_method_once_under_the_name_the_command_line_uses():
+    assert list(STEPPERS) == ["explicit_euler", "semi_implicit_euler", "velocity_verlet", "rk4"]
+    assert [type(stepper) for stepper in STEPPERS.values()] == [
+        ExplicitEuler,
+        SemiImplicitEuler,
+        VelocityVerlet,
+        RK4,
+    ]

@@ -1,0 +1,102 @@
+"""What the events of an exercise add up to: above all, when a hint is due."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+import pytest
+
+from course.progress.history import fingerprint, history_of
+from course.progress.store import Event
+
+STUB = fingerprint(b"def double(x):\n    raise NotImplementedError\n")
+FIRST = fingerprint(b"def double(x):\n    return x\n")
+SECOND = fingerprint(b"def double(x):\n    return 3 * x\n")
+
+
+def _history(*events):
+    now = datetime(2025, 1, 1, tzinfo=UTC)
+    return history_of(
+        Event(id=number, at=now, kind=kind, subject="doubling", data=data)
+        for number, (kind, data) in enumerate(events, start=1)
+    )
+
+
+def _check(code, status="fail", **fields):
+    score = 2.0 if status == "pass" else 0.0
+    checks = [{"id": "double_of_three", "task": "double", "status": status}]
+    data = {"state": "graded", "score": score, "max_score": 2.0, "passed": status == "pass"}
+    return ("check", {**data, "fingerprint": code, "checks": checks, **fields})
+
+
+def _hint(code, index=0, task="double"):
+    return ("hint", {"task": task, "index": index, "fingerprint": code})
+
+
+def test_no_hint_before_a_check():
+    assert not _history().hint_is_due(STUB)
+
+
+def test_no_hint_for_an_untouched_stub():
+    assert not _history(_check(STUB)).hint_is_due(STUB)
+
+
+def test_the_first_hint_follows_a_failed_check_of_changed_code():
+    assert _history(_check(FIRST)).hint_is_due(STUB)
+
+
+def test_no_second_hint_for_the_same_code():
+    history = _history(_check(FIRST), _hint(FIRST), _check(FIRST))
+    assert not history.hint_is_due(STUB)
+    assert history.hints_for("double") == 1
+
+
+def test_the_next_hint_follows_a_failed_check_of_code_changed_since():
+    assert _history(_check(FIRST), _hint(FIRST), _check(SECOND)).hint_is_due(STUB)
+
+
+def test_a_check_from_before_the_last_hint_does_not_count():
+    assert not _history(_check(SECOND), _check(FIRST), _hint(FIRST)).hint_is_due(STUB)
+
+
+def test_a_check_that_passed_earns_no_hint():
+    assert not _history(_check(FIRST, status="pass")).hint_is_due(STUB)
+
+
+def test_a_file_that_could_not_run_earns_no_hint():
+    assert not _history(_check(FIRST, state="ungradable", checks=[])).hint_is_due(STUB)
+
+
+def test_failing_tasks_are_those_of_the_newest_whole_run():
+    assert _history(_check(FIRST), _check(SECOND, status="pass")).failing_tasks() == frozenset()
+    assert _history(_check(FIRST, status="pass"), _check(SECOND)).failing_tasks() == {"double"}
+
+
+def test_a_check_run_alone_corrects_the_last_whole_run_and_leaves_its_score():
+    history = _history(_check(FIRST), _check(SECOND, status="pass", only="double_of_three"))
+    assert history.failing_tasks() == frozenset()
+    assert history.last_graded.score == 0.0
+    assert history.first_pass is None
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        b"def double(x):\n    return x  # now with a comment\n",
+        b"def double(x):\r\n\r\n    return  x\r\n",
+        b"\xef\xbb\xbfdef double(x):\n    return x\n",
+    ],
+)
+def test_comments_and_layout_are_no_attempt(other):
+    assert fingerprint(other) == FIRST
+
+
+@pytest.mark.parametrize("source", [b"def double(x:\n", b"\x00", b"\xff\xfe", b"(" * 100_000, b'"\\d"\n'])
+def test_a_file_that_does_not_parse_has_a_fingerprint_too(source):
+    assert fingerprint(source) != fingerprint(source + b"1\n")
+
+
+def test_records_with_missing_fields_are_understood():
+    history = _history(("check", {}), ("hint", {}), ("start", {}))
+    assert history.last.score == 0.0
+    assert history.failing_tasks() == frozenset()

@@ -113,7 +113,7 @@ def _not_due(exercise: Exercise, task: str, last: str | None) -> schemas.Hint:
         )
     else:
         message = (
-            "That was the last hint. The next one follows a check that fails on changed code in "
+            "You have had that one already. The next one follows a check that fails on changed code in "
             f"{exercise.module}."
         )
     return _hint(

@@ -16,7 +16,7 @@ from course.cli.quiz_schemas import (
 from course.cli.schemas import NextStep
 from course.quizzing.attempt import mark_sentence
 from course.quizzing.bank import LETTERS
-from course.quizzing.review import ROUNDS
+from course.quizzing.review import GAP_DAYS, ROUNDS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -128,7 +128,7 @@ def show_due(console: Console, due: Sequence[Due], today: date) -> None:
     if not due:
         return
     console.blank()
-    console.heading("Under review", f"until right {ROUNDS} times in a row, 2 days apart")
+    console.heading("Under review", f"until right {ROUNDS} times in a row, {GAP_DAYS} days apart")
     for entry in due:
         console.line(f"{entry.question}: {_when(entry.on, today)}, {entry.rounds} of {ROUNDS}", indent=2)
 

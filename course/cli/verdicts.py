@@ -25,16 +25,23 @@ _UNWRITTEN = "NOT_IMPLEMENTED"
 
 
 def show_verdict(
-    console: Console, exercise: Exercise, verdict: Verdict, *, verbose: bool = False, whole: bool = True
+    console: Console,
+    exercise: Exercise,
+    verdict: Verdict,
+    *,
+    verbose: bool = False,
+    whole: bool = True,
+    brief: bool = False,
 ) -> None:
     """Show every task of a verdict, and the summary.
 
     Args:
         verbose: show tracebacks (the student's own lines) and what the student's code printed.
         whole: all public checks were run, so that there is something to sum up.
+        brief: show the details of one function only, the first that fails; people work on one at a time.
     """
     if not console.quiet:
-        page = _Page(console, verbose=verbose)
+        page = _Page(console, verbose=verbose, brief=brief)
         unwritten: list[tuple[Task, list[CheckResult]]] = []
         for task in exercise.task:
             checks = [check for check in verdict.checks if check.task == task.id]
@@ -85,15 +92,20 @@ def _part(verdict: Verdict) -> list[str]:
 class _Page:
     """One verdict being shown; remembers what it has said, so as not to say it seven times."""
 
-    def __init__(self, console: Console, *, verbose: bool) -> None:
+    def __init__(self, console: Console, *, verbose: bool, brief: bool) -> None:
         self._console = console
         self._verbose = verbose
+        self._brief = brief
+        self._detailed = ""
+        self._left_out = False
         self._said: set[str] = set()
         self._kept_back = False
 
     def task(self, title: str, checks: Sequence[CheckResult]) -> None:
         """A heading with the points, and the task's checks."""
         self._console.heading(title, _points(checks))
+        if not self._detailed and any(check.status != "pass" for check in checks):
+            self._detailed = checks[0].task
         if _all_alike(checks):
             self._alike(next(check for check in checks if check.status != "skip"))
         else:
@@ -120,7 +132,7 @@ class _Page:
         """One check: its title, and everything about it if it did not pass."""
         aside = "" if check.status in {"pass", "skip"} else f"  [{check.id}]"
         self._label(check.status, check.title, aside)
-        if check.status == "pass":
+        if check.status == "pass" or self._is_left_out(check):
             return
         if check.blocked_by:
             self._text(f"Runs once {check.blocked_by} passes.")
@@ -130,13 +142,23 @@ class _Page:
 
     def close(self) -> None:
         """Say once how to see what was kept back."""
+        if self._left_out:
+            self._console.note(("Details of one function at a time; `course check` shows all.", "dim"))
         if self._kept_back:
             self._console.note(("--verbose shows tracebacks and what your code printed.", "dim"))
 
     def _alike(self, check: CheckResult) -> None:
         """The same thing keeps every check of the task from running: say it once."""
         self._label(check.status, check.message)
-        self._details(check)
+        if not self._is_left_out(check):
+            self._details(check)
+
+    def _is_left_out(self, check: CheckResult) -> bool:
+        """True if the details of another function were shown, and those of one are enough."""
+        if self._brief and check.task != self._detailed:
+            self._left_out = True
+            return True
+        return False
 
     def _details(self, check: CheckResult) -> None:
         if check.help and check.help not in self._said:
@@ -194,8 +216,9 @@ def _numbers(check: CheckResult) -> list[tuple[str, str]]:
     units = check.units
     actual, expected = format_pair(check.actual, check.expected)
     if check.actual is not None or check.expected is not None:
-        # A function that raised has no value; what stands in its place is the exception.
-        rows.append(("raised" if check.status == "error" else "measured", f"{actual}{unit(units)}"))
+        # A function that gave no value was not measured; what stands in its place is why.
+        label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
+        rows.append((label, f"{actual}{unit(units)}"))
     if check.expected is not None:
         within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
         rows.append(("expected", f"{expected}{unit(units)}{within}"))

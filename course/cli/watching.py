@@ -64,7 +64,8 @@ def watch(
             for _ in saves(path):
                 watcher.look(session)
     except KeyboardInterrupt:
-        console.note("\nNo longer watching." if console.fancy else "No longer watching.")
+        if console.fancy:
+            console.blank()  # the terminal has written ^C
     console.emit(watcher.reply())
     return INTERRUPTED
 
@@ -162,7 +163,7 @@ class Watcher:
                 raise
             self._ungradable(error, noticed)
             return
-        show_verdict(self.console, self.exercise, verdict, verbose=self.verbose)
+        show_verdict(self.console, self.exercise, verdict, verbose=self.verbose, brief=True)
         step = next_step(self.here, self.exercise, verdict, source)
         if step != f"course watch {self.exercise.id}":
             self.console.note(f"Next: {step}")

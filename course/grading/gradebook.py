@@ -98,25 +98,20 @@ class Gradebook:
         self.path = path
         self._pending = 0
         self._committed_at = time.monotonic()
-        self._db = sqlite3.connect(path, isolation_level=None, timeout=5.0)
+        if create:
+            with self._explained():
+                _create(path)
+        self._db = sqlite3.connect(path, isolation_level=None, timeout=1.0)
         with self._explained():
             if create or writing:
                 # One writer: a second run on the same folder is told so instead of mixing its results in.
                 # The lock is the operating system's, so it ends with the process however that ends.
                 self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
             self._db.execute("PRAGMA journal_mode = DELETE")  # OUT may be on a network: WAL fails there
-            if create:
-                self._create()
             self._check_format()
             if writing:
                 self._db.execute("BEGIN IMMEDIATE")
                 self._db.execute("COMMIT")
-
-    def _create(self) -> None:
-        self._db.executescript(
-            f"BEGIN EXCLUSIVE; {_SCHEMA} PRAGMA user_version = {FORMAT_VERSION};"
-            f"PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
-        )
 
     def _check_format(self) -> None:
         if self._one("PRAGMA application_id") != _APPLICATION_ID:
@@ -239,6 +234,18 @@ class Gradebook:
                         help="Restore the gradebook from a backup, or grade into a new folder.",
                     )
                 yield Result(Key(*key), msgspec.json.decode(body, type=Verdict), late, graded_at)
+
+
+def _create(path: Path) -> None:
+    """An empty gradebook, made under another name first: a run killed here leaves none instead of half."""
+    draft = path.with_suffix(".new")
+    draft.unlink(missing_ok=True)
+    with contextlib.closing(sqlite3.connect(draft)) as db:
+        db.executescript(
+            f"BEGIN EXCLUSIVE; {_SCHEMA} PRAGMA user_version = {FORMAT_VERSION};"
+            f"PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
+        )
+    draft.replace(path)
 
 
 def _sha256(body: bytes | str) -> str:

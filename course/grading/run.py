@@ -193,7 +193,13 @@ def _open(out: Path, folder: Path, options: RunOptions) -> Gradebook:
         )
     path = out / "gradebook.sqlite"
     if not options.resume or not path.exists():
-        if out.exists() and not (options.resume and not any(out.iterdir())):
+        # Killed before its gradebook was made, a run leaves the folder and perhaps the draft.
+        begun = (
+            options.resume
+            and out.is_dir()
+            and all(item.name.startswith("gradebook.new") for item in out.iterdir())
+        )
+        if out.exists() and not begun:
             raise UsageError(
                 f"{out} exists already; nothing was touched.",
                 help="Name a new folder, or add --resume to finish the run that is there.",

@@ -174,7 +174,7 @@ STEPPERS: dict[str, Stepper] = {
 
 
 class Trajectory(NamedTuple):
-    """Samples at equal times: t of shape (n + 1,) in s, q and v of shape (n + 1, d)."""
+    """Samples at equal times: t of shape (n + 1,) in s, q and v of shape (n + 1, *shape of the state)."""
 
     t: Array
     q: Array
@@ -187,8 +187,8 @@ def trajectory(stepper: Stepper, system: System, start: State, h: float, n: int)
     Times are start.t + i h, not a running sum, so they do not drift.
     """
     t: Array = start.t + h * np.arange(n + 1, dtype=np.float64)
-    q = np.empty((n + 1, start.q.size))
-    v = np.empty((n + 1, start.q.size))
+    q = np.empty((n + 1, *start.q.shape))
+    v = np.empty((n + 1, *start.q.shape))
     state = start
     q[0], v[0] = state.q, state.v
     for i in range(n):

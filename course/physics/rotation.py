@@ -156,14 +156,28 @@ class SplitRotation:
         q = spin.orientation
         momentum = inertia * spin.angular_velocity + 0.5 * h * torque
         for axis, share in ((0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)):
-            vector = np.zeros_like(momentum)
-            rate = momentum[..., axis : axis + 1] / inertia[axis]
-            vector[..., axis : axis + 1] = share * h * rate
-            small = quaternion(vector)
-            q, momentum = product(q, small), turn_back(small, momentum)
+            angle = share * h * momentum[..., axis : axis + 1] / inertia[axis]
+            q, momentum = _about(axis, angle, q, momentum)
         # Products keep the length to round-off; dividing keeps the round-off from adding up.
         q = q / np.linalg.norm(q, axis=-1, keepdims=True)
         return Spin(q, (momentum + 0.5 * h * torque) / inertia)
+
+
+#: q times the unit quaternion of a body axis is q with its components in this order and with these signs.
+_ORDER = ([1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0])
+_SIGNS = tuple(np.array(signs) for signs in ([-1.0, 1, 1, -1], [-1.0, -1, 1, 1], [-1.0, 1, -1, 1]))
+
+
+def _about(axis: int, angle: Array, q: Array, momentum: Array) -> tuple[Array, Array]:
+    """Turn a body by ``angle`` (..., 1) about one of its axes; its momentum stays put, so its axes see it turn back."""
+    half = 0.5 * angle
+    turned = np.cos(half) * q + np.sin(half) * (q[..., _ORDER[axis]] * _SIGNS[axis])
+    c, s = np.cos(angle[..., 0]), np.sin(angle[..., 0])
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    seen = momentum.copy()
+    seen[..., j] = c * momentum[..., j] + s * momentum[..., k]
+    seen[..., k] = c * momentum[..., k] - s * momentum[..., j]
+    return turned, seen
 
 
 #: The methods under the names that the command line and the lessons use.

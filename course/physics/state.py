@@ -87,7 +87,8 @@ class RigidBodyState:
     @property
     def batch(self) -> tuple[int, ...]:
         """The leading axes: () for one body in one run."""
-        return np.broadcast_shapes(*(getattr(self, name).shape[:-1] for name in _LENGTHS))
+        shapes = {getattr(self, name).shape[:-1] for name in _LENGTHS}
+        return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
 
     def broadcast(self, batch: tuple[int, ...]) -> RigidBodyState:
         """The same state with these leading axes, every array with memory of its own."""

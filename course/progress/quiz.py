@@ -209,4 +209,6 @@ def _add(attempt: Attempt, event: Event) -> None:
     attempt.score = int(event.data.get("score", 0))
     attempt.passed = bool(event.data.get("passed", False))
     right = event.data.get("right", {})
-    attempt.right = {str(name): bool(value) for name, value in right.items()} if isinstance(right, dict) else {}
+    attempt.right = (
+        {str(name): bool(value) for name, value in right.items()} if isinstance(right, dict) else {}
+    )

@@ -65,7 +65,7 @@ class AnswerFile:
         for name in self.answers:
             if name not in asked:
                 self._unknown_question(name, list(asked), bank)
-        missing = [name for name in asked if name not in self.answers]
+        missing = [name for name in asked if self.answers.get(name, "") == ""]
         if missing:
             self.fail(
                 "answers",

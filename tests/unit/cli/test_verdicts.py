@@ -50,7 +50,7 @@ def _unwritten(name, task):
     )
 
 
-def _shown(*checks, verbose=False, plain=True, columns=60, monkeypatch=None, **fields):
+def _shown(*checks, verbose=False, plain=True, brief=False, **fields):
     score, most = sum(c.points for c in checks), sum(c.max_points for c in checks)
     verdict = Verdict(
         exercise="integrators",
@@ -65,7 +65,9 @@ def _shown(*checks, verbose=False, plain=True, columns=60, monkeypatch=None, **f
     )
     out = io.StringIO()
     environ = {} if plain else {"FORCE_COLOR": "1", "NO_COLOR": "1"}
-    show_verdict(Console(Settings(), stdout=out, environ=environ), EXERCISE, verdict, verbose=verbose)
+    show_verdict(
+        Console(Settings(), stdout=out, environ=environ), EXERCISE, verdict, verbose=verbose, brief=brief
+    )
     return out.getvalue()
 
 
@@ -202,6 +204,18 @@ def test_lines_fit_the_terminal(monkeypatch, columns):
     import re
 
     assert max(len(re.sub(r"\x1b\[[0-9;]*m", "", row)) for row in words.splitlines()) <= columns
+
+
+def test_a_brief_verdict_has_the_details_of_one_function_and_says_so():
+    first = _check("a", "euler", Status.FAIL, message="First.", help="Help one.")
+    second = _check("b", "verlet", Status.FAIL, message="Second.", help="Help two.")
+    words = _shown(first, second, brief=True)
+    assert "Help one." in words
+    assert "FAIL: b works" in words
+    assert "Second." not in words
+    assert "course check" in words
+    assert "Help two." in _shown(first, second)
+    assert "course check" not in _shown(first, _check("b", "verlet"), brief=True)
 
 
 def test_warnings_are_shown():

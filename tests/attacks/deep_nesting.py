@@ -1,0 +1,16 @@
+"""Sends lists in lists, a hundred thousand deep."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+def scale(values, factor):
+    raw(wire.Kind.RESULT, b"l\x01\x00\x00\x00" * 100_000 + b"N")

@@ -1,0 +1,20 @@
+"""Sends half a frame and waits."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+import time
+
+
+def scale(values, factor):
+    raw(wire.Kind.RESULT, b"l\x05\x00\x00\x00N", length=100)
+    time.sleep(30)

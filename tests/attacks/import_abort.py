@@ -1,0 +1,5 @@
+"""Aborts while it is loaded, hoping for a core dump."""
+
+import os
+
+os.abort()

@@ -1,0 +1,5 @@
+"""Allocates until nothing is left while it is loaded."""
+
+hoard = []
+for _ in range(64):
+    hoard.append(bytearray(256 << 20))

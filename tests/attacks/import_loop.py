@@ -1,0 +1,7 @@
+"""Never finishes loading."""
+
+import time
+
+end = time.monotonic() + 30
+while time.monotonic() < end:
+    pass

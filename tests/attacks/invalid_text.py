@@ -1,0 +1,16 @@
+"""Sends text that is no UTF-8."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+def scale(values, factor):
+    raw(wire.Kind.RESULT, b"s\x04\x00\x00\x00\xed\xa0\x80\xff")

@@ -1,0 +1,16 @@
+"""Sends half a million values in one frame."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+def scale(values, factor):
+    raw(wire.Kind.RESULT, b"l" + struct.pack("<I", 500_000) + b"N" * 500_000)

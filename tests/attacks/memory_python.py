@@ -1,0 +1,7 @@
+"""Fills memory with Python objects inside a call."""
+
+def scale(values, factor):
+    hoard = []
+    for _ in range(64):
+        hoard.append(bytearray(b"x") * (128 << 20))
+    return values

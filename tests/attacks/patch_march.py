@@ -1,0 +1,10 @@
+"""Replaces the loop that a march of its step runs in."""
+
+import worker
+
+
+def march(step, rhs, q0, v0, t0, h, n):
+    return [np.full((n + 1, len(q0)), np.nan), np.full((n + 1, len(q0)), np.inf)]
+
+
+worker._march = march

@@ -1,0 +1,30 @@
+"""Reports an exception whose parts are arrays, numbers and functions."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+turn = [0]
+
+
+def scale(values, factor):
+    turn[0] += 1
+    odd = [
+        {"type": "E", "message": "m", "frames": np.zeros(3), "bases": np.zeros(2), "line": 1.5},
+        {"type": np.zeros(2), "message": 7, "frames": 5, "bases": 5, "line": True},
+        {"type": "E", "frames": [[["x"], 1, "f"], [np.zeros(2), 1, "f"], [1], 7, [{}, {}, {}]], "bases": [[1], {}]},
+        [1, 2], None, 5.0, np.zeros((2, 2)), {"frames": "text", "bases": "text", "line": -1},
+    ]
+    sock.sendall(wire.Codec().encode(wire.Kind.RAISED, odd[(turn[0] - 1) % len(odd)]))
+    return scale
+
+
+advance = sample = compose = draw = scale

@@ -1,0 +1,17 @@
+"""Says again that it is ready, and loaded, and refused."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+def scale(values, factor):
+    for kind in (wire.Kind.READY, wire.Kind.LOADED, wire.Kind.REFUSED):
+        raw(kind, b"N")

@@ -1,0 +1,16 @@
+"""Announces a frame of no bytes."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+def scale(values, factor):
+    sock.sendall(b"\0\0\0\0" + bytes([wire.Kind.RESULT]) * 60)

@@ -9,11 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.authoring.lesson_cells import run_lesson
+from course.catalog.blocks import Figure, walk_blocks
 from course.catalog.front_matter import split_front_matter
 from course.catalog.markdown import read_blocks
 from course.catalog.reading import read_text
 from course.catalog.toml_lines import LineMap
 from course.errors import ContentError, UsageError
+from course.figures.registry import figure_ids
 from course.ids import LessonId
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 
     from course.authoring.links import LinkChecker
     from course.authoring.report import Findings
+    from course.catalog.blocks import Block
     from course.catalog.load import Catalog
     from course.catalog.models import Lesson
 
@@ -59,7 +62,9 @@ def audit_lesson(catalog: Catalog, lesson_id: str, findings: Findings, links: Li
         LessonId(lesson_id)
         lesson = catalog.read_lesson(lesson_id)
         _audit_head(catalog, path, lesson, findings)
-        links.check_lesson(path, read_blocks(path))
+        blocks = read_blocks(path)
+        links.check_lesson(path, blocks)
+        _audit_figures(path, blocks, findings)
         _audit_numbers(path, findings)
     except UsageError as error:
         findings.add(path, None, "content", error.message, error.help)
@@ -88,6 +93,18 @@ def _audit_head(catalog: Catalog, path: Path, lesson: Lesson, findings: Findings
                 "lesson",
                 f"there is no exercise {exercise_id}.",
                 f"Known: {', '.join(catalog.exercise_ids())}.",
+            )
+
+
+def _audit_figures(path: Path, blocks: tuple[Block, ...], findings: Findings) -> None:
+    for block in walk_blocks(blocks):
+        if isinstance(block, Figure) and block.id not in figure_ids():
+            findings.add(
+                path,
+                block.line,
+                "lesson",
+                f"there is no figure {block.id}.",
+                f"Known: {', '.join(figure_ids())}.",
             )
 
 

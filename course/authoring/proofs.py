@@ -247,7 +247,7 @@ class Prover:
 
 
 def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
-    """Numbers in a check's words that have a decimal point and are not public, or that are among its values."""
+    """Numbers in a check's words that give something away: decimals no student has, and its own values."""
     words = f"{check.message} {check.help}"
     for match in DECIMAL.finditer(words):
         if match[0] not in public:

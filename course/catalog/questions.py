@@ -8,6 +8,7 @@ are finite, so every case a student can ever meet can be gone through beforehand
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from typing import TYPE_CHECKING, Any
@@ -119,7 +120,7 @@ def read_questions(folder: Path) -> tuple[Document[Question], ...]:
     documents = sorted(
         (_read(path) for path in folder.glob("*.toml")), key=lambda d: (d.value.order, d.value.id)
     )
-    for one, other in zip(documents, documents[1:], strict=False):
+    for one, other in itertools.pairwise(documents):
         if one.value.order == other.value.order:
             other.fail(
                 ("order",),
@@ -188,7 +189,9 @@ def _check_option(document: Document[Question], where: Where, option: Option) ->
     _check_slug(document, (*where, "id"), option.id, "option")
     if len(option.id) == 1:
         document.fail(
-            (*where, "id"), f"`id` is the letter {option.id}.", fix="Use a word: letters name places on screen."
+            (*where, "id"),
+            f"`id` is the letter {option.id}.",
+            fix="Use a word: letters name places on screen.",
         )
     _check_words(document, (*where, "text"), option.text)
     _check_words(document, (*where, "explanation"), option.explanation)
@@ -220,7 +223,9 @@ def _check_numbers(document: Document[Question], where: Where, variant: Variant)
             )
         if len(set(number.values)) != len(number.values) or not all(map(math.isfinite, number.values)):
             document.fail(
-                (*at, "values"), "`values` repeats one or holds nan or inf.", fix="List finite numbers, each once."
+                (*at, "values"),
+                "`values` repeats one or holds nan or inf.",
+                fix="List finite numbers, each once.",
             )
         if number.digits not in _DIGITS:
             document.fail((*at, "digits"), "`digits` must lie between 1 and 6.", fix="Write: digits = 3")
@@ -229,7 +234,9 @@ def _check_numbers(document: Document[Question], where: Where, variant: Variant)
         known.add(number.name)
     if variant.cases > MAX_CASES:
         document.fail(
-            where, f"variant {variant.id} has {variant.cases} cases.", fix=f"List fewer values: {MAX_CASES} at most."
+            where,
+            f"variant {variant.id} has {variant.cases} cases.",
+            fix=f"List fewer values: {MAX_CASES} at most.",
         )
 
 
@@ -257,7 +264,9 @@ def _check_placeholders(document: Document[Question], where: Where, variant: Var
         names = placeholders(text)
         if (stray := next((name for name in names if name not in known), None)) is not None:
             document.fail(
-                at, f"{{{stray}}} names no number.", fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}."
+                at,
+                f"{{{stray}}} names no number.",
+                fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}.",
             )
         if re.search(r"[{}]", _PLACEHOLDER.sub("", text)):
             document.fail(at, "a brace stands alone.", fix="Braces hold the name of a number: {h}.")

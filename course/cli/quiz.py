@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import secrets
-from dataclasses import dataclass
 from datetime import date, datetime
-from pathlib import Path  # noqa: TC003 - typer reads it from the annotations
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 from course.cli.console import Console, current
+from course.cli.quiz_desk import Desk, agrees, answer, open_or_new, start
 from course.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    from course.cli.here import Here
-    from course.progress.quiz import Attempt, QuizHistory
+    from course.progress.quiz import Attempt
     from course.quizzing.attempt import Marked
-    from course.quizzing.bank import Bank, Posed
+    from course.quizzing.bank import Posed
     from course.quizzing.review import Due
 
 __all__ = ["app", "history", "review", "take"]
@@ -47,43 +45,6 @@ QuestionsOption = Annotated[
 ]
 
 
-@dataclass
-class _Desk:
-    """A student's side of the quiz."""
-
-    here: Here
-    bank: Bank
-    history: QuizHistory
-
-    @classmethod
-    def load(cls) -> _Desk:
-        """Raises what finding the workspace, reading the questions and reading the record raise."""
-        from course.cli.here import Here
-        from course.progress.quiz import quiz_history
-        from course.quizzing.bank import Bank
-
-        here = Here.load()
-        return cls(here, Bank.of(here.catalog), quiz_history(here.workspace.store.events()))
-
-    def new_seed(self) -> int:
-        """A seed that asks nothing the way it was last asked."""
-        from course.quizzing.attempt import fresh_seed
-
-        return fresh_seed(self.bank, self.history.last_seeds())
-
-    def reviews(self) -> tuple[Due, ...]:
-        """The questions under review, from the record as it is now."""
-        from course.errors import CourseError
-        from course.progress.quiz import quiz_history
-        from course.quizzing.review import schedule
-
-        try:
-            self.history = quiz_history(self.here.workspace.store.events())
-        except CourseError as error:
-            self.here.warnings.append(f"{error.message} {error.help}")
-        return schedule(self.history.outcomes(), self.bank.ids)
-
-
 def today() -> date:
     """The day it is for the student."""
     return datetime.now().astimezone().date()
@@ -101,10 +62,10 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
 
     console = current()
     _check_options(console, answers, seed, questions, "take")
-    desk = _Desk.load()
+    desk = Desk.load()
     if answers is not None:
         return _take_file(console, desk, answers, seed)
-    attempt, resumed = _attempt(console, desk, seed)
+    attempt, resumed = open_or_new(console, desk, seed)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
     if questions:
@@ -146,54 +107,7 @@ def _need_terminal(console: Console, command: str) -> None:
     )
 
 
-def _attempt(console: Console, desk: _Desk, seed: int | None) -> tuple[Attempt, bool]:
-    """The attempt to go on with, or a new one; and whether it was begun before."""
-    open_one = desk.history.open
-    if open_one is not None and seed in (None, open_one.seed):
-        if _fits(desk.bank, open_one):
-            return open_one, bool(open_one.answers)
-        console.line("The questions have changed since you left your last attempt, so a new one begins.")
-    return _start(desk, desk.new_seed() if seed is None else seed), False
-
-
-def _fits(bank: Bank, attempt: Attempt) -> bool:
-    """Whether the questions still are the ones the attempt was begun with."""
-    if attempt.questions != bank.ids:
-        return False
-    posed = {question.question: question for question in bank.pose(attempt.seed)}
-    return all(
-        name in posed and posed[name].choice(option) is not None for name, option in attempt.answers.items()
-    )
-
-
-def _start(desk: _Desk, seed: int) -> Attempt:
-    """Record the beginning of an attempt."""
-    from datetime import UTC
-
-    from course.progress import quiz
-
-    attempt = quiz.Attempt(
-        id=secrets.token_hex(8),
-        seed=seed,
-        version=desk.here.catalog.version,
-        questions=desk.bank.ids,
-        started=datetime.now(UTC),
-    )
-    desk.here.record(
-        quiz.START, "", quiz.start_data(attempt.id, seed, attempt.version, attempt.questions)
-    )
-    return attempt
-
-
-def _answer(desk: _Desk, attempt: Attempt, question: str, option: str) -> None:
-    """Record one answer at once, so that nothing is lost however the program ends."""
-    from course.progress import quiz
-
-    attempt.answers[question] = option
-    desk.here.record(quiz.ANSWER, question, quiz.answer_data(attempt.id, option))
-
-
-def _ask_all(console: Console, desk: _Desk, attempt: Attempt, posed: Sequence[Posed]) -> bool:
+def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed]) -> bool:
     """Ask what is not answered yet; False if the student stops."""
     from course.cli import quiz_screen as screen
 
@@ -203,11 +117,11 @@ def _ask_all(console: Console, desk: _Desk, attempt: Attempt, posed: Sequence[Po
         chosen = screen.ask(console, question, number, len(posed))
         if chosen is None:
             return False
-        _answer(desk, attempt, question.question, chosen.id)
+        answer(desk, attempt, question.question, chosen.id)
     return True
 
 
-def _take_file(console: Console, desk: _Desk, path: Path, seed: int | None) -> int:
+def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> int:
     """An attempt whose answers are all in a file."""
     from course.cli import quiz_screen as screen
     from course.quizzing.answers import read_answers
@@ -224,32 +138,24 @@ def _take_file(console: Console, desk: _Desk, path: Path, seed: int | None) -> i
     posed = desk.bank.pose(check_seed(seed))
     answers = file.choose(posed, desk.bank, seed)
     screen.show_mark(console, len(posed))
-    attempt = open_one if open_one is not None and _agrees(desk.bank, open_one, seed, answers) else None
+    attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
     resumed = attempt is not None and bool(attempt.answers)
-    attempt = attempt or _start(desk, seed)
+    attempt = attempt or start(desk, seed)
     for name, option in answers.items():
         if name not in attempt.answers:
-            _answer(desk, attempt, name, option)
+            answer(desk, attempt, name, option)
     return _finish(console, desk, attempt, posed, resumed=resumed)
-
-
-def _agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:
-    """Whether a file completes an open attempt rather than contradicts it."""
-    same = attempt.seed == seed and _fits(bank, attempt)
-    return same and all(answers[name] == option for name, option in attempt.answers.items())
 
 
 def _no_seed(path: Path, command: str) -> NoReturn:
     raise UsageError(
         f"{path} does not say which questions its answers are for.",
-        help=f"Add a line `seed = N` at its top, as `course quiz {command} --questions` prints it, or give --seed N.",
+        help=f"Add a line `seed = N`, as `course quiz {command} --questions` prints it, or give --seed N.",
         code="seed_missing",
     )
 
 
-def _finish(
-    console: Console, desk: _Desk, attempt: Attempt, posed: Sequence[Posed], *, resumed: bool
-) -> int:
+def _finish(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed], *, resumed: bool) -> int:
     """Score, record, show."""
     from course.cli import quiz_screen as screen
     from course.cli.quiz_schemas import Quiz
@@ -307,7 +213,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
 
     console = current()
     _check_options(console, answers, seed, questions, "review")
-    desk = _Desk.load()
+    desk = Desk.load()
     ids = [entry.question for entry in desk.reviews() if entry.on <= today()]
     if not ids:
         return _end_review(console, desk, None, [])
@@ -331,7 +237,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     return _end_review(console, desk, seed, marked)
 
 
-def _review_file(console: Console, desk: _Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
+def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
     from course.cli import quiz_screen as screen
     from course.quizzing.answers import read_answers
     from course.quizzing.attempt import check_seed
@@ -349,7 +255,7 @@ def _review_file(console: Console, desk: _Desk, path: Path, seed: int | None, id
     return _end_review(console, desk, seed, marked)
 
 
-def _reviewed(desk: _Desk, posed: Posed, option: str, seed: int) -> Marked:
+def _reviewed(desk: Desk, posed: Posed, option: str, seed: int) -> Marked:
     """Mark and record one answer of a review."""
     from course.progress import quiz
     from course.quizzing.attempt import mark
@@ -359,7 +265,7 @@ def _reviewed(desk: _Desk, posed: Posed, option: str, seed: int) -> Marked:
     return marked
 
 
-def _end_review(console: Console, desk: _Desk, seed: int | None, marked: Sequence[Marked]) -> int:
+def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[Marked]) -> int:
     from course.cli import quiz_screen as screen
     from course.cli.quiz_schemas import QuizReview
     from course.cli.schemas import NextStep
@@ -377,7 +283,8 @@ def _end_review(console: Console, desk: _Desk, seed: int | None, marked: Sequenc
     elif not marked:
         console.line("Nothing is due today.")
     screen.show_due(console, due, today())
-    step = "course" if due or desk.history.finished else "course quiz take"
+    best = desk.history.best
+    step = "course" if best is not None and best.passed else "course quiz take"
     console.note(f"Next: {step}")
     for warning in desk.here.warnings:
         console.warn(warning)
@@ -405,7 +312,7 @@ def history() -> int:
     from course.cli.schemas import NextStep
     from course.quizzing.attempt import mark_sentence
 
-    console, desk = current(), _Desk.load()
+    console, desk = current(), Desk.load()
     attempts = screen.attempt_replies(desk.history)
     due = desk.reviews()
     best = desk.history.best

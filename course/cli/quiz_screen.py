@@ -14,7 +14,7 @@ from course.cli.quiz_schemas import (
     QuizQuestions,
 )
 from course.cli.schemas import NextStep
-from course.quizzing.attempt import mark_sentence
+from course.quizzing.attempt import mark_sentence, needed
 from course.quizzing.bank import LETTERS
 from course.quizzing.review import GAP_DAYS, ROUNDS
 
@@ -83,18 +83,27 @@ def _show_question(console: Console, posed: Posed, number: int, total: int) -> N
         console.item(choice.letter, choice.text, style="bold")
 
 
-def _show_prompt(console: Console, posed: Posed) -> None:
+def _show_prompt(console: Console, posed: Posed, indent: int = 0) -> None:
     for paragraph in posed.prompt.split("\n\n"):
-        console.line(paragraph)
+        console.line(paragraph, indent=indent)
 
 
 def show_result(console: Console, result: Result) -> None:
     """The score, then each question: every option of what was missed, the right one of the rest."""
-    verdict = ("passed", "green") if result.passed else ("not passed", "red")
-    console.blank()
-    console.line((f"{result.score} of {result.total} right: ", "bold"), verdict, (".", "bold"))
+    _show_score(console, result)
     for number, marked in enumerate(result.marked, start=1):
         show_marked(console, marked, number)
+    if console.fancy:
+        # By now the score has scrolled out of the window.
+        _show_score(console, result)
+
+
+def _show_score(console: Console, result: Result) -> None:
+    verdict = ("passed", "green") if result.passed else ("not passed", "red")
+    console.blank()
+    console.line(
+        (f"{result.score} of {result.total} right, {needed(result.total)} needed: ", "bold"), verdict
+    )
 
 
 def show_marked(console: Console, marked: Marked, number: int) -> None:
@@ -104,7 +113,7 @@ def show_marked(console: Console, marked: Marked, number: int) -> None:
     outcome = ("right", "green") if marked.right else ("missed", "red")
     console.line((f"{number}. {posed.title}: ", "bold"), outcome)
     if not marked.right:
-        _show_prompt(console, posed)
+        _show_prompt(console, posed, indent=2)
         _show_choice(console, "Your answer", chosen, "red")
     _show_choice(console, "Right", posed.key, "green")
     if not marked.right:
@@ -120,7 +129,7 @@ def _show_choice(console: Console, label: str, choice: Choice, style: str) -> No
     console.item(label, f"{choice.letter}. {choice.text}", style=style, width=_LABEL)
     console.line(choice.explanation, indent=4)
     if choice.belief:
-        console.line(f"The belief behind it: {choice.belief}", indent=4)
+        console.line(f'The belief behind it: "{choice.belief}"', indent=4)
 
 
 def show_due(console: Console, due: Sequence[Due], today: date) -> None:
@@ -128,9 +137,10 @@ def show_due(console: Console, due: Sequence[Due], today: date) -> None:
     if not due:
         return
     console.blank()
-    console.heading("Under review", f"until right {ROUNDS} times in a row, {GAP_DAYS} days apart")
+    console.heading("Under review", f"until right {ROUNDS} times in a row, {GAP_DAYS} days or more apart")
     for entry in due:
-        console.line(f"{entry.question}: {_when(entry.on, today)}, {entry.rounds} of {ROUNDS}", indent=2)
+        rounds = f"right {entry.rounds} of {ROUNDS} times"
+        console.line(f"{entry.question}: {_when(entry.on, today)}; {rounds}", indent=2)
 
 
 def _when(day: date, today: date) -> str:

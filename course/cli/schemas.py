@@ -321,6 +321,7 @@ class Submit(Envelope, tag="course.submit/1", frozen=True, kw_only=True):
     output: str
     files: tuple[SubmitFile, ...]
     left_out: tuple[FileReply, ...]
+    quiz_attempts: int = 0
     backup: str | None = None
     warnings: tuple[str, ...] = ()
 

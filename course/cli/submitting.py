@@ -9,7 +9,7 @@ import json
 import warnings
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -18,7 +18,7 @@ from course.cli.numbers import format_points
 from course.errors import CourseError, UngradableError, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from course.catalog.models import Exercise
     from course.cli.here import Here
@@ -52,16 +52,20 @@ def submit(
     target = _target(here, output)
     sources, left_out = _collect(here)
     files = tuple(_describe(here, exercise, source) for exercise, source in sources)
-    _show(console, here, files, left_out)
-    if not sources:
+    quiz = _quiz_records(here)
+    _show(console, here, files, left_out, quiz)
+    if not sources and not quiz:
         raise UngradableError(
-            "There is nothing to hand in yet.", help="Write an exercise first.", code="nothing_to_submit"
+            "There is nothing to hand in yet.",
+            help="Write an exercise first, or take the quiz.",
+            code="nothing_to_submit",
         )
     notes = [note for exercise, source in sources if (note := _syntax_note(exercise, source))]
     data = archive(
         here.catalog.course_id,
         here.catalog.version,
         {f"{exercise.id}/{exercise.module}": source for exercise, source in sources},
+        quiz,
     )
     if len(data) > MAX_TOTAL_BYTES:
         raise UngradableError(
@@ -84,6 +88,7 @@ def submit(
             output=str(target),
             files=files,
             left_out=tuple(left_out),
+            quiz_attempts=len(quiz),
             backup=backup,
             warnings=tuple(notes),
         )
@@ -91,13 +96,19 @@ def submit(
     return 0
 
 
-def archive(course_id: str, version: str, files: Mapping[str, bytes]) -> bytes:
-    """The zip: each file, and ``submission.json`` with its checksum. The same arguments, the same bytes."""
+def archive(
+    course_id: str, version: str, files: Mapping[str, bytes], quiz: Sequence[Mapping[str, object]] = ()
+) -> bytes:
+    """The zip: each file, and ``submission.json`` with its checksum. The same arguments, the same bytes.
+
+    Args:
+        quiz: attempts as ``course.progress.quiz.records`` gives them; a grading run scores them again.
+    """
     manifest = {
         "format_version": FORMAT_VERSION,
         "course": {"id": course_id, "version": version},
         "files": {path: hashlib.sha256(data).hexdigest() for path, data in sorted(files.items())},
-        "quiz": [],
+        "quiz": list(quiz),
     }
     entries = {**files, MANIFEST: (json.dumps(manifest, indent=2, sort_keys=True) + "\n").encode()}
     buffer = io.BytesIO()
@@ -167,8 +178,25 @@ def _describe(here: Here, exercise: Exercise, source: bytes) -> SubmitFile:
     )
 
 
-def _show(console: Console, here: Here, files: tuple[SubmitFile, ...], left_out: list[FileReply]) -> None:
-    if files:
+def _quiz_records(here: Here) -> list[dict[str, object]]:
+    """The attempts at the quiz; none where the record of progress cannot be read, which is said."""
+    from course.progress.quiz import quiz_history, records
+
+    try:
+        return records(quiz_history(here.workspace.store.events()))
+    except CourseError as error:
+        here.warnings.append(f"Attempts at the quiz are left out: {error.message} {error.help}")
+        return []
+
+
+def _show(
+    console: Console,
+    here: Here,
+    files: tuple[SubmitFile, ...],
+    left_out: list[FileReply],
+    quiz: Sequence[Mapping[str, Any]],
+) -> None:
+    if files or quiz:
         console.line("This goes in:")
     for file in files:
         score = "not checked since its last change"
@@ -177,7 +205,15 @@ def _show(console: Console, here: Here, files: tuple[SubmitFile, ...], left_out:
                 f"score {format_points(file.last_score)}/{format_points(file.max_score)} at the last check"
             )
         console.line(f"{file.path}: {file.bytes:,} bytes, {score}", indent=2)
-    if files:
+    if quiz:
+        attempts = "1 attempt" if len(quiz) == 1 else f"{len(quiz)} attempts"
+        best = max(quiz, key=lambda record: record["score"])
+        console.line(
+            f"The quiz: {attempts}, best {best['score']} of {len(best['questions'])}; "
+            "scored again when graded",
+            indent=2,
+        )
+    if files or quiz:
         console.line(
             f"{MANIFEST}: the course ({here.course.id} {here.course.version}) and checksums", indent=2
         )

@@ -6,6 +6,9 @@ watched and not the file: many editors save by putting a new file in the old one
 
 from __future__ import annotations
 
+import contextlib
+import signal
+import threading
 import time
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -59,7 +62,7 @@ def watch(
     here.source(chosen)  # nothing to watch is an error now, and only something to wait for later
     watcher = Watcher(console=console, here=here, exercise=chosen, verbose=verbose)
     try:
-        with open_session(chosen, here.catalog) as session:
+        with _ended_like_ctrl_c(), open_session(chosen, here.catalog) as session:
             console.note(f"Watching {here.workspace.shown(path)}; Ctrl-C ends it.")
             for _ in saves(path):
                 watcher.look(session)
@@ -68,6 +71,23 @@ def watch(
             console.blank()  # the terminal has written ^C
     console.emit(watcher.reply())
     return INTERRUPTED
+
+
+@contextlib.contextmanager
+def _ended_like_ctrl_c() -> Iterator[None]:
+    """A closed window or a plain kill ends the watch as Ctrl-C does, so that the sandbox is cleared away."""
+
+    def stop(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    here = threading.current_thread() is threading.main_thread()
+    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)]
+    before = {number: signal.signal(number, stop) for number in numbers} if here else {}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def saves(path: Path) -> Iterator[None]:

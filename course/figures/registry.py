@@ -25,6 +25,7 @@ FIGURES: dict[str, tuple[str, str]] = {
     "integrators-energy": ("integrators", "energy_error"),
     "integrators-order": ("integrators", "error_against_step"),
     "integrators-stability": ("integrators", "stability"),
+    "engines-settings": ("engines", "settings"),
 }
 
 #: Figures are 6.5 in wide, the text width of a printed page; this makes 1170 pixels of it.

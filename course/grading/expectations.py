@@ -307,7 +307,7 @@ def expect_untouched(
     for name, given, after in zip(names, before, inspected.args_after, strict=True):
         if name and not _same(given, after):
             fail(
-                "The call changed one of its arguments in place.",
+                f"The call changed its argument `{name}` in place.",
                 expected={name: given},
                 actual={name: after},
                 diagnose=mutated,

@@ -27,7 +27,15 @@ from course.quizzing.bank import MAX_SEED, Bank
 if TYPE_CHECKING:
     from course.quizzing.attempt import Marked
 
-__all__ = ["EXERCISE_ID", "GRADER_REVISION", "QuizScore", "grade_quiz", "quiz_version", "record_sha256", "score_record"]
+__all__ = [
+    "EXERCISE_ID",
+    "GRADER_REVISION",
+    "QuizScore",
+    "grade_quiz",
+    "quiz_version",
+    "record_sha256",
+    "score_record",
+]
 
 #: What the quiz is called among the exercises of a gradebook; no exercise may have this id.
 EXERCISE_ID = "quiz"
@@ -160,7 +168,8 @@ def _score(bank: Bank, attempt: _Record, which: str) -> Result:
         given = attempt.answers[question.question]
         if given not in {choice.id for choice in question.choices}:
             raise _inconsistent(
-                f"{which} answers {question.question} with {given!r}, which seed {attempt.seed} does not offer.",
+                f"{which} answers {question.question} with {given!r}, "
+                f"which seed {attempt.seed} does not offer.",
                 attempt.version,
             )
     result = mark(posed, attempt.answers)
@@ -176,8 +185,8 @@ def _inconsistent(message: str, version: str = "") -> UngradableError:
     made = f" The attempt says it was made with version {version!a} of the course." if version else ""
     return UngradableError(
         message,
-        help="Ask the student to run `course submit` again and upload the zip unchanged; where the quiz changed "
-        f"in between, grade with the version it was taken with.{made}",
+        help="Ask the student to run `course submit` again and upload the zip unchanged; where the quiz "
+        f"changed in between, grade with the version it was taken with.{made}",
         code=CODE,
     )
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.isolation import wire
 from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.levels import START_TIMEOUT
 from course.physics import systems
 
 if TYPE_CHECKING:
@@ -241,16 +242,20 @@ class Connection:
         raise LoadRefusedError("crash", self._breach("an answer of another form"))
 
     def _await_lockdown(self) -> None:
-        """The first word of a worker, said before it is given a stranger's code: only here is it believed."""
+        """The first word of a worker, said before it is given a stranger's code: only here is it believed.
+
+        Starting is our own time: the deadline moves by as much.
+        """
+        start, deadline = monotonic(), self.deadline
+        self.deadline = start + START_TIMEOUT
         try:
             kind, value = self._receive()
         except StudentFailure as failure:
-            if failure.kind == "timeout":  # replaced shortly before the deadline of a check
-                raise LoadRefusedError(failure.kind, failure) from None
             raise IsolationError(f"a worker did not get ready: {failure.message}") from None
         if kind != Kind.READY:
             self.close()
             raise IsolationError(f"a worker could not be locked down: {value}")
+        self.deadline = deadline + monotonic() - start
 
     def _raised(self, value: Any) -> StudentFailure:
         """The exception a worker reports, with nothing taken for granted about the report."""

@@ -52,6 +52,8 @@ class Body:
             )
         self.mass = float(mass)
         self.inertia = moments
+        #: True if a torque can turn it.
+        self.spins = bool(np.all(np.isfinite(moments)))
         self.radius = float(radius)
         self.state = state
         self.force: Array = np.zeros(3)
@@ -62,11 +64,6 @@ class Body:
         """A solid ball, inertia 2/5 m r²; with ``spins=False`` one that friction cannot set turning."""
         inertia = 0.4 * mass * radius**2 if spins else math.inf
         return cls(mass, state, inertia=inertia, radius=radius)
-
-    @property
-    def spins(self) -> bool:
-        """True if a torque can turn it."""
-        return bool(np.all(np.isfinite(self.inertia)))
 
     def add_force(self, force: ArrayLike) -> None:
         """Push at the centre of mass: N, in the world's axes, shape (..., 3)."""

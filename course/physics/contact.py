@@ -63,7 +63,9 @@ class Surface:
         if not np.all((e >= 0) & (e <= 1)):
             raise ValueError(f"A restitution lies between 0 and 1; this one is {self.restitution}.")
         if not np.all((mu >= 0) & np.isfinite(mu)):
-            raise ValueError(f"A friction coefficient is 0 or a positive number; this one is {self.friction}.")
+            raise ValueError(
+                f"A friction coefficient is 0 or a positive number; this one is {self.friction}."
+            )
 
 
 class Contact(NamedTuple):

@@ -63,31 +63,39 @@ class TwoLinkArm:
 
     def mass_matrix(self, q: ArrayLike) -> Array:
         """How torques and accelerations hang together at rest, kg m², shape (..., 2, 2)."""
-        q = np.asarray(q, dtype=float)
-        swing = self.mass2 * self.length1 * self.centre2 * np.cos(q[..., 1])
-        far = self.inertia2 + self.mass2 * self.centre2**2 + 0.0 * swing
-        near = self.inertia1 + self.mass1 * self.centre1**2 + self.mass2 * self.length1**2
-        rows = [[near + far + 2 * swing, far + swing], [far + swing, far]]
+        m11, m12, m22 = self._inertias(np.asarray(q, dtype=float)[..., 1])
+        rows = [[m11, m12], [m12, m22 + 0.0 * m11]]
         return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
     def bias(self, q: ArrayLike, v: ArrayLike) -> Array:
         """Torques that hold all accelerations at 0: centrifugal, Coriolis and weight, N m, shape (..., 2)."""
-        q, v = np.asarray(q, dtype=float), np.asarray(v, dtype=float)
+        return np.stack(self._holding(np.asarray(q, dtype=float), np.asarray(v, dtype=float)), axis=-1)
+
+    def forward(self, q: ArrayLike, v: ArrayLike, torque: ArrayLike) -> Array:
+        """Forward dynamics: joint accelerations (rad/s²) from joint torques (N m); all of shape (..., 2)."""
+        q, v, torque = (np.asarray(x, dtype=float) for x in (q, v, torque))
+        m11, m12, m22 = self._inertias(q[..., 1])
+        holding1, holding2 = self._holding(q, v)
+        rest1, rest2 = torque[..., 0] - holding1, torque[..., 1] - holding2
+        determinant = m11 * m22 - m12 * m12
+        first = (m22 * rest1 - m12 * rest2) / determinant
+        second = (m11 * rest2 - m12 * rest1) / determinant
+        return np.stack([first, second], axis=-1)
+
+    def _inertias(self, bend: Array) -> tuple[Array, Array, float]:
+        """The entries 11, 12 and 22 of the mass matrix at an elbow angle."""
+        swing = self.mass2 * self.length1 * self.centre2 * np.cos(bend)
+        far = self.inertia2 + self.mass2 * self.centre2**2
+        near = self.inertia1 + self.mass1 * self.centre1**2 + self.mass2 * self.length1**2
+        return near + far + 2 * swing, far + swing, far
+
+    def _holding(self, q: Array, v: Array) -> tuple[Array, Array]:
+        """The two components of ``bias``."""
         pull = self.mass2 * self.length1 * self.centre2 * np.sin(q[..., 1])
         spin1, spin2 = v[..., 0], v[..., 1]
         weight2 = self.mass2 * self.g * self.centre2 * np.cos(q[..., 0] + q[..., 1])
         weight1 = (self.mass1 * self.centre1 + self.mass2 * self.length1) * self.g * np.cos(q[..., 0])
-        shoulder = -pull * spin2 * (2 * spin1 + spin2) + weight1 + weight2
-        return np.stack([shoulder, pull * spin1**2 + weight2], axis=-1)
-
-    def forward(self, q: ArrayLike, v: ArrayLike, torque: ArrayLike) -> Array:
-        """Forward dynamics: joint accelerations (rad/s²) from joint torques (N m); all of shape (..., 2)."""
-        rest = np.asarray(torque, dtype=float) - self.bias(q, v)
-        m = self.mass_matrix(q)
-        determinant = m[..., 0, 0] * m[..., 1, 1] - m[..., 0, 1] ** 2
-        first = (m[..., 1, 1] * rest[..., 0] - m[..., 0, 1] * rest[..., 1]) / determinant
-        second = (m[..., 0, 0] * rest[..., 1] - m[..., 0, 1] * rest[..., 0]) / determinant
-        return np.stack([first, second], axis=-1)
+        return weight1 + weight2 - pull * spin2 * (2 * spin1 + spin2), pull * spin1 * spin1 + weight2
 
     def inverse(self, q: ArrayLike, v: ArrayLike, acceleration: ArrayLike) -> Array:
         """Inverse dynamics: joint torques (N m) that make joint accelerations (rad/s²); shape (..., 2).

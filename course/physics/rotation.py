@@ -135,7 +135,9 @@ class RK4Rotation:
         k2 = _slopes(inertia, ahead(0.5, k1), torque)
         k3 = _slopes(inertia, ahead(0.5, k2), torque)
         k4 = _slopes(inertia, ahead(1.0, k3), torque)
-        q, w = (y + h / 6.0 * (a + 2 * b + 2 * c + d) for y, a, b, c, d in zip(spin, k1, k2, k3, k4, strict=True))
+        q, w = (
+            y + h / 6.0 * (a + 2 * b + 2 * c + d) for y, a, b, c, d in zip(spin, k1, k2, k3, k4, strict=True)
+        )
         return Spin(q / np.linalg.norm(q, axis=-1, keepdims=True), w)
 
 

@@ -218,7 +218,9 @@ class Simulator:
     def _accelerations(self, t: Any, q: Array, v: Array) -> Array:
         """What the forces do to every body at these positions and velocities; shape (B, ..., 3)."""
         for body, position, velocity in zip(self.bodies, q, v, strict=True):
-            body.state = RigidBodyState(position, velocity, body.state.orientation, body.state.angular_velocity)
+            body.state = RigidBodyState(
+                position, velocity, body.state.orientation, body.state.angular_velocity
+            )
             body.clear()
         for law in self.laws:
             law(t, self.bodies)
@@ -264,7 +266,9 @@ class Simulator:
         share = np.full(self.batch, np.inf)
         which = np.full(self.batch, -1)
         for k, pair in enumerate(self._pairs):
-            when = self._meeting_with_ground(pair, before, span) if pair.b is None else self._sweep(pair, before)
+            when = (
+                self._meeting_with_ground(pair, before, span) if pair.b is None else self._sweep(pair, before)
+            )
             sooner = when < share
             share, which = np.where(sooner, when, share), np.where(sooner, k, which)
         return share, which
@@ -273,14 +277,16 @@ class Simulator:
         """Where the gap, taken as a cubic in time, falls through 0; arrivals too slow to bounce do not count."""
         contact, body, _ = self._contact(pair)
         arriving = body.state.velocity @ -contact.normal[(0,) * len(self.batch)]
+        fast = (contact.gap < 0) & (-arriving > _REST * self.gravity * span)
+        if not np.any(fast):
+            return np.full(self.batch, np.inf)
         now = body.state
         body.state = before[pair.a]
         old, _, _ = self._contact(pair)
         leaving = body.state.velocity @ -contact.normal[(0,) * len(self.batch)]
         body.state = now
         share = falling_root(old.gap, contact.gap, leaving * span, arriving * span)
-        slow = -arriving <= _REST * self.gravity * span
-        return np.where(slow, np.inf, share)
+        return np.where(fast, share, np.inf)
 
     def _sweep(self, pair: _Pair, before: list[RigidBodyState]) -> Array:
         """Where two spheres first touch if each moves straight from its old place to its new one.

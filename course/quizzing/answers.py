@@ -79,7 +79,7 @@ class AnswerFile:
         if self.seed is not None and self.seed != seed:
             self.fail(
                 "seed",
-                f"these answers are for the questions of seed {self.seed}, and those of seed {seed} are asked.",
+                f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked.",
                 f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}.",
                 "answers_for_other_seed",
             )
@@ -87,7 +87,10 @@ class AnswerFile:
     def _unknown_question(self, name: str, asked: list[str], bank: Bank) -> NoReturn:
         if name in bank.ids:
             self.fail(
-                name, f"{name} is not asked now.", f"Remove the line; asked: {', '.join(asked)}.", "question_not_asked"
+                name,
+                f"{name} is not asked now.",
+                f"Remove the line; asked: {', '.join(asked)}.",
+                "question_not_asked",
             )
         close = difflib.get_close_matches(name, asked, n=1)
         fix = f"Did you mean {close[0]}?" if close else f"The questions are {', '.join(asked)}."
@@ -98,10 +101,18 @@ class AnswerFile:
         if isinstance(given, int) and not isinstance(given, bool):
             given = str(given)
         if not isinstance(given, str):
-            self.fail(name, f"the answer to {name} is no text.", 'Write an option\'s letter: "b".', "answer_not_text")
+            self.fail(
+                name,
+                f"the answer to {name} is no text.",
+                'Write an option\'s letter: "b".',
+                "answer_not_text",
+            )
         choice = posed.choice(given)
-        if choice is not None:
-            return choice.id
+        if choice is None:
+            self._unknown_option(name, given, posed, bank, seed)
+        return choice.id
+
+    def _unknown_option(self, name: str, given: str, posed: Posed, bank: Bank, seed: int) -> NoReturn:
         options = ", ".join(f"{choice.letter} ({choice.id})" for choice in posed.choices)
         if any(given == option.id for variant in _variants(bank, name) for option in variant.option):
             self.fail(
@@ -110,12 +121,16 @@ class AnswerFile:
                 f"Use the file with the questions it was written for, or choose among {options}.",
                 "answers_for_other_seed",
             )
-        self.fail(name, f"{name} has no option {given[:60]!r}.", f"Choose among {options}.", "option_not_found")
+        self.fail(
+            name, f"{name} has no option {given[:60]!r}.", f"Choose among {options}.", "option_not_found"
+        )
 
     def _at(self, key: str) -> str:
         """``:line`` of a key, or nothing."""
         if self.path.suffix.lower() == ".json":
-            found = re.search(rf"^.*?{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", self.text, re.M | re.S)
+            found = re.search(
+                rf"^.*?{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", self.text, re.M | re.S
+            )
             return f":{self.text.count(chr(10), 0, found.end()) + 1}" if key and found else ""
         if not key:
             return ""
@@ -152,7 +167,10 @@ def read_answers(path: Path) -> AnswerFile:
         )
     if not isinstance(answers, dict):
         file.fail(
-            "", "there is no table of answers.", 'Add [answers] with lines like why-simulate = "b".', "answers_format"
+            "",
+            "there is no table of answers.",
+            'Add [answers] with lines like why-simulate = "b".',
+            "answers_format",
         )
     if seed is not None and (not isinstance(seed, int) or isinstance(seed, bool)):
         file.fail("seed", "`seed` is no whole number.", "Write: seed = 42", "answers_format")
@@ -171,7 +189,9 @@ def _read(path: Path) -> str:
         ) from None
     if len(data) > MAX_BYTES:
         raise UsageError(
-            f"{path} is larger than {MAX_BYTES:,} bytes.", help="Name a file of answers.", code="answers_format"
+            f"{path} is larger than {MAX_BYTES:,} bytes.",
+            help="Name a file of answers.",
+            code="answers_format",
         )
     try:
         return data.decode("utf-8-sig").replace("\r\n", "\n")

@@ -39,7 +39,9 @@ class Due:
     rounds: int
 
 
-def schedule(outcomes: Mapping[str, Iterable[tuple[datetime, bool]]], known: Iterable[str]) -> tuple[Due, ...]:
+def schedule(
+    outcomes: Mapping[str, Iterable[tuple[datetime, bool]]], known: Iterable[str]
+) -> tuple[Due, ...]:
     """The questions under review, soonest first.
 
     Args:

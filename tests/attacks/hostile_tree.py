@@ -4,7 +4,7 @@ import os
 
 home = os.getcwd()
 try:
-    for _ in range(700):
+    for _ in range(300):
         os.mkdir("course_attack_d", 0o700)
         os.chdir("course_attack_d")
 except OSError:

@@ -2,4 +2,4 @@
 
 hoard = []
 for _ in range(64):
-    hoard.append(bytearray(256 << 20))
+    hoard.append(np.empty(32 << 20))

@@ -14,5 +14,5 @@ for name in ("course", "course.physics.integrators", "pytest", "msgspec", "_pyte
     try:
         __import__(name)
         print("FILE-CANARY" + "-7f3a: imported", name)
-    except ImportError:
+    except (ImportError, OSError):
         pass

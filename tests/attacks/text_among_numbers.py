@@ -13,7 +13,7 @@ def raw(kind, body, length=None):
 
 
 def scale(values, factor):
-    return ["x" * 900_000, *[1.0] * 50_000]
+    return ["x" * 500_000, *[1.0] * 50_000]
 
 
 def double(x):

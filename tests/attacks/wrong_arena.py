@@ -1,10 +1,10 @@
-"""Wrong throughout, but for the number of values: worth one point."""
+"""Wrong throughout, but for the number of values and leaving the argument alone: worth two points."""
 
 import numpy as np
 
 
 def scale(values, factor):
-    return values
+    return values * 1.0
 
 
 def advance(accel, t, q, v, h):

@@ -22,7 +22,7 @@ def _run(*command: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
 @pytest.mark.parametrize(
     "command",
     [
-        ("-m", "ruff", "check", "--quiet", "."),
+        ("-m", "ruff", "check", "--output-format", "concise", "."),
         ("-m", "ruff", "format", "--check", "--quiet", "."),
         ("-m", "mypy"),
         ("-P", "-c", _LINT_IMPORTS, "--no-cache"),
@@ -31,7 +31,7 @@ def _run(*command: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
 )
 def test_the_repository_passes(command: tuple[str, ...]) -> None:
     done = _run(*command)
-    assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
+    assert done.returncode == 0, f"{done.stdout[-4000:]}\n{done.stderr[-1000:]}"
 
 
 @pytest.fixture(scope="module")

@@ -193,7 +193,7 @@ def test_a_check_that_nothing_declares_is_reported(oracle: Any, run: Callable[..
     ("fields", "number"),
     [
         ({"message": "It is not 34.5."}, "34.5"),
-        ({"message": "Wrong.", "help": "Within 1e-12."}, "1e-12"),
+        ({"message": "Wrong.", "help": "Within 3e-11."}, "3e-11"),
         ({"message": "There are 29 of them.", "expected": 29, "actual": 28}, "29"),
         ({"message": "There are 29 of them.", "input": {"n": [1, 29]}}, "29"),
     ],

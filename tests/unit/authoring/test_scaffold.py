@@ -138,7 +138,7 @@ def test_a_new_lesson_passes_once_it_is_filled_and_listed(mini: Path) -> None:
     (path,) = new_lesson(Catalog(), "three-times")
     problems = audit(Catalog()).problems
     assert {p.code for p in problems} == {"blank", "syllabus"}
-    path.write_text(BLANK.sub("Three times.", path.read_text()))
+    path.write_text(BLANK.sub("Three times, 2026.", path.read_text()))
     syllabus = mini / "lessons" / "syllabus.toml"
     syllabus.write_text(syllabus.read_text().replace('"half-as-much"]', '"half-as-much", "three-times"]'))
     assert audit(Catalog()).problems == ()

@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import stat
+import warnings
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -30,11 +31,17 @@ def write(folder: Path, data: bytes) -> Path:
     return path
 
 
-def forge(folder: Path, *, manifest: Any = None, rename: str = "", extra: Any = None, **change: Any) -> Path:
-    """A pack put together by somebody else: entries and manifest as given."""
-    entries = {"solutions/doubling/doubling.py": b"x = 1\n"}
-    if rename:
-        entries = {rename: b"x = 1\n"}
+def forge(
+    folder: Path,
+    *,
+    entries: dict[str, bytes] | None = None,
+    manifest: Any = None,
+    mode: int = stat.S_IFREG | 0o644,
+    twice: bool = False,
+    **change: Any,
+) -> Path:
+    """A pack put together by somebody else: a manifest that is true of the entries unless changed."""
+    entries = {"solutions/doubling/doubling.py": b"x = 1\n"} if entries is None else entries
     listed = [
         {"path": name, "size": len(data), "sha256": hashlib.sha256(data).hexdigest()}
         for name, data in entries.items()
@@ -48,13 +55,15 @@ def forge(folder: Path, *, manifest: Any = None, rename: str = "", extra: Any = 
         **change,
     }
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         if manifest is not False:
             archive.writestr("manifest.json", manifest if manifest is not None else json.dumps(head))
-        for name, data in entries.items():
-            archive.writestr(name, data)
-        if extra is not None:
-            extra(archive)
+        for name, data in [*entries.items(), *(list(entries.items()) if twice else [])]:
+            info = zipfile.ZipInfo(name)
+            info.create_system, info.external_attr = 3, mode << 16
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # zipfile warns of the second entry of a name
+                archive.writestr(info, data, zipfile.ZIP_DEFLATED)
     return write(folder, buffer.getvalue())
 
 
@@ -67,6 +76,10 @@ def test_a_pack_gives_back_what_went_in(tmp_path: Path) -> None:
 def test_the_same_solutions_give_the_same_bytes() -> None:
     backwards = {name: dict(reversed(files.items())) for name, files in reversed(SOLUTIONS.items())}
     assert pack.pack_bytes("mini", "0.1.0", backwards) == packed()
+    with zipfile.ZipFile(io.BytesIO(packed())) as archive:
+        # Neither the clock nor the system nor a compressor's version goes into them.
+        marks = {(info.date_time, info.create_system, info.compress_type) for info in archive.infolist()}
+    assert marks == {((1980, 1, 1, 0, 0, 0), 3, zipfile.ZIP_STORED)}
 
 
 def test_the_manifest_carries_a_sum_of_every_file() -> None:
@@ -100,34 +113,34 @@ def test_a_hand_made_pack_with_a_true_manifest_is_read(tmp_path: Path) -> None:
 )
 def test_a_name_that_is_no_plain_file_of_an_exercise_is_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(IntegrityError):
-        pack.read_pack(forge(tmp_path, rename=name))
+        pack.read_pack(forge(tmp_path, entries={name: b"x = 1\n"}))
 
 
-def _twice(archive: zipfile.ZipFile) -> None:
-    with pytest.warns(UserWarning, match="Duplicate"):
-        archive.writestr("solutions/doubling/doubling.py", b"x = 2\n")
+FILE = "solutions/doubling/doubling.py"
 
 
-def _link(archive: zipfile.ZipFile) -> None:
-    info = zipfile.ZipInfo("solutions/doubling/link.py")
-    info.create_system = 3
-    info.external_attr = (stat.S_IFLNK | 0o777) << 16
-    archive.writestr(info, b"/etc/passwd")
+@pytest.mark.parametrize(
+    ("tricks", "why"),
+    [
+        ({"twice": True}, "one twice"),
+        ({"mode": stat.S_IFLNK | 0o777}, "is a link"),
+        ({"entries": {FILE: b"0" * 1_000_001}}, "too large"),
+        ({"entries": {f"solutions/doubling/f{i}.py": b"" for i in range(201)}}, "too many entries"),
+        (
+            {"entries": {f"solutions/doubling/f{i}.py": b"0" * 900_000 for i in range(6)}},
+            "unpacks to too much",
+        ),
+    ],
+    ids=["twice", "link", "large", "many", "bomb"],
+)
+def test_an_archive_with_tricks_is_refused(tmp_path: Path, tricks: dict[str, Any], why: str) -> None:
+    with pytest.raises(IntegrityError, match=why):
+        pack.read_pack(forge(tmp_path, **tricks))
 
 
-def _bomb(archive: zipfile.ZipFile) -> None:
-    archive.writestr("solutions/doubling/big.py", b"0" * 2_000_000, zipfile.ZIP_DEFLATED)
-
-
-def _many(archive: zipfile.ZipFile) -> None:
-    for index in range(300):
-        archive.writestr(f"solutions/doubling/f{index}.py", b"")
-
-
-@pytest.mark.parametrize("extra", [_twice, _link, _bomb, _many], ids=["twice", "link", "bomb", "many"])
-def test_an_archive_with_tricks_is_refused(tmp_path: Path, extra: Any) -> None:
-    with pytest.raises(IntegrityError):
-        pack.read_pack(forge(tmp_path, extra=extra))
+def test_an_entry_that_the_manifest_does_not_list_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(IntegrityError, match="not the ones its manifest lists"):
+        pack.read_pack(forge(tmp_path, files=[]))
 
 
 @pytest.mark.parametrize(

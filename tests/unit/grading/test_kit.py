@@ -16,6 +16,7 @@ from hypothesis.extra import numpy as hnp
 from course.grading import kit
 from course.grading.kit import CheckFailed, Diagnosis, Inspected, StudentFailure
 from course.grading.verdict import Divergence
+from course.physics import exact, systems
 
 WORDS = {"message": "It is wrong.", "help": "Mend it."}
 TOLERANCE = {"source": "test", "quantity": "x"}
@@ -277,6 +278,7 @@ def test_missing_keys_are_named_and_extra_ones_reported():
     assert "variance" in finding.message
     assert "extra" not in finding.message
     assert finding.actual == ["bias", "extra"]
+    assert finding_of(kit.as_record, {"a": 1, "b": 2}, ("a",)).diagnosis == "WRONG_KEYS"
     assert kit.as_record({"b": 1, "a": 2}, ("a", "b")) == {"b": 1, "a": 2}
 
 
@@ -363,6 +365,51 @@ def test_the_first_divergence_is_the_earliest_of_all_quantities():
     found = kit.first_divergence(t, {"q": late, "v": early}, {"q": zero, "v": zero}, 0.5)
     assert found == Divergence(t=0.1, step=1, quantity="v[0]")
     assert kit.first_divergence(t, {"q": zero}, {"q": zero}, 0.0) is None
+
+
+# -- marching -----------------------------------------------------------------------------------------
+
+
+class Spoiled:
+    """A submission whose path is the true one, but for what ``spoil(h)`` adds to q and v."""
+
+    def __init__(self, spoil):
+        self._spoil = spoil
+
+    def march(self, step_name, system, q0, v0, h, n, t0=0.0):
+        t = t0 + h * np.arange(n + 1)
+        q, v = exact.reference(system, q0, v0, t, t0)
+        dq, dv = self._spoil(h)
+        return t, q + dq, v + dv
+
+
+@pytest.mark.parametrize(
+    ("spoil", "expected"),
+    [
+        (lambda h: (h, 0.0), lambda h: h),
+        (lambda h: (0.0, 2.0 * h**2), lambda h: h**2),
+        (lambda h: (3.0 * h, 2.0 * 4.0 * h), lambda h: 5.0 * h),
+    ],
+    ids=["position", "velocity", "both"],
+)
+def test_errors_along_a_march_are_distances_in_position_and_velocity_over_rate(spoil, expected):
+    problem = kit.Problem("a spring", systems.Oscillator(2.0), [0.8], [-0.3], rate=2.0, span=1.2, t0=0.4)
+    hs, errors = kit.march_errors(Spoiled(spoil), "step", problem, [4, 8, 16])
+    assert hs == pytest.approx([0.3, 0.15, 0.075])
+    assert errors == pytest.approx([expected(h) for h in hs], rel=1e-9)
+
+
+def test_a_problem_says_in_plain_values_what_reproduces_it():
+    problem = kit.Problem("a spring", systems.Oscillator(2.0), [0.8], [-0.3], rate=2.0, span=1.2, t0=0.4)
+    assert problem.input == {
+        "problem": "a spring",
+        "omega": 2.0,
+        "q0": [0.8],
+        "v0": [-0.3],
+        "t0": 0.4,
+        "span": 1.2,
+    }
+    assert problem.run(12) == (problem.system, [0.8], [-0.3], pytest.approx(0.1), 12, 0.4)
 
 
 # -- modules beside the checks ------------------------------------------------------------------------

@@ -1,0 +1,18 @@
+"""Answers with messages that only a grader sends."""
+
+import gc
+import struct
+import wire
+
+worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
+sock = worker._sock
+
+
+def raw(kind, body, length=None):
+    sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
+
+
+def scale(values, factor):
+    for kind in (wire.Kind.CALL, wire.Kind.LOAD, wire.Kind.REPLY, 0, 255):
+        raw(kind, b"N")
+    return values

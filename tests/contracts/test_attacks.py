@@ -1,0 +1,325 @@
+"""Every attack of the corpus fails: no score, no secret, no trace, no delay, no effect on the next one."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import platform
+import re
+import signal
+import socket
+import tomllib
+import uuid
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+import pytest
+
+from course.catalog.load import Catalog
+from course.catalog.locate import Content
+from course.grading.session import GradingSession, Submission
+from course.grading.verdict import Verdict, for_student
+from course.isolation import launch
+from tests.contracts.levels import require_level
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).resolve().parents[2]
+CORPUS = ROOT / "tests" / "attacks"
+ARENA = CORPUS / "arena"
+TIMEOUT_S = 1.0
+GRACE_S = 1.0  # how long after its deadline a check may still go on
+FILE_CANARY = "FILE-CANARY-7f3a"  # in files that a submission must not read
+INPUT_CANARY = "INPUT-CANARY-52a9"  # in the input of a hidden check
+LEFTOVER = "FOUND-LEFTOVER"
+MARKER = "COURSE_ATTACK_RUN"
+
+
+class Attack(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
+    """One entry of attacks.toml; the file says what each field means."""
+
+    category: str
+    ends: list[str]
+    state: str | list[str] = "graded"
+    error: str | list[str] = ""
+    only: str = ""
+    status: str | list[str] = ""
+    slow: bool = False
+    l1: bool = False
+    twice: bool = False
+    never: list[str] = []
+    machine: str = ""
+    exercise: str = "arena"
+    padded: bool = False
+
+
+def _read_corpus() -> dict[str, Attack]:
+    document = tomllib.loads((CORPUS / "attacks.toml").read_text("utf-8"))
+    assert document.pop("format_version") == 1
+    return {name: msgspec.convert(entry, Attack) for name, entry in document.items()}
+
+
+ATTACKS = _read_corpus()
+
+
+@dataclass
+class Arena:
+    """One grading session under observation, and what an attacker might reach from it."""
+
+    session: GradingSession
+    wrong: str
+    model: bytes
+    wrong_score: float
+    marker: str
+    listener: Listener
+    secret: Path
+    signals: list[int] = field(default_factory=list)
+
+    @property
+    def module(self) -> str:
+        return self.session.exercise.module
+
+    def grade(self, source: str | bytes, only: str = "") -> Verdict:
+        raw = source if isinstance(source, bytes) else source.encode()
+        return self.session.grade(Submission({self.module: raw}), only=only or None)
+
+
+class Listener:
+    """Sockets of each kind on this machine that must stay silent."""
+
+    def __init__(self) -> None:
+        self._tcp = socket.create_server(("127.0.0.1", 0))
+        self.port = self._tcp.getsockname()[1]
+        self._udp = socket.socket(type=socket.SOCK_DGRAM)
+        self._udp.bind(("127.0.0.1", self.port))
+        self._unix = socket.socket(socket.AF_UNIX)
+        self._unix.bind(f"\0course_attack_{self.port}")
+        self._unix.listen()
+        for one in (self._tcp, self._udp, self._unix):
+            one.setblocking(False)
+
+    def heard(self) -> list[str]:
+        found = []
+        for name, receive in (
+            ("tcp", self._tcp.accept),
+            ("udp", lambda: self._udp.recv(9)),
+            ("unix", self._unix.accept),
+        ):
+            with contextlib.suppress(BlockingIOError):
+                receive()
+                found.append(name)
+        return found
+
+    def close(self) -> None:
+        for one in (self._tcp, self._udp, self._unix):
+            one.close()
+
+
+def _catalog(exercise: str) -> Catalog:
+    if exercise != "arena":
+        return Catalog()
+    folders = {name: ARENA / name for name in ("exercises", "lessons", "quiz", "solutions", "graders")}
+    return Catalog(Content(root=ARENA, **folders))
+
+
+@contextlib.contextmanager
+def _arena(level: str, exercise: str, folder: Path, patch: pytest.MonkeyPatch) -> Iterator[Arena]:
+    require_level(level)
+    marker = uuid.uuid4().hex
+    inherited = launch.environment
+    patch.setattr(launch, "environment", lambda: {**inherited(), MARKER: marker})
+    secret = folder / "secret"
+    secret.write_text(f"{FILE_CANARY}\n", "utf-8")
+    for path in (secret, *secret.parents[:2]):
+        path.chmod(0o755)
+    catalog = _catalog(exercise)
+    wrong = (CORPUS / f"wrong_{exercise}.py").read_text("utf-8")
+    solution = catalog.content.solutions / exercise / f"{exercise}.py"
+    listener, signals = Listener(), []
+    handlers = {number: signal.signal(number, lambda got, _: signals.append(got)) for number in (10, 29)}
+    try:
+        with GradingSession(
+            catalog.exercise(exercise), catalog, scope="full", level=level, timeout=TIMEOUT_S, seed=5
+        ) as session:
+            arena = Arena(session, wrong, solution.read_bytes(), 0.0, marker, listener, secret, signals)
+            arena.wrong_score = arena.grade(wrong).score
+            yield arena
+        assert not _processes(marker, workers_only=False), "the session left processes"
+    finally:
+        listener.close()
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+
+
+@pytest.fixture(scope="module")
+def arenas(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Opens each session on first use and keeps it, as a grading run does."""
+    with contextlib.ExitStack() as stack, pytest.MonkeyPatch.context() as patch:
+
+        @functools.cache
+        def arena(level: str, exercise: str) -> Arena:
+            return stack.enter_context(_arena(level, exercise, tmp_path_factory.mktemp("grader"), patch))
+
+        yield arena
+
+
+CASES = [
+    pytest.param(name, level, id=f"{level}-{name}")
+    for level in ("L3", "L2", "L1")
+    for name, attack in ATTACKS.items()
+    if level != "L1" or attack.l1
+]
+
+
+@pytest.mark.parametrize(("name", "level"), CASES)
+def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arenas: Any) -> None:
+    attack = ATTACKS[name]
+    if attack.machine and attack.machine != platform.machine():
+        pytest.skip(f"written for {attack.machine}")
+    arena: Arena = arenas(level, attack.exercise)
+    source = _source(name, attack, arena)
+    before = _processes(arena.marker)
+    one = attack.slow or level == "L1"  # a new process for each check would take a third of a second
+    verdicts = []
+    for _ in range(2 if attack.twice else 1):
+        start = monotonic()
+        verdicts.append(arena.grade(source, attack.only or ("scale_small" if one else "")))
+        wall = monotonic() - start
+    verdict = verdicts[-1]
+
+    _expect_outcome(attack, verdict)
+    assert verdict.score <= arena.wrong_score, "the attack scored"
+    _expect_deadlines(verdict, wall)
+    _expect_silence(verdict, [FILE_CANARY, INPUT_CANARY, LEFTOVER, *attack.never])
+    assert not arena.listener.heard(), "it reached a socket"
+    assert not arena.signals, "it signalled the grader"
+    if level != "L1":
+        assert _processes(arena.marker) <= before, "a process of it is left"
+        assert not _files_left(arena), "a file of it is left"
+    _expect_model_unharmed(arena)
+
+
+def _expect_model_unharmed(arena: Arena) -> None:
+    following = arena.grade(arena.model)
+    problems = [
+        (check.id, check.status, check.message) for check in following.checks if check.status != "pass"
+    ]
+    assert following.state == "graded", following.error
+    assert not problems, "the next submission was harmed"
+
+
+def _source(name: str, attack: Attack, arena: Arena) -> str:
+    known = {
+        "PORT": arena.listener.port,
+        "SECRET": arena.secret,
+        "PID": os.getpid(),
+        "ROOT": ROOT,
+        "SOLUTION": ARENA / "solutions" / "arena",
+        "SITE": Path(np.__file__).parents[1],
+    }
+    text = (CORPUS / f"{name}.py").read_text("utf-8")
+    text = re.sub(r"@([A-Z]+)@", lambda match: str(known[match[1]]), text)
+    padding = ("#" * 99 + "\n") * 5000 if attack.padded else ""
+    return f"{arena.wrong}\n\n{text}\n{padding}"
+
+
+def _expect_outcome(attack: Attack, verdict: Verdict) -> None:
+    assert verdict.state in _listed(attack.state), (verdict.error, [c.message for c in verdict.checks])
+    if verdict.error is not None and attack.error:
+        assert verdict.error.code in _listed(attack.error)
+    statuses = {check.id: check.status.value for check in verdict.checks}
+    assert "grader_error" not in statuses.values()
+    if verdict.state == "graded" and attack.ends and "scale_small" in statuses:
+        assert statuses["scale_small"] in attack.ends
+    if attack.status:
+        assert statuses[attack.only] in _listed(attack.status)
+
+
+def _listed(value: str | list[str]) -> list[str]:
+    return [value] if isinstance(value, str) else value
+
+
+def _expect_deadlines(verdict: Verdict, wall: float) -> None:
+    longest = max((check.duration_ms / 1e3 for check in verdict.checks), default=0.0)
+    assert longest <= TIMEOUT_S + GRACE_S, "a check outlasted its deadline"
+    assert wall <= (len(verdict.checks) + 1) * TIMEOUT_S + GRACE_S
+
+
+def _expect_silence(verdict: Verdict, never: list[str]) -> None:
+    """Nothing a student sees, nor anything a report shows of public checks, holds any of these."""
+    seen = msgspec.structs.replace(verdict, checks=tuple(map(for_student, verdict.checks)))
+    plain = _texts(msgspec.to_builtins(seen))
+    found = [word for word in never if any(word in text for text in plain)]
+    assert not found, "it told what it must not"
+    everything = _texts(msgspec.to_builtins(verdict))
+    assert not any(FILE_CANARY in text for text in everything), "it read what it must not"
+
+
+def _texts(value: Any) -> list[str]:
+    """Every text and number in a report, as text."""
+    if isinstance(value, dict):
+        return [text for key, item in value.items() for text in (*_texts(key), *_texts(item))]
+    if isinstance(value, list | tuple):
+        return [text for item in value for text in _texts(item)]
+    return [str(value)]
+
+
+def _processes(marker: str, *, workers_only: bool = True) -> set[int]:
+    """Processes that descend from the session, by a variable in their environment.
+
+    Of a process that belongs to another user or may not be looked at nothing can be said here; those of a
+    session are the tester's own.
+    """
+    found = set()
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if marker.encode() in (entry / "environ").read_bytes() and _state(entry) != "Z":
+                found.add(int(entry.name))
+    return found if workers_only else found - {os.getpid()}
+
+
+def _state(entry: Path) -> str:
+    return (entry / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()[0]
+
+
+def _files_left(arena: Arena) -> list[str]:
+    """What an attack wrote anywhere but in its own folder; all of them use one prefix."""
+    folders = [
+        "/tmp",
+        "/var/tmp",
+        "/dev/shm",
+        "/",
+        "/usr/lib",
+        str(ROOT),
+        str(ROOT / "tests"),
+        str(Path.home()),
+    ]
+    folders += [str(arena.secret.parent), str(Path(np.__file__).parent), str(Path(np.__file__).parents[1])]
+    folders += [os.path.dirname(os.__file__), str(Path.cwd())]
+    return [
+        f"{folder}/{name}"
+        for folder in folders
+        for name in os.listdir(folder)
+        if name.startswith("course_attack")
+    ]
+
+
+def test_every_attack_has_an_entry_and_says_what_it_tries() -> None:
+    files = {path.stem: path for path in CORPUS.glob("*.py") if not path.stem.startswith("wrong_")}
+    assert files.keys() == ATTACKS.keys()
+    for path in files.values():
+        assert re.match(r'"""[A-Z].{10,110}\.', path.read_text("utf-8")), path
+
+
+def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas: Any) -> None:
+    arena: Arena = arenas("L1", "arena")
+    model = arena.grade(arena.model)
+    assert model.all_pass
+    assert model.score == model.max_score
+    assert 0 < arena.wrong_score < 0.2 * model.score

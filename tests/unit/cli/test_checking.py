@@ -1,0 +1,149 @@
+"""``course check``: what it says, what it records, how it ends."""
+
+from __future__ import annotations
+
+
+def test_check_says_message_then_advice_then_numbers(course, write):
+    write("wrong", "RIGHT")
+    ran = course("check")
+    assert ran.code == 1
+    order = [
+        "It is not right.",
+        "Write RIGHT.",
+        "measured: 1 m",
+        "expected: 1.00000001 m, within",
+        "closed form",
+    ]
+    places = [ran.out.index(text) for text in order]
+    assert places == sorted(places)
+    assert "1 of 2 public checks passes; 2 hidden checks run when you submit." in ran.out
+    assert "Score 2/4; the pass mark, 2.8 (70%), is not reached yet." in ran.out
+    assert "Next: course hint doubling" in ran.out
+    assert "\x1b" not in ran.out
+
+
+def test_check_of_everything_right_says_what_is_still_to_come(course, write):
+    write("RIGHT", "RIGHT")
+    ran = course("check", "doubling")
+    assert ran.code == 0
+    assert "All 2 public checks pass; 2 hidden checks run when you submit." in ran.out
+    assert "Next: course submit" in ran.out
+
+
+def test_check_shows_what_the_code_printed_only_on_request(course, write):
+    write("wrong", "RIGHT")
+    assert "printed" not in course("check").out.replace("what your code printed", "")
+    shown = course("check", "--verbose").out
+    assert "\\x1b[31mprinted" in shown
+
+
+def test_check_json_is_the_contract(course, write):
+    write("NAN", "RIGHT")
+    ran = course("check", "--json")
+    body = ran.json
+    assert list(body)[:3] == ["schema", "ok", "exit_code"]
+    assert body["schema"] == "course.check/1"
+    assert (body["ok"], body["exit_code"], body["passed"]) == (False, 1, False)
+    assert body["course"] == {"id": "mini", "version": "0.1.0"}
+    assert (body["exercise"], body["scope"], body["score"], body["max_score"]) == (
+        "doubling",
+        "public",
+        2.0,
+        4.0,
+    )
+    assert body["next"] == {"command": "course hint doubling"}
+    assert body["warnings"] == []
+    first = body["checks"][0]
+    keys = (
+        "id title task status visibility points max_points input expected actual units tolerance "
+        "first_divergence diagnosis message help blocked_by duration_ms"
+    )
+    assert set(keys.split()) <= set(first)
+    assert first["actual"] == "nan"
+    assert first["tolerance"] == {"rel": 1e-9, "source": "closed form"}
+    assert "It is not right." in ran.err
+
+
+def test_a_pass_with_a_failing_check_exits_1_and_says_passed(course, write, students_content):
+    declared = students_content / "exercises" / "doubling" / "exercise.toml"
+    declared.write_text("pass_mark = 0.5\n" + declared.read_text())
+    write("RIGHT", "wrong")
+    body = course("check", "--json").json
+    assert (body["ok"], body["exit_code"], body["passed"]) == (False, 1, True)
+
+
+def test_an_ungradable_file_exits_3_in_the_envelope(course, write):
+    write(extra="UNREADABLE")
+    ran = course("check", "--json")
+    assert ran.code == 3
+    assert ran.json == {
+        "schema": "course.check/1",
+        "ok": False,
+        "exit_code": 3,
+        "error": {"code": "syntax_error", "message": "Line 1 cannot be read.", "help": "Look at line 1."},
+    }
+
+
+def test_a_fault_of_the_grader_exits_70(course, write):
+    write(extra="FAULT")
+    assert course("check").code == 70
+
+
+def test_a_missing_file_exits_3_and_says_how_to_get_it_back(course, workspace):
+    (workspace / "doubling" / "doubling.py").unlink()
+    ran = course("check", "doubling")
+    assert ran.code == 3
+    assert "course start doubling" in ran.err
+
+
+def test_a_file_that_is_far_too_large_is_not_read(course, workspace):
+    (workspace / "doubling" / "doubling.py").write_bytes(b"#" * 1_000_001)
+    ran = course("check", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (3, "too_large")
+
+
+def test_check_all_takes_every_started_exercise_and_the_worst_exit_code(course, workspace, write):
+    course("start", "halving")
+    write("RIGHT", "RIGHT")
+    (workspace / "halving" / "halving.py").write_text("UNREADABLE")
+    body = course("check", "--all", "--json").json
+    assert (body["schema"], body["exit_code"]) == ("course.check-all/1", 3)
+    assert [(r["schema"], r["exit_code"]) for r in body["results"]] == [
+        ("course.check/1", 0),
+        ("course.check/1", 3),
+    ]
+
+
+def test_check_only_runs_one_and_offers_close_names(course, write):
+    write("RIGHT", "wrong")
+    body = course("check", "--only", "double_works", "--json").json
+    assert [check["id"] for check in body["checks"]] == ["double_works"]
+    ran = course("check", "--only", "double_work")
+    assert ran.code == 5
+    assert "double_works" in ran.err
+
+
+def test_check_without_a_name_takes_the_folder_then_the_last_one_worked_on(course, workspace, monkeypatch):
+    course("start", "halving")
+    assert course("check", "--json").json["exercise"] == "halving"
+    course("check", "doubling")
+    assert course("check", "--json").json["exercise"] == "doubling"
+    course("check", "--all")
+    assert course("check", "--json").json["exercise"] == "doubling"
+    monkeypatch.chdir(workspace / "halving")
+    assert course("check", "--json").json["exercise"] == "halving"
+
+
+def test_check_works_and_says_so_where_nothing_can_be_recorded(course, workspace, write, monkeypatch):
+    (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
+    write("RIGHT", "RIGHT")
+    ran = course("check", "doubling")
+    assert ran.code == 0
+    assert "not recorded" in ran.err
+    assert "progress.sqlite" in ran.err
+
+
+def test_quiet_leaves_the_summary(course, write):
+    write("wrong", "RIGHT")
+    lines = course("check", "-q").out.splitlines()
+    assert [line.split()[0] for line in lines] == ["1", "Score"]

@@ -1,0 +1,121 @@
+"""Help, as much as has been worked for."""
+
+from __future__ import annotations
+
+import json
+
+
+def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
+    write("wrong", "wrong")
+    assert "Check your work first" in course("hint").out
+    course("check")
+    first = course("hint", "--json").json
+    assert first["given"]
+    assert first["task"] == "double"
+    again = course("hint", "--json").json
+    assert (again["given"], again["reason"], again["hint"]) == (False, "unchanged", first["hint"])
+    write("wrong # a comment does count inside a string", "wrong")
+    course("check")
+    second = course("hint", "--json").json
+    assert second["given"]
+    assert second["hint"] != first["hint"]
+    for reply in (first, again, second):
+        words = json.dumps(reply)
+        assert "left" not in words
+        assert " of 3" not in words
+
+
+def test_an_untouched_stub_earns_no_hint(course, workspace):
+    course("check", "doubling")
+    ran = course("hint", "doubling")
+    assert ran.code == 0
+    assert "follows an attempt" in ran.out
+
+
+def test_a_comment_is_no_attempt(course, write):
+    write("wrong", "wrong")
+    course("check")
+    course("hint")
+    write("wrong", "wrong", extra="# thinking\n")
+    course("check")
+    assert course("hint", "--json").json["reason"] == "unchanged"
+
+
+def test_hints_go_to_the_first_failing_task_or_the_one_asked_for(course, write):
+    write("RIGHT", "wrong")
+    course("check")
+    assert course("hint", "--json").json["task"] == "doublings"
+    write("wrong", "wrong")
+    course("check")
+    assert course("hint", "--task", "doublings", "--json").json["task"] == "doublings"
+    ran = course("hint", "--task", "halve")
+    assert ran.code == 5
+    assert "doublings" in ran.err
+
+
+def test_hints_that_run_out_are_replaced_by_the_lesson(course, write):
+    reply = {"given": True}
+    for attempt in range(20):
+        write(f"wrong {attempt}", "RIGHT")
+        course("check")
+        reply = course("hint", "--json").json
+        if not reply["given"]:
+            break
+    assert reply["reason"] == "exhausted"
+    assert "course lesson twice-as-much" in reply["message"]
+
+
+def test_nothing_fails_nothing_to_hint_at(course, write):
+    write("RIGHT", "RIGHT")
+    course("check")
+    body = course("hint", "--json").json
+    assert (body["reason"], body["next"]["command"]) == ("passing", "course submit")
+
+
+def test_a_file_that_could_not_run_is_sent_back_to_its_check(course, write):
+    write(extra="UNREADABLE")
+    course("check")
+    assert course("hint", "--json").json["reason"] == "ungradable"
+
+
+def test_no_solution_before_a_pass(course, write):
+    write("wrong", "RIGHT")
+    course("check")
+    ran = course("solution", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (5, "not_passed")
+
+
+def test_a_checkout_shows_its_solution_after_a_pass(course, write):
+    write("RIGHT", "RIGHT")
+    course("check")
+    ran = course("solution", "--json")
+    assert ran.code == 0
+    assert "def double" in ran.json["files"]["doubling.py"]
+
+
+def test_a_student_without_a_pack_is_told_where_one_comes_from(course, write, students_content):
+    write("RIGHT", "RIGHT")
+    course("check")
+    ran = course("solution")
+    assert ran.code == 5
+    assert ".coursepack" in ran.err
+
+
+def test_a_pack_in_the_workspace_is_opened(course, workspace, write, students_content):
+    from course.catalog.pack import pack_bytes
+
+    write("RIGHT", "RIGHT")
+    course("check")
+    (workspace / "week 1.coursepack").write_bytes(
+        pack_bytes("mini", "1.0.0", {"doubling": {"doubling.py": b"def double(x):\n    return x + x\n"}})
+    )
+    body = course("solution", "--json").json
+    assert body["files"] == {"doubling.py": "def double(x):\n    return x + x\n"}
+    assert body["source"].endswith("week 1.coursepack")
+
+
+def test_a_damaged_pack_is_an_integrity_error(course, workspace, write, students_content):
+    write("RIGHT", "RIGHT")
+    course("check")
+    (workspace / "a.coursepack").write_bytes(b"no zip")
+    assert course("solution").code == 7

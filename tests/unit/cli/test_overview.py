@@ -1,0 +1,91 @@
+"""What there is to read, what was done, and what this machine can do."""
+
+from __future__ import annotations
+
+from course.progress.store import Store
+
+
+def test_lesson_without_an_id_goes_on_to_the_next_unread_one(course, workspace):
+    assert course("lesson", "--json").json["id"] == "twice-as-much"
+    assert course("lesson", "--json").json["id"] == "half-as-much"
+    assert [lesson["read_at"] is not None for lesson in course("lessons", "--json").json["lessons"]] == [
+        True,
+        True,
+    ]
+
+
+def test_a_lesson_can_be_read_outside_of_a_workspace(course):
+    ran = course("lesson", "twice-as-much", "--plain")
+    assert ran.code == 0
+    assert "the number added to itself" in ran.out
+
+
+def test_an_unknown_lesson_is_not_found(course):
+    ran = course("lesson", "twice", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (5, "lesson_not_found")
+
+
+def test_progress_has_dates_and_scores(course, workspace, write):
+    course("lesson")
+    write("wrong", "RIGHT")
+    course("check")
+    course("hint")
+    write("RIGHT", "RIGHT")
+    course("check")
+    course("submit")
+    body = course("progress", "--json").json
+    doubling = body["exercises"][0]
+    assert (doubling["state"], doubling["score"], doubling["checks_run"], doubling["hints_shown"]) == (
+        "complete",
+        4.0,
+        2,
+        1,
+    )
+    assert doubling["passed_at"]
+    assert len(body["submissions"]) == 1
+    assert "score 4/4" in course("progress").out
+
+
+def test_doctor_repairs_a_damaged_record_and_keeps_it(course, workspace):
+    record = workspace / ".course" / "progress.sqlite"
+    record.write_bytes(b"not a database, not at all, no" * 10)
+    damaged = course("doctor")
+    assert damaged.code == 4
+    assert "progress.sqlite" in damaged.out
+    ran = course("doctor", "--repair")
+    assert ran.code == 0
+    assert (workspace / ".course" / "progress.damaged.sqlite").read_bytes().startswith(b"not a database")
+    assert Store(record).events() == ()
+
+
+def test_doctor_never_advises_switching_a_protection_off(course):
+    words = course("doctor").out.lower()
+    assert "protection" in words
+    for phrase in ("disable", "switch off", "turn off", "sysctl", "setenforce 0", "--privileged"):
+        assert phrase not in words
+
+
+def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
+    import importlib.metadata
+
+    real = importlib.metadata.version
+
+    def version(name):
+        if name == "pymunk":
+            raise importlib.metadata.PackageNotFoundError(name)
+        return "0.1" if name == "rich" else real(name)
+
+    monkeypatch.setattr(importlib.metadata, "version", version)
+    monkeypatch.setattr("course.cli.doctor._requirements", lambda root: ["pymunk>=7.0", "rich>=14", "numpy"])
+    ran = course("doctor", "--json")
+    assert ran.code == 4
+    assert ran.json["fixes"][0]["command"] == "pip install 'pymunk>=7.0' 'rich>=14'"
+
+
+def test_a_missing_extra_is_offered_and_is_no_failure(course, monkeypatch):
+    wanted = ["numpy", "no-such-engine>=4; extra == 'engines'", "no-such-linter; extra == 'dev'"]
+    monkeypatch.setattr("course.cli.doctor._requirements", lambda root: wanted)
+    ran = course("doctor", "--json")
+    assert ran.code == 0
+    assert [fix["command"] for fix in ran.json["fixes"]] == ["pip install 'no-such-engine>=4'"]
+    assert {package["group"] for package in ran.json["packages"]} == {"", "engines"}

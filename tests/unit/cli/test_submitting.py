@@ -1,0 +1,73 @@
+"""The file that is handed in."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zipfile
+
+import pytest
+
+
+def test_submit_writes_one_zip_with_checksums(course, workspace, write):
+    source = write("RIGHT", "wrong").read_bytes()
+    course("check")
+    ran = course("submit")
+    assert ran.code == 0
+    assert "doubling/doubling.py" in ran.out
+    assert "score 2/4 at the last check" in ran.out
+    with zipfile.ZipFile(workspace / "mini-submission.zip") as archive:
+        assert archive.namelist() == ["doubling/doubling.py", "submission.json"]
+        assert archive.read("doubling/doubling.py") == source
+        manifest = json.loads(archive.read("submission.json"))
+    assert manifest["format_version"] == 1
+    assert manifest["course"]["id"] == "mini"
+    assert manifest["files"] == {"doubling/doubling.py": hashlib.sha256(source).hexdigest()}
+    assert manifest["quiz"] == []
+
+
+def test_the_same_files_give_the_same_bytes(course, workspace, write):
+    write("RIGHT", "wrong")
+    course("submit", "-o", "one.zip")
+    course("submit", "-o", "two.zip")
+    assert (workspace / "one.zip").read_bytes() == (workspace / "two.zip").read_bytes()
+    with zipfile.ZipFile(workspace / "one.zip") as archive:
+        # The two files may have been written within one tick of a zip's clock; this says it for good.
+        assert {(info.date_time, info.create_system) for info in archive.infolist()} == {
+            ((1980, 1, 1, 0, 0, 0), 3)
+        }
+
+
+def test_submit_keeps_what_it_replaces(course, workspace, write):
+    write("RIGHT", "wrong")
+    (workspace / "mine.zip").write_bytes(b"something else")
+    body = course("submit", "-o", "mine.zip", "--json").json
+    assert (workspace / body["backup"]).read_bytes() == b"something else"
+    assert course("submit", "-o", "mine.zip", "--json").json["backup"] is None
+
+
+def test_submit_leaves_an_untouched_stub_out(course, workspace, write):
+    course("start", "halving")
+    write("RIGHT", "wrong")
+    body = course("submit", "--json").json
+    assert [f["path"] for f in body["files"]] == ["doubling/doubling.py"]
+    assert body["left_out"] == [{"path": "halving/halving.py", "action": "still the stub"}]
+
+
+def test_submit_with_nothing_written_writes_nothing(course, workspace):
+    ran = course("submit", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (3, "nothing_to_submit")
+    assert not list(workspace.glob("*.zip"))
+
+
+def test_submit_warns_about_a_file_that_does_not_parse(course, workspace):
+    (workspace / "doubling" / "doubling.py").write_text("def double(x:\n")
+    body = course("submit", "--json").json
+    assert "line 1" in body["warnings"][0]
+
+
+@pytest.mark.parametrize("output", ["nowhere/mine.zip", "doubling/doubling.py"])
+def test_submit_refuses_an_output_that_makes_no_sense(course, workspace, write, output):
+    source = write("RIGHT", "wrong").read_bytes()
+    assert course("submit", "-o", output).code == 2
+    assert (workspace / "doubling" / "doubling.py").read_bytes() == source

@@ -1,0 +1,84 @@
+"""The mark, the score and the next seed."""
+
+from __future__ import annotations
+
+import math
+import random
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from course.errors import UsageError
+from course.quizzing.attempt import check_seed, fresh_seed, mark, mark_sentence, needed
+from course.quizzing.bank import MAX_SEED, Bank
+
+
+@pytest.mark.parametrize(("right", "passes"), [(3, False), (4, True), (5, True)])
+def test_of_five_four_are_needed(right: int, passes: bool) -> None:
+    assert (right >= needed(5)) is passes
+
+
+@given(st.integers(1, 10_000))
+def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent(total: int) -> None:
+    least = needed(total)
+    assert Fraction(least, total) >= Fraction(7, 10) > Fraction(least - 1, total)
+    assert 0 < least <= total
+
+
+def test_seven_of_ten_are_enough() -> None:
+    """In floats 0.7 times 10 is exact, and 0.7 times 30 is not: it must still be 21."""
+    assert [needed(total) for total in (10, 20, 30)] == [7, 14, 21]
+
+
+def test_the_mark_is_said_as_it_is() -> None:
+    assert mark_sentence(5) == "4 of 5 (80 %) needed: 70 % of 5 is 3.5"
+    assert mark_sentence(10) == "7 of 10 (70 %) needed: 70 % of 10 is 7"
+
+
+def test_guessing_rarely_passes() -> None:
+    chance = sum(math.comb(5, k) * 0.25**k * 0.75 ** (5 - k) for k in range(needed(5), 6))
+    assert round(100 * chance, 1) == 1.6
+
+
+def test_an_attempt_is_scored(bank: Bank) -> None:
+    posed = bank.pose(4)
+    answers = {question.question: question.key.id for question in posed}
+    assert (mark(posed, answers).score, mark(posed, answers).passed) == (2, True)
+    wrong = next(choice for choice in posed[0].choices if not choice.right)
+    result = mark(posed, {**answers, posed[0].question: wrong.letter})
+    assert (result.score, result.total, result.passed) == (1, 2, False)
+    assert [marked.chosen for marked in result.missed] == [wrong]
+
+
+def test_an_answer_that_is_no_option_is_an_error(bank: Bank) -> None:
+    with pytest.raises(KeyError):
+        mark(bank.pose(4), {"sums": "z", "colours": "a"})
+
+
+def test_a_retake_asks_everything_otherwise(bank: Bank) -> None:
+    for seed in range(100):
+        chance = random.Random(seed)
+        again = fresh_seed(bank, dict.fromkeys(bank.ids, seed), lambda: chance.randrange(MAX_SEED + 1))  # noqa: B023
+        assert all(bank.variant(name, again) != bank.variant(name, seed) for name in bank.ids)
+
+
+def test_a_retake_repeats_as_little_as_it_can(bank: Bank) -> None:
+    """Where no seed asks everything otherwise, the one with the fewest repeats is taken."""
+    seen = {"sums": 1, "colours": 1}
+    few = [seed for seed in range(50) if sum(bank.variant(n, seed) == bank.variant(n, 1) for n in seen) == 1]
+    many = [seed for seed in range(50) if sum(bank.variant(n, seed) == bank.variant(n, 1) for n in seen) == 2]
+    draws = iter([many[0], many[1], few[0], *[many[2]] * 1000])
+    assert fresh_seed(bank, seen, lambda: next(draws)) == few[0]
+
+
+def test_a_seed_for_questions_that_went_is_drawn_all_the_same(bank: Bank) -> None:
+    assert fresh_seed(bank, {"gone": 3}, lambda: 77) == 77
+
+
+@pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
+def test_a_seed_out_of_range_is_refused(seed: int) -> None:
+    with pytest.raises(UsageError, match="is no seed"):
+        check_seed(seed)
+

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["exercise_ids", "lesson_ids"]
+__all__ = ["exercise_ids", "lesson_ids", "simulation_ids"]
 
 
 def exercise_ids(incomplete: str) -> list[str]:
@@ -28,3 +28,10 @@ def lesson_ids(incomplete: str) -> list[str]:
     except (CourseError, OSError):
         return []
     return sorted(file.stem for file in files if file.stem.startswith(incomplete))
+
+
+def simulation_ids(incomplete: str) -> list[str]:
+    """Simulations whose id begins with what was typed."""
+    from course.simulations.registry import SIMULATIONS
+
+    return sorted(name for name in SIMULATIONS if name.startswith(incomplete))

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from course.cli.completion import exercise_ids
-from course.cli.console import STATUS_STYLE, Console, current
+from course.cli.console import Console, current
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from course.catalog.load import Catalog
     from course.grading.gradebook import Result
     from course.grading.run import RunOptions, Summary
-    from course.grading.verdict import CheckResult
 
 __all__ = ["app", "explain", "run"]
 
@@ -103,7 +103,7 @@ def explain(
     if console.json:
         console.emit(grade_line(found, CourseRef(catalog.course_id, catalog.version)))
     else:
-        _show_result(console, found)
+        _show_result(console, catalog, found)
     return 0
 
 
@@ -174,7 +174,7 @@ def _course(kind: Any) -> Any:
 
 def _show_summary(console: Console, summary: Summary, out: Path, options: RunOptions) -> None:
     if console.json:
-        from course.cli.grade_schemas import GradeSummary, Trouble
+        from course.cli.grade_schemas import GradeSummary
 
         console.emit_line(
             GradeSummary(
@@ -190,7 +190,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
                 seed=summary.seed,
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
-                troubled=tuple(Trouble(*row) for row in summary.troubled),
+                troubled=tuple(summary.troubled),
             )
         )
         return
@@ -200,13 +200,13 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
         ("ungradable", "could not be graded"),
         ("grader_error", "hit a fault of the grader and are marked for regrading"),
     ):
-        if summary.states[state]:
-            console.line((f"{summary.states[state]} {words}:", "bold"))
-            rows = [row for row in summary.troubled if (row[2] in _OURS) == (state == "grader_error")]
-            for student, exercise, code, message in rows[:_MOST_TROUBLED]:
-                console.item(f"{student} {exercise}", f"{code}: {message}")
-            if len(rows) > _MOST_TROUBLED:
-                console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+        rows = [row for row in summary.troubled if row.state == state]
+        if rows:
+            console.line((f"{len(rows)} {words}:", "bold"))
+        for row in rows[:_MOST_TROUBLED]:
+            console.item(f"{row.student} {row.exercise}", f"{row.code}: {row.message}")
+        if len(rows) > _MOST_TROUBLED:
+            console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))
@@ -217,50 +217,19 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
     console.note(f"Written: {out}/gradebook.sqlite, grades.csv, results.jsonl. Seed {summary.seed}.")
 
 
-#: Codes of problems that are the grader's fault.
-_OURS = frozenset({"check_failed", "isolation_failed", "grader_died"})
+def _show_result(console: Console, catalog: Catalog, result: Result) -> None:
+    from course.cli.verdicts import show_everything
 
-
-def _show_result(console: Console, result: Result) -> None:
     verdict = result.verdict
+    passed = "passed" if verdict.passed else "not passed"
     console.heading(f"{result.key.student}, {result.key.exercise}", verdict.state)
-    console.item(
-        "score", f"{verdict.score:g} of {verdict.max_score:g}; passed: {'yes' if verdict.passed else 'no'}"
-    )
-    console.item("graded", f"{result.graded_at} at {verdict.isolation or 'no level'}, seed {result.key.seed}")
-    console.item("submission", result.key.submission_sha256)
+    console.item("score", f"{verdict.score:g} of {verdict.max_score:g}, {passed}", width=10)
+    level = f" at {verdict.isolation}" if verdict.isolation else ""
+    console.item("graded", f"{result.graded_at}{level}, seed {result.key.seed}", width=10)
+    console.item("submission", result.key.submission_sha256, width=10)
     if verdict.error is not None:
-        console.item("reason", f"{verdict.error.code}: {verdict.error.message}")
-        console.item("advice", verdict.error.help)
-    for check in verdict.checks:
-        _show_check(console, check)
-
-
-def _show_check(console: Console, check: CheckResult) -> None:
+        console.item("reason", f"{verdict.error.code}: {verdict.error.message}", width=10)
+        console.item("advice", verdict.error.help, width=10)
     console.blank()
-    points = f"{check.points:g}/{check.max_points:g}"
-    label = f"{check.status.value} {points}"
-    console.item(
-        label, f"{check.title}  [{check.id}, {check.visibility.value}]", style=STATUS_STYLE[check.status]
-    )
-    if check.status == "pass":
-        return
-    facts: dict[str, Any] = {
-        "message": check.message,
-        "advice": check.help,
-        "diagnosis": check.diagnosis,
-        "blocked by": check.blocked_by,
-        "input": check.input,
-        "expected": check.expected,
-        "actual": check.actual,
-        "units": check.units,
-        "tolerance": check.tolerance,
-        "diverges": check.first_divergence,
-    }
-    for name, value in facts.items():
-        if value not in (None, ""):
-            console.item(name, str(value), indent=4)
-    for name, text in (("traceback", check.traceback), ("printed", check.stdout)):
-        if text:
-            console.line(f"{name}:", indent=4)
-            console.block(text.rstrip(), indent=6)
+    if verdict.checks:
+        show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)

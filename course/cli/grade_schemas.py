@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-import msgspec
-
 from course.cli.schemas import Envelope
+from course.grading.run import Trouble  # noqa: TC001 - the type of a field
 
-__all__ = ["GradeSummary", "Trouble"]
-
-
-class Trouble(msgspec.Struct, frozen=True):
-    """One submission without a grade."""
-
-    student: str
-    exercise: str
-    code: str
-    message: str
+__all__ = ["GradeSummary"]
 
 
 class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=True):

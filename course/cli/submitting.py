@@ -61,18 +61,7 @@ def submit(
             code="nothing_to_submit",
         )
     notes = [note for exercise, source in sources if (note := _syntax_note(exercise, source))]
-    data = archive(
-        here.catalog.course_id,
-        here.catalog.version,
-        {f"{exercise.id}/{exercise.module}": source for exercise, source in sources},
-        quiz,
-    )
-    if len(data) > MAX_TOTAL_BYTES:
-        raise UngradableError(
-            f"Together the files are larger than {MAX_TOTAL_BYTES:,} bytes, which no grading run unpacks.",
-            help="Keep data out of them.",
-            code="too_large",
-        )
+    data = _packed(here, sources, quiz)
     backup = _keep_old(here, target, data)
     write_atomically(target, data)
     here.record("submit", "", {"output": str(target), "sha256": hashlib.sha256(data).hexdigest()})
@@ -119,6 +108,25 @@ def archive(
             info.external_attr = 0o100644 << 16
             packed.writestr(info, entries[path])
     return buffer.getvalue()
+
+
+def _packed(
+    here: Here, sources: Sequence[tuple[Exercise, bytes]], quiz: Sequence[Mapping[str, object]]
+) -> bytes:
+    """The archive's bytes; refused if no grading run would take them."""
+    data = archive(
+        here.catalog.course_id,
+        here.catalog.version,
+        {f"{exercise.id}/{exercise.module}": source for exercise, source in sources},
+        quiz,
+    )
+    if len(data) > MAX_TOTAL_BYTES:
+        raise UngradableError(
+            f"Together the files are larger than {MAX_TOTAL_BYTES:,} bytes, which no grading run unpacks.",
+            help="Keep data out of them.",
+            code="too_large",
+        )
+    return data
 
 
 def _target(here: Here, output: Path | None) -> Path:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise, Task
     from course.grading.verdict import CheckResult, Verdict
 
-__all__ = ["show_verdict", "summary"]
+__all__ = ["show_everything", "show_verdict", "summary"]
 
 _DETAIL_INDENT = 4
 _LABEL_WIDTH = 9
@@ -64,6 +64,13 @@ def show_verdict(
         console.line((sentence, "bold green" if verdict.all_pass else "bold"))
 
 
+def show_everything(console: Console, exercise: Exercise, checks: Sequence[CheckResult]) -> None:
+    """Every check of a grading run, hidden ones with their values: for the instructor."""
+    page = _Page(console, verbose=True, brief=False, hidden=True)
+    for task in exercise.task:
+        page.task(task.title, [check for check in checks if check.task == task.id])
+
+
 def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
     """What it comes to, in one or two sentences."""
     total = len(verdict.checks)
@@ -92,8 +99,9 @@ def _part(verdict: Verdict) -> list[str]:
 class _Page:
     """One verdict being shown; remembers what it has said, so as not to say it seven times."""
 
-    def __init__(self, console: Console, *, verbose: bool, brief: bool) -> None:
+    def __init__(self, console: Console, *, verbose: bool, brief: bool, hidden: bool = False) -> None:
         self._console = console
+        self._hidden = hidden
         self._verbose = verbose
         self._brief = brief
         self._detailed = ""
@@ -106,7 +114,7 @@ class _Page:
         self._console.heading(title, _points(checks))
         if not self._detailed and any(check.status != "pass" for check in checks):
             self._detailed = checks[0].task
-        if _all_alike(checks):
+        if _all_alike(checks) and not self._hidden:
             self._alike(next(check for check in checks if check.status != "skip"))
         else:
             for check in checks:
@@ -130,7 +138,9 @@ class _Page:
 
     def check(self, check: CheckResult) -> None:
         """One check: its title, and everything about it if it did not pass."""
-        aside = "" if check.status in {"pass", "skip"} else f"  [{check.id}]"
+        aside = "" if check.status in {"pass", "skip"} and not self._hidden else f"  [{check.id}]"
+        if self._hidden and check.visibility == "hidden":
+            aside = f"  [{check.id}, hidden]"
         self._label(check.status, check.title, aside)
         if check.status == "pass" or self._is_left_out(check):
             return

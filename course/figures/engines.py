@@ -56,7 +56,7 @@ def settings() -> Figure:
     panels[0].set_yticks(range(len(engines)), [engine["name"] for engine in engines])
     panels[2].set_xlabel("error (%)")
     _key(panels[0])
-    title(figure, "Its settings moved one engine further than all well-set engines lie apart")
+    title(figure, "Options moved one engine further than all well-set engines lie apart")
     return figure
 
 

@@ -25,6 +25,17 @@ FIGURES: dict[str, tuple[str, str]] = {
     "integrators-energy": ("integrators", "energy_error"),
     "integrators-order": ("integrators", "error_against_step"),
     "integrators-stability": ("integrators", "stability"),
+    "sim-chaos": ("simulations", "chaos"),
+    "sim-collision": ("simulations", "collision"),
+    "sim-dynamics": ("simulations", "dynamics"),
+    "sim-environment": ("simulations", "environment"),
+    "sim-free-fall": ("simulations", "free_fall"),
+    "sim-integrators": ("simulations", "integrators"),
+    "sim-projectile": ("simulations", "projectile"),
+    "sim-rotation": ("simulations", "rotation"),
+    "sim-solver-iterations": ("simulations", "solver_iterations"),
+    "sim-substeps": ("simulations", "substeps"),
+    "why-simulate-standing": ("why_simulate", "standing"),
     "engines-settings": ("engines", "settings"),
 }
 

@@ -8,6 +8,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.batch import BatchOptions, grade_all
 from course.grading.exports.lines import CourseRef, write_csv, write_jsonl
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["RunOptions", "Summary", "export_all", "grade_class"]
+__all__ = ["RunOptions", "Summary", "Trouble", "export_all", "grade_class"]
 
 
 @dataclass(frozen=True)
@@ -45,13 +47,23 @@ class RunOptions:
     resume: bool = False
 
 
+class Trouble(msgspec.Struct, frozen=True):
+    """One submission without a grade."""
+
+    student: str
+    exercise: str
+    state: str
+    code: str
+    message: str
+
+
 @dataclass
 class Summary:
     """What a run came to.
 
     Attributes:
         states: number of results by state.
-        troubled: (student, exercise, reason code, message) of those without a grade.
+        troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results that an earlier run had.
         elapsed_s: wall seconds.
@@ -59,7 +71,7 @@ class Summary:
 
     states: Counter[str] = field(default_factory=Counter)
     passed: int = 0
-    troubled: list[tuple[str, str, str, str]] = field(default_factory=list)
+    troubled: list[Trouble] = field(default_factory=list)
     not_submitted: int = 0
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
@@ -78,8 +90,8 @@ class Summary:
         if verdict.isolation:
             self.levels[verdict.isolation] += 1
         if verdict.error is not None:
-            problem = (verdict.error.code, verdict.error.message)
-            self.troubled.append((result.key.student, result.key.exercise, *problem))
+            key, error = result.key, verdict.error
+            self.troubled.append(Trouble(key.student, key.exercise, verdict.state, error.code, error.message))
 
 
 def grade_class(

@@ -100,10 +100,13 @@ def unshare_worker() -> None:
     _check(_libc.mount(b"none", b"/", None, _MS_REC | _MS_PRIVATE, None), "mount private")
 
 
-def mount_tmpfs(path: str, *, size: str, uid: int = 0, readonly: bool = False) -> None:
-    """Mount an empty tmpfs that holds at most ``size``."""
+def mount_tmpfs(path: str, *, size: str, owner: tuple[int, int], readonly: bool = False) -> None:
+    """Mount an empty tmpfs that holds at most ``size`` and is its owner's (uid, gid) alone.
+
+    Both must have a name in the user namespace at hand, or the kernel refuses.
+    """
     flags = _MS_NOSUID | _MS_NODEV | _MS_NOEXEC | (_MS_RDONLY if readonly else 0)
-    options = f"size={size},nr_inodes=1024,mode=0700,uid={uid},gid={uid if uid else os.getgid()}"
+    options = f"size={size},nr_inodes=1024,mode=0700,uid={owner[0]},gid={owner[1]}"
     _check(_libc.mount(b"tmpfs", path.encode(), b"tmpfs", flags, options.encode()), f"mount {path}")
 
 

@@ -122,9 +122,9 @@ def _become_worker(
         lockdown.die_first()
         if config["level"] == "L3":
             lockdown.unshare_worker()
-            uid = lockdown.NOBODY if root else os.getuid()
-            lockdown.mount_tmpfs(workdir, size="16m", uid=uid)
-            lockdown.mount_tmpfs("/proc", size="4k", readonly=True)
+            owner = (os.getuid(), os.getgid())
+            lockdown.mount_tmpfs(workdir, size="16m", owner=(lockdown.NOBODY,) * 2 if root else owner)
+            lockdown.mount_tmpfs("/proc", size="4k", owner=owner, readonly=True)
         os.chdir(workdir)
         lockdown.drop_bounding_set()
         if root and config["become_nobody"]:

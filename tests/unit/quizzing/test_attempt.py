@@ -81,4 +81,3 @@ def test_a_seed_for_questions_that_went_is_drawn_all_the_same(bank: Bank) -> Non
 def test_a_seed_out_of_range_is_refused(seed: int) -> None:
     with pytest.raises(UsageError, match="is no seed"):
         check_seed(seed)
-

@@ -1,0 +1,120 @@
+"""Files that ``course sim`` writes: figures and tables. What was there before is kept, and said."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.cli.here import cwd
+from course.errors import CourseError, UsageError
+
+if TYPE_CHECKING:
+    from course.cli.sim_schemas import SimFile
+    from course.simulations.base import Result
+
+__all__ = ["FORMATS", "figure", "inserted", "table", "target", "write"]
+
+#: What a figure can be written as, by the end of its name.
+FORMATS = ("png", "svg", "pdf")
+
+
+def target(path: Path, option: str, endings: tuple[str, ...]) -> Path:
+    """Where to write, checked before anything is computed.
+
+    Raises:
+        UsageError: the name ends in something else, or there is no such folder.
+    """
+    full = cwd() / path.expanduser()
+    if full.suffix.lower().removeprefix(".") not in endings:
+        known = " or ".join(f".{ending}" for ending in endings)
+        raise UsageError(
+            f"{option} {path}: the name must end in {known}.",
+            help=f"For example {option} {path.stem or 'run'}.{endings[0]}.",
+            code="bad_file_name",
+        )
+    if full.is_dir():
+        raise UsageError(f"{option} {path}: this is a folder.", help="Name a file.", code="bad_file_name")
+    if not full.parent.is_dir():
+        raise UsageError(
+            f"{option} {path}: there is no folder {full.parent}.",
+            help="Make it, or name another file.",
+            code="bad_file_name",
+        )
+    return full
+
+
+def inserted(path: Path, name: str) -> Path:
+    """One of several files: run.png becomes run-free-fall.png."""
+    return path.with_name(f"{path.stem}-{name}{path.suffix}")
+
+
+def table(result: Result) -> bytes:
+    """The series of a run as CSV: a line of names with units, then every sample, every digit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(f"{column.name} [{column.unit}]" for column in result.columns)
+    for row in zip(*(column.values.tolist() for column in result.columns), strict=True):
+        writer.writerow(map(repr, row))
+    return text.getvalue().encode()
+
+
+def figure(result: Result, kind: str) -> bytes:
+    """The figure of a run as a PNG, SVG or PDF file; the same run gives the same bytes."""
+    from course.figures.simulations import render
+
+    return render(result, kind)
+
+
+def write(path: Path, data: bytes, *, why: str = "sim") -> SimFile:
+    """Write a file; if there is another one of that name, keep a copy of it first.
+
+    Inside a workspace copies go where all its backups are, elsewhere beside the file.
+
+    Raises:
+        UsageError: the file cannot be written.
+        MissingCapabilityError: the copy cannot be written; the file is then as it was.
+    """
+    from course.cli.schemas import Backup
+    from course.cli.sim_schemas import SimFile
+    from course.progress.workspace import write_atomically
+
+    try:
+        old = path.read_bytes() if path.exists() else None
+    except OSError as error:
+        raise UsageError(
+            f"{path} is there and cannot be read ({error.strerror or error}), so no copy of it can be kept.",
+            help="Name another file.",
+            code="not_writable",
+        ) from error
+    copy = None if old is None or old == data else _keep(path, old, why)
+    write_atomically(path, data)
+    return SimFile(path=str(path), backup=Backup(str(path), str(copy)) if copy else None)
+
+
+def _keep(path: Path, old: bytes, why: str) -> Path:
+    """Copy a file and give the copy's place."""
+    from course.progress.workspace import Workspace
+
+    try:
+        return Workspace.find(path.parent).backup(path, why)
+    except CourseError as error:
+        if error.code != "workspace_not_found":
+            raise
+    number = 1
+    while True:
+        copy = path.with_name(f"{path.stem}.old-{number}{path.suffix}")
+        try:
+            with copy.open("xb") as file:
+                file.write(old)
+        except FileExistsError:
+            number += 1
+        except OSError as error:
+            raise UsageError(
+                f"{path} is there, and no copy of it can be kept ({error.strerror or error}).",
+                help="Name another file.",
+                code="not_writable",
+            ) from error
+        else:
+            return copy

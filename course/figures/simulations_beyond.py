@@ -1,0 +1,138 @@
+"""Figures of the simulations that go beyond an introduction; ``course.figures.simulations`` calls them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course.figures.style import METHODS, PALETTE, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from course.simulations.base import Result
+
+__all__ = ["chaos", "dynamics", "environment", "rotation", "solver_iterations", "substeps"]
+
+#: Looks for series that are no methods of integration, in the order they are used.
+_LOOKS = (
+    (PALETTE["blue"], "-"),
+    (PALETTE["vermillion"], "--"),
+    (PALETTE["green"], "-."),
+    (PALETTE["purple"], ":"),
+    (PALETTE["orange"], (0, (5, 1, 1, 1, 1, 1))),
+    (PALETTE["black"], (0, (1, 1))),
+)
+
+
+def rotation(result: Result) -> Figure:
+    """Angular velocity about each axis, and the energy error of each method."""
+    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True)
+    t = result.column("t")
+    for k, (color, line) in zip((2, 1, 3), _LOOKS[:3], strict=True):
+        width = 1.8 if k == 2 else 1.0
+        upper.plot(t, result.column(f"w{k}"), color=color, linestyle=line, linewidth=width, label=f"axis {k}")
+    upper.set(ylabel="angular velocity\nin the body's axes (rad/s)")
+    upper.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    names = {"explicit_euler": "explicit Euler", "rk4": "Runge-Kutta 4", "split": "split rotations"}
+    for name, label in names.items():
+        look = METHODS["velocity_verlet" if name == "split" else name]
+        drift = 100 * result.column(f"energy_error_{name}")
+        lower.plot(t, np.where(np.isfinite(drift), drift, np.nan), color=look.color, linestyle=look.line, label=label)
+    lower.set(xlabel="time (s)", ylabel="energy gained (%)")
+    lower.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
+
+
+def dynamics(result: Result) -> Figure:
+    """The arm at a few moments with the planned and the forward path of its hand, and the torques."""
+    figure, (left, right) = new_figure(3.4, 1, 2)
+    t = result.column("t")
+    hand = np.stack([result.column("hand_x"), result.column("hand_y")], axis=-1)
+    q1 = result.column("q1")
+    for i in np.linspace(0, t.size - 1, 5).astype(int):
+        elbow = (math.cos(q1[i]), math.sin(q1[i]))
+        left.plot([0, elbow[0], hand[i, 0]], [0, elbow[1], hand[i, 1]], color=PALETTE["grey"], linewidth=0.9,
+                  marker="o", markersize=3)  # fmt: skip
+    left.plot(hand[:, 0], hand[:, 1], color=PALETTE["blue"], linewidth=2.6, label="hand, forward run")
+    left.plot(result.column("planned_x"), result.column("planned_y"), color=PALETTE["vermillion"],
+              linestyle="--", label="hand, planned")  # fmt: skip
+    left.set(xlabel="x (m)", ylabel="y (m)", title="The hand and the arm", xlim=(-2.2, 2.2), ylim=(-2.2, 2.2), aspect="equal")
+    left.legend(loc="lower left", fontsize=8)
+    for k, (color, line) in ((1, _LOOKS[0]), (2, _LOOKS[1])):
+        joint = ("shoulder", "elbow")[k - 1]
+        right.plot(t, result.column(f"torque{k}"), color=color, linestyle=line, label=joint)
+    right.set(xlabel="time (s)", ylabel="torque (N m)", title="What inverse dynamics asks for")
+    right.legend(loc="best")
+    return figure
+
+
+def chaos(result: Result) -> Figure:
+    """The lower rods of both pendulums, and how far apart the pendulums are."""
+    figure, (upper, lower) = new_figure(5.0, 2, 1, sharex=True)
+    t, apart = result.column("t"), result.column("separation")
+    upper.plot(t, result.column("angle2_a"), color=PALETTE["blue"], linewidth=2.4, label="first")
+    upper.plot(t, result.column("angle2_b"), color=PALETTE["vermillion"], linestyle="--", label="second")
+    upper.set(ylabel="angle of the lower rod (rad)")
+    upper.legend(loc="best", title="pendulum")
+    lower.plot(t, np.where(apart > 0, apart, np.nan), color=PALETTE["black"])
+    for level, row, (color, line) in zip((1e-3, 1.0), result.rows[:2], _LOOKS[1:3], strict=True):
+        if math.isfinite(row.simulated):
+            lower.plot([row.simulated], [level], marker="o", markersize=8, markerfacecolor="none", color=color,
+                       linestyle="none", label=f"{level:g} rad at {row.simulated:.3g} s")  # fmt: skip
+        lower.axhline(level, color=color, linewidth=0.8, linestyle=line)
+    lower.set(xlabel="time (s)", ylabel="separation (rad)", yscale="log")
+    if any(math.isfinite(row.simulated) for row in result.rows[:2]):
+        lower.legend(loc="lower right")
+    return figure
+
+
+def solver_iterations(result: Result) -> Figure:
+    """Which share of its weight the ground feels under each stack, over the iterations done."""
+    figure, (axes,) = new_figure(3.8)
+    stacks = [column for column in result.columns if column.name.startswith("load_")]
+    iteration = result.column("iteration")
+    for column, (color, line) in zip(stacks, _LOOKS, strict=False):
+        boxes = column.name.split("_")[1]
+        needed = int(result.row(next(r.quantity for r in result.rows if r.quantity.endswith(f", {boxes} boxes"))).simulated)
+        axes.plot(iteration[1:], 100 * column.values[1:], color=color, linestyle=line, label=f"{boxes} boxes: {needed}")
+        if needed < iteration.size:
+            axes.plot([needed], [100 * column.values[needed]], marker="o", color=color, linestyle="none")
+    tolerance = float(result.settings["tolerance"])
+    axes.axhline(100 * (1 - tolerance), color=PALETTE["black"], linewidth=0.8)
+    axes.set(xscale="log", xlabel="iterations done (count)", ylabel="share of the weight that\nreaches the ground (%)")
+    axes.set_ylim(0, 105)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title=f"iterations to\n{100 * (1 - tolerance):g} %")
+    return figure
+
+
+def substeps(result: Result) -> Figure:
+    """Stretch of the longest link over time, for each way to spend the work."""
+    figure, (axes,) = new_figure(3.6)
+    t = result.column("t")
+    for column, (color, line) in zip(result.columns[1:], _LOOKS, strict=False):
+        steps, sweeps = column.name.removeprefix("stretch_").split("x")
+        axes.plot(t, 100 * column.values, color=color, linestyle=line, label=f"{steps} x {sweeps}")
+    axes.set(xlabel="time (s)", ylabel="stretch of the longest link (%)")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title="substeps x\niterations")
+    return figure
+
+
+def environment(result: Result) -> Figure:
+    """Stopping distance over friction and rebound over restitution, each with theory."""
+    figure, (left, right) = new_figure(3.3, 1, 2)
+    _beside_theory(left, result, "stopping_distance", "v² / (2 μ g)")
+    left.set(xlabel="friction μ (no unit)", ylabel="distance slid (m)", title="A block slides to rest")
+    _beside_theory(right, result, "rebound", "e² times the drop")
+    right.set(xlabel="restitution e (no unit)", ylabel="height of the rebound (m)", title="A ball bounces")
+    return figure
+
+
+def _beside_theory(axes: Axes, result: Result, name: str, formula: str) -> None:
+    x = result.column("coefficient")
+    axes.plot(x, result.column(f"{name}_theory"), color=PALETTE["black"], linewidth=1.0, label=formula)
+    axes.plot(x, result.column(name), color=PALETTE["blue"], linestyle="none", marker="o", label="simulated")
+    axes.legend(loc="best")

@@ -1,0 +1,122 @@
+"""`course grade` as an instructor types it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+MINI = ROOT / "tests" / "fixtures" / "mini_course"
+WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
+
+
+def course(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    return subprocess.run(
+        [sys.executable, "-m", "course", *map(str, arguments)],
+        env={**os.environ, "COURSE_CONTENT": str(MINI), "PYTHONPATH": path, **environment},
+        capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run over one right, one wrong and one broken submission."""
+    folder = tmp_path_factory.mktemp("grade")
+    solution = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+    for student, source in (("ada", solution), ("=bob", solution + WRONG), ("cy", b"def (")):
+        place = folder / "class" / student
+        place.mkdir(parents=True)
+        (place / "doubling.py").write_bytes(source)
+    done = course(
+        "grade", "run", folder / "class", "--exercise", "doubling", "--out", folder / "out",
+        "--isolation", "process", "--seed", "4",
+    )  # fmt: skip
+    assert done.returncode == 6, done.stderr
+    assert "syntax_error" in done.stdout
+    assert "plain processes (L1)" in done.stderr
+    return folder / "out"
+
+
+def test_a_run_leaves_a_gradebook_and_two_exports(graded: Path) -> None:
+    assert {path.name for path in graded.iterdir()} == {"gradebook.sqlite", "grades.csv", "results.jsonl"}
+    rows = list(csv.DictReader(io.StringIO((graded / "grades.csv").read_text("utf-8-sig"))))
+    assert {row["student"]: row["score"] for row in rows} == {"'=bob": "6", "ada": "10", "cy": "0"}
+
+
+def test_explain_shows_hidden_values_to_the_instructor(graded: Path) -> None:
+    done = course("grade", "explain", graded, "=bob", "doubling")
+    assert done.returncode == 0, done.stderr
+    assert "6 of 10" in done.stdout
+    assert "double_of_negative, hidden" in done.stdout
+    assert "-34.5" in done.stdout
+    assert "I saw -17.25" in done.stdout
+
+
+def test_explain_says_why_there_is_no_grade(graded: Path) -> None:
+    done = course("grade", "explain", graded, "cy", "doubling", "--json")
+    body = json.loads(done.stdout)
+    assert (body["schema"], body["state"], body["exit_code"]) == ("course.grade/1", "ungradable", 3)
+    assert body["error"]["code"] == "syntax_error"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "error"),
+    [
+        (("explain", "OUT", "nobody", "doubling"), 5, "result_not_found"),
+        (("explain", "NOWHERE", "ada", "doubling"), 5, "gradebook_not_found"),
+        (("run", "CLASS", "--out", "OUT"), 2, "out_exists"),
+        (("run", "CLASS", "--out", "NEW", "--exercise", "no-such"), 5, "exercise_not_found"),
+        (("run", "CLASS", "--out", "NEW", "--only", "nobody"), 2, "student_not_found"),
+        (("run", "CLASS", "--out", "NEW", "--isolation", "none"), 2, "usage"),
+        (("run", "NOWHERE", "--out", "NEW"), 5, "submissions_not_found"),
+        (("run", "CLASS", "--out", "OUT", "--resume", "--seed", "5"), 2, "other_seed"),
+    ],
+)
+def test_wrong_calls_are_named_and_touch_nothing(
+    graded: Path, arguments: tuple[str, ...], code: int, error: str
+) -> None:
+    places = {
+        "OUT": graded,
+        "CLASS": graded.parent / "class",
+        "NOWHERE": graded / "no",
+        "NEW": graded.parent / "new",
+    }
+    before = {path: path.read_bytes() for path in graded.iterdir()}
+    done = course("grade", *[places.get(word, word) for word in arguments], "--json")
+    assert done.returncode == code, done.stdout + done.stderr
+    body = json.loads(done.stdout)
+    assert (body["ok"], body["exit_code"], body["error"]["code"]) == (False, code, error)
+    assert body["error"]["help"]
+    assert before == {path: path.read_bytes() for path in graded.iterdir()}
+
+
+def test_a_damaged_gradebook_is_an_integrity_error(graded: Path, tmp_path: Path) -> None:
+    raw = bytearray((graded / "gradebook.sqlite").read_bytes())
+    at = raw.find(b'"score":6.0')
+    raw[at + 8 : at + 9] = b"9"
+    (tmp_path / "gradebook.sqlite").write_bytes(raw)
+    done = course("grade", "explain", tmp_path, "=bob", "doubling", "--json")
+    assert done.returncode == 7
+    assert "checksum" in json.loads(done.stdout)["error"]["message"]
+
+
+def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
+    import shutil
+
+    student = tmp_path / "course"
+    shutil.copytree(MINI, student)
+    shutil.rmtree(student / "graders")
+    (tmp_path / "class").mkdir()
+    done = course(
+        "grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--json", COURSE_CONTENT=str(student)
+    )
+    assert done.returncode == 4
+    assert json.loads(done.stdout)["error"]["code"] == "needs_checkout"

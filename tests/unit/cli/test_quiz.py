@@ -1,0 +1,408 @@
+"""The quiz on the command line: asked, resumed, answered from a file, reviewed, handed in."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import sys
+import zipfile
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.quizzing.bank import Bank
+
+SEED = 7
+MARK = "4 of 5 (80 %) needed: 70 % of 5 is 3.5."
+
+
+@pytest.fixture
+def quiz(course, tmp_path, monkeypatch):
+    """Run ``course quiz`` in a workspace of the real course."""
+    monkeypatch.delenv("COURSE_CONTENT")
+    root = tmp_path / "mine"
+    assert course("init", str(root)).code == 0
+    monkeypatch.chdir(root)
+    return lambda *words: course("quiz", *words)
+
+
+@pytest.fixture
+def bank(quiz):
+    return Bank.of(Catalog())
+
+
+class _Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.fixture
+def types(monkeypatch):
+    """Somebody at a terminal who types these lines and then leaves."""
+
+    def typing(*lines):
+        monkeypatch.setattr(sys, "stdin", _Terminal("".join(f"{line}\n" for line in lines)))
+
+    return typing
+
+
+@pytest.fixture
+def travel(monkeypatch):
+    """Move the clock by whole days."""
+    from course.cli import quiz as command
+    from course.progress import store
+
+    def to(days):
+        now = datetime.now(UTC) + timedelta(days=days)
+        monkeypatch.setattr(command, "today", lambda: now.astimezone().date())
+        monkeypatch.setattr(store, "_now", lambda: now.isoformat(timespec="milliseconds"))
+
+    return to
+
+
+def key(bank, wrong=(), seed=SEED, only=None):
+    """The right letter of each question, another one for the ``wrong``."""
+    letters = {}
+    for posed in bank.pose(seed, only):
+        bad = next(choice for choice in posed.choices if not choice.right)
+        letters[posed.question] = bad.letter if posed.question in wrong else posed.key.letter
+    return letters
+
+
+def save(path, letters, seed=SEED):
+    lines = [f"seed = {seed}", "[answers]", *(f'{name} = "{letter}"' for name, letter in letters.items())]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return str(path)
+
+
+def test_a_perfect_attempt_passes(quiz, bank, types):
+    types(*key(bank).values())
+    ran = quiz("take", "--seed", str(SEED))
+    assert ran.code == 0
+    assert ran.out.startswith(MARK)
+    assert "5 of 5 right, 4 needed: passed" in ran.out
+    assert ran.out.count("Your answer: ") == 5
+    for posed in bank.pose(SEED):
+        assert posed.key.explanation in ran.out
+        assert all(choice.text in ran.out for choice in posed.choices)
+
+
+def test_below_the_mark_every_option_of_what_was_missed_is_explained(quiz, bank, types):
+    wrong = ("why-simulate", "digital-twin")
+    types(*key(bank, wrong).values())
+    ran = quiz("take", "--seed", str(SEED))
+    assert ran.code == 1
+    assert "3 of 5 right, 4 needed: not passed" in ran.out
+    for posed in bank.pose(SEED):
+        for choice in posed.choices:
+            shown = choice.right or posed.question in wrong
+            assert (choice.explanation in ran.out) == shown
+            assert (f'"{choice.belief}"' in ran.out) == (shown and not choice.right)
+    assert "why-simulate: due" in ran.out
+
+
+def test_numbers_answer_and_other_keys_are_asked_again(quiz, bank, types):
+    first, *rest = [str("abcd".index(letter) + 1) for letter in key(bank).values()]
+    types("", "e", "5", first, *rest)
+    ran = quiz("take", "--seed", str(SEED))
+    assert ran.code == 0
+    assert ran.out.count("Type a to d or 1 to 4") == 1 + 3
+
+
+@pytest.mark.parametrize("stop", ["q", "QUIT", None])
+def test_an_attempt_that_was_stopped_goes_on_where_it_was(quiz, bank, types, stop):
+    letters = list(key(bank).values())
+    types(*letters[:2], *([stop] if stop else []))
+    stopped = quiz("take", "--seed", str(SEED))
+    assert stopped.code == 130
+    assert "what was done is kept" in stopped.err
+    types(*letters[2:])
+    ran = quiz("take")
+    assert ran.code == 0
+    assert "2 of 5 answered" in ran.out
+    assert "Question 3 of 5" in ran.out
+    assert "Question 2 of 5" not in ran.out
+    assert "5 of 5 right" in ran.out
+
+
+def test_control_c_keeps_what_was_answered(quiz, bank, types, monkeypatch):
+    types(key(bank)["why-simulate"])
+    lines = iter([key(bank)["why-simulate"] + "\n"])
+
+    def readline():
+        for line in lines:
+            return line
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sys.stdin, "readline", readline)
+    assert quiz("take", "--seed", str(SEED)).code == 130
+    state = quiz("history", "--json").json["attempts"]
+    assert [(entry["state"], entry["answered"]) for entry in state] == [("open", 1)]
+
+
+def test_a_crash_between_the_last_answer_and_the_score_loses_nothing(quiz, bank, types, monkeypatch):
+    from course.cli import quiz as command
+
+    def fall(*_, **__):
+        raise KeyboardInterrupt
+
+    types(*key(bank).values())
+    with monkeypatch.context() as patch:
+        patch.setattr(command, "_finish", fall)
+        assert quiz("take", "--seed", str(SEED)).code == 130
+    types()
+    ran = quiz("take")
+    assert ran.code == 0
+    assert "Your answer: " not in ran.out
+    assert "5 of 5 right" in ran.out
+
+
+def test_another_seed_begins_anew(quiz, bank, types):
+    types(key(bank)["why-simulate"])
+    assert quiz("take", "--seed", str(SEED)).code == 130
+    types(*key(bank, seed=8).values())
+    ran = quiz("take", "--seed", "8")
+    assert ran.code == 0
+    states = [entry["state"] for entry in quiz("history", "--json").json["attempts"]]
+    assert states == ["left", "finished"]
+
+
+def test_a_retake_asks_in_other_variants(quiz, bank, types):
+    types(*key(bank).values())
+    assert quiz("take", "--seed", str(SEED)).code == 0
+    again = quiz("take", "--questions", "--json").json["seed"]
+    assert all(bank.variant(name, again) != bank.variant(name, SEED) for name in bank.ids)
+
+
+def test_without_a_terminal_nothing_is_asked(quiz):
+    for words in (("take",), ("take", "--json"), ("take", "--seed", "3")):
+        ran = quiz(*words)
+        assert ran.code == 2
+        assert "use --answers FILE" in ran.err
+        assert "Question 1" not in ran.out
+    assert ran.out == ""
+    error = quiz("take", "--json").json
+    assert (error["schema"], error["error"]["code"]) == ("course.quiz/1", "no_terminal")
+    assert quiz("history", "--json").json["attempts"] == []
+
+
+def test_questions_can_be_printed_and_answered_from_a_file(quiz, bank, tmp_path):
+    asked = quiz("take", "--questions", "--json").json
+    assert (asked["schema"], asked["ok"], asked["mark"] + ".") == ("course.quiz-questions/1", True, MARK)
+    assert "right" not in json.dumps(asked["questions"][0]["options"])
+    assert "explanation" not in json.dumps(asked)
+    assert quiz("take", "--questions", "--json").json["seed"] == asked["seed"]
+    text = asked["template"]
+    for name, letter in key(bank, seed=asked["seed"]).items():
+        text = text.replace(f'{name} = ""', f'{name} = "{letter}"')
+    path = tmp_path / "answers.toml"
+    path.write_text(text, encoding="utf-8")
+    ran = quiz("take", "--answers", str(path), "--json")
+    assert ran.code == 0
+    assert (ran.json["seed"], ran.json["passed"]) == (asked["seed"], True)
+    assert [entry["state"] for entry in quiz("history", "--json").json["attempts"]] == ["finished"]
+
+
+def test_a_template_that_was_not_filled_in_is_refused(quiz, tmp_path):
+    path = tmp_path / "answers.toml"
+    path.write_text(quiz("take", "--questions", "--json").json["template"], encoding="utf-8")
+    ran = quiz("take", "--answers", str(path))
+    assert ran.code == 2
+    assert f"{path}:4: 5 answers are missing: why-simulate" in ran.err
+
+
+def test_the_answer_of_a_script_has_everything(quiz, bank, tmp_path):
+    path = save(tmp_path / "a.toml", key(bank, ("which-engine",)))
+    ran = quiz("take", "--answers", path, "--json")
+    assert ran.code == 0
+    body = ran.json
+    assert list(body)[:3] == ["schema", "ok", "exit_code"]
+    assert (body["schema"], body["ok"], body["exit_code"]) == ("course.quiz/1", True, 0)
+    assert (body["score"], body["max_score"], body["needed"], body["resumed"]) == (4, 5, 4, False)
+    (missed,) = [question for question in body["questions"] if not question["right"]]
+    assert missed["id"] == "which-engine"
+    assert [option["right"] for option in missed["options"]].count(True) == 1
+    (chosen,) = [option for option in missed["options"] if option["chosen"]]
+    assert missed["answer"] == chosen["id"]
+    assert chosen["belief"]
+    assert [entry["question"] for entry in body["review"]] == ["which-engine"]
+
+
+def test_the_seed_may_be_given_beside_the_file(quiz, bank, tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps({"answers": key(bank)}), encoding="utf-8")
+    lost = quiz("take", "--answers", str(path))
+    assert (lost.code, "does not say which questions" in lost.err) == (2, True)
+    assert quiz("take", "--answers", str(path), "--seed", str(SEED)).code == 0
+
+
+def test_answers_for_another_seed_are_refused_and_not_recorded(quiz, bank, tmp_path):
+    path = save(tmp_path / "a.toml", key(bank))
+    ran = quiz("take", "--answers", path, "--seed", "8")
+    assert ran.code == 2
+    assert f"{path}:1: these answers are for seed 7" in ran.err
+    assert quiz("history", "--json").json["attempts"] == []
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("take", "--seed", "-1"),
+        ("take", "--seed", "2147483648"),
+        ("take", "--seed", "x"),
+        ("take", "--answers", "none.toml"),
+        ("take", "--answers", "none.toml", "--questions"),
+        ("review", "--seed", "-1"),
+    ],
+)
+def test_what_cannot_be_used_is_a_sentence(quiz, words):
+    ran = quiz(*words)
+    assert ran.code == 2
+    assert ran.err.strip()
+    assert "Traceback" not in ran.err
+
+
+def test_outside_of_a_workspace_the_quiz_says_so(course, monkeypatch):
+    monkeypatch.delenv("COURSE_CONTENT")
+    ran = course("quiz", "take", "--json")
+    assert ran.code in {2, 5}
+    assert course("quiz", "history").code == 5
+
+
+def test_a_course_without_a_quiz_says_so(course, workspace):
+    ran = course("quiz", "history", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (5, "quiz_not_found")
+
+
+def test_a_file_may_finish_an_attempt_that_was_begun(quiz, bank, types, tmp_path):
+    letters = key(bank)
+    types(letters["why-simulate"])
+    assert quiz("take", "--seed", str(SEED)).code == 130
+    path = save(tmp_path / "a.toml", letters)
+    assert quiz("take", "--answers", path, "--json").json["resumed"] is True
+    assert len(quiz("history", "--json").json["attempts"]) == 1
+
+
+def test_the_same_seed_counts_once(quiz, bank, tmp_path):
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("why-simulate", "digital-twin"))))
+    assert quiz("take", "--answers", save(tmp_path / "b.toml", key(bank))).code == 0
+    body = quiz("history", "--json").json
+    assert [(entry["score"], entry["counts"]) for entry in body["attempts"]] == [(3, True), (5, False)]
+    assert (body["best"], body["passed"]) == (3, False)
+    assert "does not count" in quiz("history").out
+
+
+def test_history_says_when_there_is_none(quiz):
+    ran = quiz("history")
+    assert ran.code == 0
+    assert "No attempt yet." in ran.out
+    assert "Next: course quiz take" in ran.out
+
+
+# -- review ----------------------------------------------------------------------------------------------
+
+
+def test_nothing_is_reviewed_before_something_was_missed(quiz, bank, tmp_path):
+    assert "take the quiz first" in quiz("review").out
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank)))
+    ran = quiz("review", "--json")
+    assert (ran.code, ran.json["next_due"], ran.json["questions"]) == (0, None, [])
+
+
+def test_what_was_missed_comes_back_every_two_days_until_it_is_known(quiz, bank, tmp_path, types, travel):
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin",))))
+    start = datetime.now().astimezone().date()
+    early = quiz("review", "--json").json
+    assert (early["ok"], early["next_due"]) == (True, str(start + timedelta(days=2)))
+    for day, rounds in ((2, 1), (4, 2), (6, None)):
+        travel(day)
+        asked = quiz("review", "--questions", "--json").json
+        assert [question["id"] for question in asked["questions"]] == ["digital-twin"]
+        assert asked["mark"] == ""
+        letters = key(bank, seed=asked["seed"], only=["digital-twin"])
+        types(*letters.values())
+        ran = quiz("review", "--seed", str(asked["seed"]))
+        assert ran.code == 0
+        assert "1 of 1 right." in ran.out
+        due = quiz("review", "--json").json["review"]
+        assert [entry["rounds"] for entry in due] == ([] if rounds is None else [rounds])
+    assert "Nothing is under review" in quiz("review").out
+
+
+def test_a_review_explains_at_once_and_asks_another_variant(quiz, bank, tmp_path, types, travel):
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin", "which-engine"))))
+    travel(2)
+    asked = quiz("review", "--questions", "--json").json
+    seed = asked["seed"]
+    assert all(bank.variant(q["id"], seed) != bank.variant(q["id"], SEED) for q in asked["questions"])
+    letters = key(bank, ("which-engine",), seed=seed, only=["digital-twin", "which-engine"])
+    types(*letters.values())
+    ran = quiz("review", "--seed", str(seed))
+    assert ran.code == 1
+    assert "1 of 2 right." in ran.out
+    first, second = bank.pose(seed, only=["digital-twin", "which-engine"])
+    assert ran.out.index(first.choices[0].explanation) < ran.out.index(second.prompt)
+    assert "due" in ran.out
+
+
+def test_a_review_that_was_stopped_keeps_its_answers(quiz, bank, tmp_path, types, travel):
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin", "which-engine"))))
+    travel(2)
+    types(*key(bank, seed=1, only=["which-engine"]).values(), "q")
+    assert quiz("review", "--seed", "1").code == 130
+    left = quiz("review", "--questions", "--json").json
+    assert [question["id"] for question in left["questions"]] == ["digital-twin"]
+
+
+def test_a_review_works_without_a_terminal(quiz, bank, tmp_path, travel):
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("digital-twin",))))
+    travel(3)
+    ran = quiz("review")
+    assert (ran.code, "use --answers FILE" in ran.err) == (2, True)
+    letters = key(bank, seed=5, only=["digital-twin"])
+    path = save(tmp_path / "r.toml", letters, seed=5)
+    body = quiz("review", "--answers", path, "--json").json
+    assert (body["schema"], body["ok"], body["seed"]) == ("course.quiz-review/1", True, 5)
+    assert [entry["rounds"] for entry in body["review"]] == [1]
+    assert body["next_due"] == str(datetime.now().astimezone().date() + timedelta(days=5))
+
+
+# -- handed in -------------------------------------------------------------------------------------------
+
+
+def test_attempts_travel_in_a_submission_and_are_scored_again(quiz, bank, course, tmp_path):
+    from course.grading.quiz import grade_quiz
+
+    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("which-engine",))))
+    quiz("take", "--questions")
+    ran = course("submit", "-o", str(tmp_path / "mine.zip"))
+    assert ran.code == 0
+    assert "The quiz: 1 attempt, best 4 of 5" in ran.out
+    with zipfile.ZipFile(tmp_path / "mine.zip") as archive:
+        record = json.loads(archive.read("submission.json"))["quiz"]
+    verdict = grade_quiz(bank, record)
+    assert (verdict.state, verdict.score, verdict.passed) == ("graded", 4.0, True)
+    assert course("submit", "-o", str(tmp_path / "mine.zip"), "--json").json["quiz_attempts"] == 1
+
+
+def test_plain_output_has_no_frames_and_one_fact_a_line(quiz, bank, tmp_path):
+    ran = quiz("take", "--plain", "--answers", save(tmp_path / "a.toml", key(bank, ("which-engine",))))
+    assert "─" not in ran.out
+    assert "\x1b" not in ran.out
+    assert "2. Which engine is for what: missed\n" in ran.out
+    assert ran.out.count("4 of 5 right") == 1
+
+
+@pytest.mark.parametrize("width", ["60", "120"])
+def test_nothing_is_wider_than_the_terminal(quiz, bank, tmp_path, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", width)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+    path = save(tmp_path / "a.toml", key(bank, bank.ids))
+    for words in (("take", "--answers", path), ("history",), ("review",), ("take", "--questions")):
+        ran = quiz(*words)
+        shown = re.sub(r"\x1b\[[0-9;]*m", "", ran.out)
+        assert max(len(line) for line in shown.split("\n")) <= int(width)
+        assert "\x1b[3" not in ran.out

@@ -1,0 +1,214 @@
+"""The course's own five questions, over a thousand seeds, and their numbers against the physics."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from course.authoring.quiz_audit import audit_quiz
+from course.authoring.report import Findings
+from course.catalog.load import Catalog
+from course.physics import integrators as steppers
+from course.physics.systems import FreeFall, Oscillator
+from course.quizzing.attempt import mark
+from course.quizzing.bank import Bank, Posed, pose_case, same_answer
+
+SEEDS = range(1000)
+
+
+@pytest.fixture(scope="module")
+def bank() -> Bank:
+    return Bank.of(Catalog())
+
+
+@pytest.fixture(scope="module")
+def posed(bank: Bank) -> list[tuple[Posed, ...]]:
+    return [bank.pose(seed) for seed in SEEDS]
+
+
+def cases(bank: Bank, question: str, variant: str):
+    """Each case of a variant: its numbers as they are shown, and the question as it is posed."""
+    document = next(document for document in bank.documents if document.value.id == question)
+    index = next(i for i, entry in enumerate(document.value.variant) if entry.id == variant)
+    for case in range(document.value.variant[index].cases):
+        yield pose_case(document, index, case)
+
+
+def numbers(text: str) -> list[float]:
+    return [float(found.replace(",", "")) for found in re.findall(r"\d[\d,]*(?:\.\d+)?", text)]
+
+
+def test_the_five_questions_are_those_of_the_course(bank: Bank) -> None:
+    assert bank.ids == (
+        "why-simulate",
+        "which-engine",
+        "sim-to-real-gap",
+        "digital-twin",
+        "numerical-integration",
+    )
+
+
+def test_the_audit_finds_nothing() -> None:
+    catalog = Catalog()
+    findings = Findings(catalog.content.root)
+    assert len(audit_quiz(catalog, findings)) == 5
+    assert findings.sorted() == ()
+
+
+def test_no_two_options_are_equal_in_a_thousand_seeds(posed: list[tuple[Posed, ...]]) -> None:
+    for questions in posed:
+        for question in questions:
+            texts = [choice.text for choice in question.choices]
+            assert not any(same_answer(a, b) for i, a in enumerate(texts) for b in texts[:i])
+
+
+def test_the_key_is_never_ambiguous_in_a_thousand_seeds(posed: list[tuple[Posed, ...]]) -> None:
+    for questions in posed:
+        assert all(sum(choice.right for choice in question.choices) == 1 for question in questions)
+        assert mark(questions, {q.question: q.key.letter for q in questions}).score == 5
+        assert mark(questions, {q.question: q.key.id for q in questions}).score == 5
+
+
+def test_every_variant_and_every_place_is_reached_in_a_thousand_seeds(
+    bank: Bank, posed: list[tuple[Posed, ...]]
+) -> None:
+    reached = Counter((q.question, q.variant) for questions in posed for q in questions)
+    for document in bank.documents:
+        question = document.value
+        assert len(question.variant) >= 4
+        for variant in question.variant:
+            assert reached[question.id, variant.id] > 0.6 * 1000 / len(question.variant)
+    places = Counter((q.question, q.key.letter) for questions in posed for q in questions)
+    assert all(200 < places[name, letter] < 300 for name in bank.ids for letter in "abcd")
+
+
+def test_every_case_of_numbers_is_reached_by_some_seed(bank: Bank) -> None:
+    """Three thousand seeds: the largest variant has 36 cases and a fifth of the seeds."""
+    prompts = {q.prompt for seed in range(3000) for q in bank.pose(seed, only=["numerical-integration"])}
+    possible = {
+        posed.prompt
+        for document in bank.documents
+        if document.value.id == "numerical-integration"
+        for variant in document.value.variant
+        for posed in cases(bank, "numerical-integration", variant.id)
+    }
+    assert prompts == possible
+
+
+def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank: Bank) -> None:
+    for document in bank.documents:
+        for index in range(len(document.value.variant)):
+            for choice in pose_case(document, index, 0).choices:
+                assert len(choice.explanation.split()) >= 8
+                assert bool(choice.belief) is not choice.right
+                assert "{" not in choice.text + choice.explanation
+
+
+def test_the_key_cannot_be_told_by_its_length(bank: Bank) -> None:
+    """Of the variants whose options differ in length, the key is the longest of four in under half."""
+    ranks = []
+    for document in bank.documents:
+        for index in range(len(document.value.variant)):
+            shown = pose_case(document, index, 0)
+            ranks.append(sum(len(choice.text) < len(shown.key.text) for choice in shown.choices))
+    assert ranks.count(3) < 0.4 * len(ranks)
+    assert ranks.count(0) < 0.5 * len(ranks)
+
+
+def test_whoever_picks_ode_reads_the_claim_and_what_its_manual_says(bank: Bank) -> None:
+    (document,) = [document for document in bank.documents if document.value.id == "which-engine"]
+    for index in range(len(document.value.variant)):
+        shown = pose_case(document, index, 0)
+        (ode,) = [choice for choice in shown.choices if choice.text == "ODE"]
+        assert "designed specifically for robots" in ode.explanation
+        assert "manual" in ode.explanation
+        assert "2006" in ode.explanation + shown.source
+    keys = [pose_case(document, index, 0).key.text for index in range(len(document.value.variant))]
+    assert keys == ["MuJoCo", "ODE", "DART", "PhysX", "ODE"]
+
+
+# -- the numbers, against the physics --------------------------------------------------------------------
+
+
+def test_the_energy_of_the_spring_is_what_explicit_euler_gives(bank: Bank) -> None:
+    for shown in cases(bank, "numerical-integration", "growing-spring"):
+        omega, h, t_end = numbers(shown.prompt)
+        path = steppers.trajectory(
+            steppers.ExplicitEuler(),
+            Oscillator(omega=omega),
+            steppers.State.at_rest([1.0]),
+            h,
+            round(t_end / h),
+        )
+        energy = path.v[:, 0] ** 2 + (omega * path.q[:, 0]) ** 2
+        assert numbers(shown.key.text)[0] == pytest.approx(energy[-1] / energy[0], rel=0.006)
+
+
+@pytest.mark.parametrize(
+    ("option", "stepper"), [("too-low", steppers.SemiImplicitEuler), ("too-high", steppers.ExplicitEuler)]
+)
+def test_the_bias_of_the_falling_ball_is_what_the_methods_give(bank: Bank, option: str, stepper) -> None:
+    for shown in cases(bank, "numerical-integration", "falling-ball"):
+        t_end, h = numbers(shown.prompt)[:2]
+        path = steppers.trajectory(stepper(), FreeFall(), steppers.State.at_rest([0.0]), h, round(t_end / h))
+        off = path.q[-1, 0] + 9.81 * t_end**2 / 2
+        choice = shown.choice(option)
+        assert choice is not None
+        assert abs(off) == pytest.approx(numbers(choice.text)[0], rel=0.006)
+        assert ("low" in choice.text) == (off < 0)
+
+
+def test_the_stiff_contact_blows_up_just_above_the_limit(bank: Bank) -> None:
+    for shown in cases(bank, "numerical-integration", "stiff-contact"):
+        k, m = numbers(shown.prompt)[:2]
+        limit = numbers(shown.key.text)[0] / 1000
+        grown = []
+        for h in (0.99 * limit, 1.01 * limit):
+            path = steppers.trajectory(
+                steppers.SemiImplicitEuler(),
+                Oscillator(omega=float(np.sqrt(k / m))),
+                steppers.State.at_rest([1.0]),
+                h,
+                500,
+            )
+            grown.append(np.abs(path.q).max())
+        assert grown[0] < 20
+        assert grown[1] > 1e20
+
+
+def test_the_finer_verlet_error_falls_as_the_method_does(bank: Bank) -> None:
+    def error(h: float) -> float:
+        path = steppers.trajectory(
+            steppers.VelocityVerlet(), Oscillator(omega=1.0), steppers.State.at_rest([1.0]), h, round(6.0 / h)
+        )
+        return float(abs(path.q[-1, 0] - np.cos(6.0)))
+
+    for shown in cases(bank, "numerical-integration", "finer-verlet"):
+        err, finer = numbers(shown.prompt)[:2]
+        measured = err * error(0.01 / finer) / error(0.01)
+        assert numbers(shown.key.text)[0] == pytest.approx(measured, rel=0.01)
+
+
+def test_the_sliding_box_stops_where_friction_says(bank: Bank) -> None:
+    for shown in cases(bank, "sim-to-real-gap", "sliding-box"):
+        v, mu_sim, d_sim, d_real = numbers(shown.prompt)[:4]
+        assert d_sim == pytest.approx(v**2 / (2 * mu_sim * 9.81), rel=0.006)
+        assert numbers(shown.key.text)[0] == pytest.approx(v**2 / (2 * d_real * 9.81), rel=0.006)
+
+
+def test_the_twin_falls_behind_by_what_it_has_not_computed(bank: Bank) -> None:
+    for shown in cases(bank, "digital-twin", "falling-behind"):
+        factor, _, minutes = numbers(shown.prompt)
+        simulated = sum(0.001 * factor for _ in range(round(minutes * 60_000)))
+        assert numbers(shown.key.text)[0] == pytest.approx(minutes * 60 - simulated, abs=1e-3)
+
+
+def test_training_time_is_steps_over_copies_and_speed(bank: Bank) -> None:
+    for shown in cases(bank, "why-simulate", "training-time"):
+        millions, step, copies, speed = numbers(shown.prompt)
+        days, hours = numbers(shown.key.text)
+        assert days == pytest.approx(millions * 1e6 * step / 86_400, rel=0.006)
+        assert hours == pytest.approx(24 * millions * 1e6 * step / 86_400 / copies / speed, rel=0.006)

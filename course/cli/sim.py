@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path  # noqa: TC003 - typer reads it from the annotations
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -145,9 +145,7 @@ def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
     return 0
 
 
-def _run_one(
-    console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None
-) -> Sim:
+def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None) -> Sim:
     """Run, show and write one simulation."""
     from course.cli import sim_files
     from course.simulations.registry import get
@@ -187,9 +185,23 @@ def _show(console: Console, simulation: Simulation, result: Result) -> None:
         console.line((_settings(simulation, result), "dim"))
         if changed:
             console.line(f"Changed: {', '.join(changed)}.")
-        rows = [_cells(row) for row in result.rows]
-        console.table(("Measured", "Simulated", "Theory", "Error"), rows)
+        _table(console, [_cells(row) for row in result.rows])
     console.line((result.finding, "bold"))
+
+
+_HEADS = ("Measured", "Simulated", "Theory", "Error")
+
+
+def _table(console: Console, rows: list[tuple[str, str, str, str]]) -> None:
+    """The rows as a table or, where it is too wide for the window, each number under what it is."""
+    width = sum(max(map(len, column)) + 3 for column in zip(_HEADS, *rows, strict=True))
+    if console.plain or width <= console.width:
+        console.table(_HEADS, rows)
+        return
+    for quantity, *numbers in rows:
+        console.line(quantity)
+        facts = [f"{head.lower()} {text}" for head, text in zip(_HEADS[1:], numbers, strict=True) if text]
+        console.line(", ".join(facts), indent=2)
 
 
 def _settings(simulation: Simulation, result: Result) -> str:
@@ -203,25 +215,35 @@ def _settings(simulation: Simulation, result: Result) -> str:
 
 
 def _cells(row: Row) -> tuple[str, str, str, str]:
-    """A row as text: simulated and theory to the same digit, the error as a number of its own."""
+    """A row as text: simulated and theory to the same digit, and the error as a number of its own."""
+    places = _places(row.simulated, row.theory)
+    theory = "" if row.theory is None else _number(row.theory, row.unit, places)
     error = row.error
-    theory = "" if row.theory is None else _number(row.theory, row.unit)
-    # A round-off is not a finding; "0" hides nothing when the value beside it has six digits.
-    scale = max(abs(row.theory or 0.0), 1e-3)
-    shown = "" if error is None else "round-off" if 0 < abs(error) < 1e-11 * scale else f"{error:+.2g}"
-    if error == 0:
-        shown = "0"
-    return row.quantity, _number(row.simulated, row.unit), theory, shown
+    if error is None:
+        shown = ""
+    elif abs(error) < 1e-11 * max(abs(row.theory or 0.0), 1e-3):
+        shown = "0" if error == 0 else "round-off"
+    else:
+        shown = _with_unit(f"{error:+#.3g}", row.unit)
+    return row.quantity, _number(row.simulated, row.unit, places), theory, shown
 
 
-def _number(value: float, unit: str) -> str:
+def _places(*values: float | None) -> str:
+    """A format that gives the largest of the values five digits and all of them the same decimals."""
+    sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
+    largest = max(sizes, default=0.0)
+    if not 1e-4 <= largest < 1e6 or all(size == round(size) for size in sizes):
+        return ".5g"
+    return f".{max(0, 4 - math.floor(math.log10(largest)))}f"
+
+
+def _number(value: float, unit: str, places: str) -> str:
     if math.isnan(value):
         return "never"
     if math.isinf(value):
         return "beyond all numbers"
-    if abs(value) < 1e-11:
-        value = 0.0
-    return _with_unit(f"{value:.5g}", unit)
+    text = f"{0.0 if abs(value) < 1e-11 else value:{places}}"
+    return _with_unit(text, unit)
 
 
 def _with_unit(text: str, unit: str) -> str:

@@ -35,8 +35,14 @@ FIGURES: dict[str, tuple[str, str]] = {
     "sim-rotation": ("simulations", "rotation"),
     "sim-solver-iterations": ("simulations", "solver_iterations"),
     "sim-substeps": ("simulations", "substeps"),
+    "contact-pair": ("collisions_and_contact", "pair"),
+    "contact-stacks": ("collisions_and_contact", "stacks"),
+    "contact-tunnelling": ("collisions_and_contact", "tunnelling"),
+    "how-an-engine-works-rotation": ("how_an_engine_works", "turning_over"),
     "why-simulate-standing": ("why_simulate", "standing"),
     "engines-settings": ("engines", "settings"),
+    "twins-following": ("twins", "following"),
+    "gap-settling": ("sim_to_real", "settling"),
 }
 
 #: Figures are 6.5 in wide, the text width of a printed page; this makes 1170 pixels of it.

@@ -144,10 +144,18 @@ def _free_fall(result: Result) -> Figure:
     for name, look in METHODS.items():
         wide = 3.2 if name == "velocity_verlet" else 1.6  # the dashes of Runge-Kutta lie on top of it
         right.plot(
-            t, result.column(f"error_{name}"), color=look.color, linestyle=look.line, linewidth=wide, label=look.name
+            t,
+            result.column(f"error_{name}"),
+            color=look.color,
+            linestyle=look.line,
+            linewidth=wide,
+            label=look.name,
         )
     right.set(xlabel="time (s)", ylabel="height less theory (m)", title="Without ground")
-    right.legend(loc="best")
+    right.legend(loc="upper left")
+    low, high = right.get_ylim()
+    right.set_ylim(low, high + 1.1 * (high - low) / 2)  # room for the legend above the curves
+    figure.subplots_adjust(wspace=0.36)
     return figure
 
 
@@ -169,14 +177,17 @@ def _projectile(result: Result) -> Figure:
     )  # fmt: skip
     apex, top, out, _, far = result.rows
     if math.isfinite(top.simulated):
-        axes.plot([out.simulated], [top.simulated], marker="^", color=PALETTE["vermillion"], markersize=8,
-                  linestyle="none", label=f"top: {top.simulated:.4g} m at {apex.simulated:.4g} s")  # fmt: skip
+        axes.plot(
+            [out.simulated], [top.simulated], marker="^", color=PALETTE["vermillion"], markersize=8,
+            linestyle="none", label=f"top: {top.simulated:.4g} m at {apex.simulated:.4g} s",
+        )  # fmt: skip
     if math.isfinite(far.simulated):
         axes.plot([far.simulated], [0.0], marker="s", color=PALETTE["vermillion"], markersize=7,
                   linestyle="none", label=f"landing: {far.simulated:.5g} m away")  # fmt: skip
     axes.set(xlabel="distance (m)", ylabel="height (m)")
     axes.set_ylim(bottom=min(0.0, float(z.min())) - 0.03 * float(np.ptp(z) or 1.0))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.subplots_adjust(right=0.68)
     return figure
 
 
@@ -187,9 +198,10 @@ def _collision(result: Result) -> Figure:
     for name, label, color, line in looks:
         x = result.column(name)
         axes.fill_between(t, x - radius, x + radius, color=color, alpha=0.25, linewidth=0)
-        axes.plot(t, x, color=color, linestyle=line, label=f"{label}, centre and width")
-        straight = x[0] + result.column(name.replace("x", "v"))[0] * t
-        label = "points, which would meet at no distance" if name == "x1" else None  # one entry for both
+        axes.plot(t, x, color=color, linestyle=line, label=f"{label} and its width")
+    for name, _, _, _ in looks:
+        straight = result.column(name)[0] + result.column(name.replace("x", "v"))[0] * t
+        label = "points without size" if name == "x1" else "_"  # one entry is enough
         axes.plot(t, straight, color=PALETTE["grey"], linewidth=0.8, linestyle=":", label=label)
     met = result.rows[0].simulated
     if math.isfinite(met):
@@ -197,6 +209,7 @@ def _collision(result: Result) -> Figure:
         axes.plot([], [], color=PALETTE["black"], linewidth=0.8, label=f"contact at {met:.4g} s")
     axes.set(xlabel="time (s)", ylabel="position (m)")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.subplots_adjust(right=0.68)
     return figure
 
 
@@ -212,6 +225,7 @@ def _integrators(result: Result) -> Figure:
     upper.set(ylabel="position error (m)", yscale="log")
     lower.set(ylabel="largest energy error\nso far (share of E₀)", xlabel="time (s)", yscale="log")
     upper.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.subplots_adjust(left=0.13, right=0.75, top=0.93)
     return figure
 
 

@@ -365,6 +365,10 @@ def _load_problem(refused: LoadRefusedError, module: str) -> Problem:
     failure = refused.failure
     where = f"{module}, line {failure.line}" if failure.line else module
     if refused.stage == "syntax":
+        if "UnicodeError" in failure.bases:
+            message = f"{where}: Python cannot read this file: {failure.message}."
+            advice = "Save it as UTF-8, or declare its encoding in the first line."
+            return Problem("syntax_error", message, advice)
         shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
         return Problem(
             "syntax_error",

@@ -43,17 +43,21 @@ class ZygoteSpawner:
 
     def _start(self) -> None:
         self._folder = Path(tempfile.mkdtemp(prefix="course-zygote-"))
+        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
-            launch.copy_flat_files(self._folder)
-            self._start_zygote(os.getuid() == 0)
+            with theirs:
+                launch.copy_flat_files(self._folder)
+                self._process = self._run(self._command(theirs.fileno()), theirs.fileno())
+            self._control.settimeout(START_TIMEOUT)
+            self._check_start(self._view)
         except BaseException:
             self.close()
             raise
 
-    def _start_zygote(self, root: bool) -> None:
-        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    def _command(self, control: int) -> list[str]:
+        root = os.getuid() == 0
         config: dict[str, Any] = {
-            "control": theirs.fileno(),
+            "control": control,
             "level": self.level.value,
             "imports": list(self._imports),
             "limits": vars(self._limits),
@@ -62,31 +66,36 @@ class ZygoteSpawner:
         if self.level is Level.L3:
             # Nothing to list as readable: the root is built of what is.
             self._scratch = "/tmp"
-            config |= {"path": [_INSIDE, _PACKAGES], "readable": [], "workdir": self._scratch}
+            config |= {"path": [_INSIDE, _PACKAGES], "readable": None, "workdir": self._scratch}
             inside = launch.command(self._view, _INSIDE, config)
-            command = [*_bubblewrap(self._view, self._folder, root), *inside]
-        else:
-            scratch = self._folder / "scratch"
-            scratch.mkdir(mode=0o711)
-            self._scratch = str(scratch)
-            readable = [str(path) for path in (*self._view.expanded(), self._folder)]
-            path = [str(self._folder), *sorted({str(entry.parent) for entry in self._view.packages})]
-            config |= {"path": path, "readable": readable, "workdir": self._scratch}
-            if config["become_nobody"]:
-                self._folder.chmod(0o711)
-            command = launch.command(self._view, str(self._folder), config)
-        with theirs, (self._folder / "stderr").open("wb") as errors:
-            self._process = subprocess.Popen(
-                command,
-                pass_fds=(theirs.fileno(),),
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=errors,
-                env=launch.environment(),
-                cwd="/",
-            )
-        self._control.settimeout(START_TIMEOUT)
-        self._check_start(self._view)
+            return [*_bubblewrap(self._view, self._folder, root), *inside]
+        scratch = self._folder / "scratch"
+        scratch.mkdir(mode=0o711)
+        self._scratch = str(scratch)
+        readable = self._folder / "readable.json"  # may well be longer than an argument can be
+        readable.write_text(
+            json.dumps([str(path) for path in (*self._view.expanded(), self._folder)]), "utf-8"
+        )
+        path = [str(self._folder), *sorted({str(entry.parent) for entry in self._view.packages})]
+        config |= {"path": path, "readable": str(readable), "workdir": self._scratch}
+        if config["become_nobody"]:
+            self._folder.chmod(0o711)
+        return launch.command(self._view, str(self._folder), config)
+
+    def _run(self, command: list[str], control: int) -> subprocess.Popen[bytes]:
+        with (self._folder / "stderr").open("wb") as errors:
+            try:
+                return subprocess.Popen(
+                    command,
+                    pass_fds=(control,),
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=errors,
+                    env=launch.environment(),
+                    cwd="/",
+                )
+            except OSError as error:
+                raise IsolationError(f"the zygote could not be started: {error}") from None
 
     def _check_start(self, view: View) -> None:
         """An interpreter may silently load another library than its own: compare what the zygote reports."""
@@ -169,9 +178,8 @@ class ZygoteSpawner:
         return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, answer["cpu_s"])
 
     def close(self) -> None:
+        self._control.close()  # the zygote ends at end of file, and all it started with it
         if self._process is not None:
-            with contextlib.suppress(OSError):
-                self._control.close()  # the zygote ends at end of file, and all it started with it
             try:
                 self._process.wait(2)
             except subprocess.TimeoutExpired:

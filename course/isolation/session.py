@@ -26,6 +26,7 @@ __all__ = ["Connection", "LoadRefusedError", "RemoteFunction"]
 Kind = wire.Kind
 _CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
 _RECV = 1 << 12
+_SEND = 1 << 16
 _HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
 #: What the callbacks of one call may carry in all; a check may keep every argument it is given.
@@ -299,11 +300,12 @@ class Connection:
         rest: bytes | memoryview = frame
         while rest:
             try:
-                sent = self._sock.send(rest)
+                # In pieces: a write waits anew whenever the other side has read a little of it.
+                sent = self._sock.send(rest[:_SEND])
                 if sent == len(rest):
                     return
                 rest = memoryview(rest)[sent:]
-                self._check_deadline()  # one that reads slowly never lets a write block
+                self._check_deadline()
             except (BlockingIOError, TimeoutError):
                 self._check_deadline()
             except OSError:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import importlib.machinery
+import importlib.util
 import io
 import itertools
 import math
@@ -193,8 +194,8 @@ class Worker:
     def _load(self, files: dict[str, bytes], main: str) -> None:
         """Write the submission's files to the working folder and run its main module from memory.
 
-        ``compile`` gets the bytes, so byte-order marks, line endings and declared encodings are read as
-        Python itself reads them.
+        Byte-order marks, line endings and declared encodings are read as Python reads a file that it runs;
+        ``compile`` on bare bytes would let undeclared ones pass in comments on some versions.
         """
         for name, content in files.items():
             with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
@@ -202,7 +203,7 @@ class Worker:
         sys.path.insert(0, os.getcwd())  # noqa: PTH109 - pathlib is not worth its import here
         sys.meta_path.insert(0, _DeclaredImports(self._imports | {name[:-3] for name in files}))
         try:
-            code = compile(files[main], main, "exec", dont_inherit=True)
+            code = compile(importlib.util.decode_source(files[main]), main, "exec", dont_inherit=True)
         except (SyntaxError, ValueError, MemoryError, RecursionError, UnicodeError) as error:
             self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
             return

@@ -68,8 +68,10 @@ def _fork_on_request(config: dict[str, Any], imports: frozenset[str], worker: An
     control = socket.socket(fileno=config["control"])
     control.set_inheritable(False)
     program = lockdown.seccomp_program()
-    # One long list for all workers, or none where the root that was built holds only what is readable.
-    rules = lockdown.landlock_ruleset(config["readable"], [config["workdir"]]) if config["readable"] else -1
+    rules = -1
+    if config["readable"]:  # one long list for all workers
+        with open(config["readable"], encoding="utf-8") as handle:  # noqa: PTH123
+            rules = lockdown.landlock_ruleset(json.load(handle), [config["workdir"]])
     own_namespace = (
         os.open("/proc/self/ns/pid", os.O_RDONLY | os.O_CLOEXEC) if config["level"] == "L3" else -1
     )
@@ -131,9 +133,7 @@ def _become_worker(
             lockdown.become_unprivileged()
         lockdown.die_with_parent()
         lockdown.drop_capabilities()
-        own = lockdown.landlock_ruleset(
-            ["/"], [workdir]
-        )  # after the mounts: a rule is about one folder's inode
+        own = lockdown.landlock_ruleset(["/"], [workdir])  # after the mounts: rules are about inodes
         lockdown.landlock_apply(own)
         os.close(own)
         if rules >= 0:

@@ -70,7 +70,7 @@ class Body:
         self.force = self.force + np.asarray(force, dtype=float)
 
     def add_force_at(self, force: ArrayLike, arm: ArrayLike) -> None:
-        """Push at a point: ``arm`` (m, world axes) leads there from the centre of mass, which adds a torque."""
+        """Push at a point: ``arm`` (m, world axes) leads there from the centre, which adds a torque."""
         self.add_force(force)
         self.add_torque(cross(np.asarray(arm, dtype=float), np.asarray(force, dtype=float)))
 

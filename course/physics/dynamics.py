@@ -199,7 +199,9 @@ class HandPath:
         line = np.subtract(self.end, self.start)
         share, rate, change = smooth_share(np.asarray(t, dtype=float) / self.duration)
         place = np.asarray(self.start) + share[..., None] * line
-        return place, rate[..., None] * line / self.duration, change[..., None] * line / self.duration**2
+        velocity: Array = rate[..., None] * line / self.duration
+        acceleration: Array = change[..., None] * line / self.duration**2
+        return place, velocity, acceleration
 
     def joints(self, arm: TwoLinkArm, t: ArrayLike) -> tuple[Array, Array, Array]:
         """Angles (rad), velocities and accelerations of the joints that draw the path; shapes (..., 2).
@@ -210,11 +212,12 @@ class HandPath:
         place, velocity, acceleration = self.hand(t)
         q = arm.reach(place)
         j = arm.jacobian(q)
-        v = np.linalg.solve(j, velocity[..., None])[..., 0]
+        v: Array = np.asarray(np.linalg.solve(j, velocity[..., None])[..., 0], dtype=np.float64)
         far = arm.hand(q) - arm.elbow(q)
         # d(J v)/dt without the accelerations: every link's end falls inwards as it turns.
         inward = -(v[..., :1] ** 2) * arm.elbow(q) - (v[..., :1] + v[..., 1:]) ** 2 * far
-        return q, v, np.linalg.solve(j, (acceleration - inward)[..., None])[..., 0]
+        a: Array = np.asarray(np.linalg.solve(j, (acceleration - inward)[..., None])[..., 0], dtype=np.float64)
+        return q, v, a
 
 
 def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:
@@ -224,9 +227,9 @@ def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:
 
     Source: Flash and Hogan, J. Neuroscience 5, 1985 (minimum jerk).
     """
-    s = np.clip(np.asarray(s, dtype=float), 0.0, 1.0)
-    share = s**3 * (10 - 15 * s + 6 * s * s)
-    return share, 30 * s**2 * (1 - s) ** 2, 60 * s * (1 - s) * (1 - 2 * s)
+    x: Array = np.clip(np.asarray(s, dtype=float), 0.0, 1.0)
+    share = x**3 * (10 - 15 * x + 6 * x * x)
+    return share, 30 * x**2 * (1 - x) ** 2, 60 * x * (1 - x) * (1 - 2 * x)
 
 
 def _along(length: float, angle: Array) -> Array:

@@ -74,7 +74,7 @@ def turn_back(orientation: Array, vector: Array) -> Array:
 
 
 def kinetic_energy(inertia: ArrayLike, angular_velocity: Array) -> Array:
-    """Energy of the rotation, J: principal moments (3,) in kg m², angular velocity (..., 3) in the body's axes."""
+    """Energy of the rotation, J, shape (...): moments (3,) in kg m², angular velocity (..., 3), body axes."""
     return np.asarray(0.5 * np.sum(np.asarray(inertia, dtype=float) * angular_velocity**2, axis=-1))
 
 
@@ -171,7 +171,7 @@ _SIGNS = tuple(np.array(signs) for signs in ([-1.0, 1, 1, -1], [-1.0, -1, 1, 1],
 
 
 def _about(axis: int, angle: Array, q: Array, momentum: Array) -> tuple[Array, Array]:
-    """Turn a body by ``angle`` (..., 1) about one of its axes; its momentum stays put, so its axes see it turn back."""
+    """Turn a body by ``angle`` (..., 1) about one of its axes; they see its momentum turn back."""
     half = 0.5 * angle
     turned = np.cos(half) * q + np.sin(half) * (q[..., _ORDER[axis]] * _SIGNS[axis])
     c, s = np.cos(angle[..., 0]), np.sin(angle[..., 0])

@@ -164,7 +164,7 @@ class Simulator:
         self._pairs = [_Pair(i, j) for i in range(count) for j in range(i + 1, count) if contacts]
         self._pairs += [_Pair(i, None) for i in range(count) if ground is not None]
         self._first: dict[tuple[int, int | None], Array] = {
-            tuple(pair): np.full(self.batch, np.nan) for pair in self._pairs
+            (pair.a, pair.b): np.full(self.batch, np.nan) for pair in self._pairs
         }
         self._steps = 0
 
@@ -180,16 +180,16 @@ class Simulator:
             ValueError: the step does not divide the duration.
         """
         n = step_count(duration, self.h)
-        t = (self._steps + np.arange(n + 1)) * self.h
+        t: Array = (self._steps + np.arange(n + 1, dtype=np.float64)) * self.h
         samples = [self._sample()]
         for _ in range(n):
             self.step()
             samples.append(self._sample())
-        columns = [np.stack(column) for column in zip(*samples, strict=True)]
+        position, velocity, orientation, spin = (np.stack(column) for column in zip(*samples, strict=True))
         mass = np.array([body.mass for body in self.bodies])
         inertia = np.stack([body.inertia for body in self.bodies])
         first = {pair: times.copy() for pair, times in self._first.items()}
-        return Recording(t, *columns, mass, inertia, self.gravity, first)
+        return Recording(t, position, velocity, orientation, spin, mass, inertia, self.gravity, first)
 
     def step(self) -> None:
         """One step: fly, strike where surfaces met on the way, hold up what rests."""
@@ -252,7 +252,7 @@ class Simulator:
     def _contact(self, pair: _Pair) -> tuple[Contact, Body, Body | None]:
         a = self.bodies[pair.a]
         if pair.b is None:
-            assert self.ground is not None  # noqa: S101 - such a pair exists only with a ground
+            assert self.ground is not None
             return meet_plane(a, self.ground), a, None
         b = self.bodies[pair.b]
         return meet(a, b), a, b
@@ -274,7 +274,7 @@ class Simulator:
         return share, which
 
     def _meeting_with_ground(self, pair: _Pair, before: list[RigidBodyState], span: Array) -> Array:
-        """Where the gap, taken as a cubic in time, falls through 0; arrivals too slow to bounce do not count."""
+        """Where the gap, a cubic in time, falls through 0; arrivals too slow to bounce do not count."""
         contact, body, _ = self._contact(pair)
         arriving = body.state.velocity @ -contact.normal[(0,) * len(self.batch)]
         fast = (contact.gap < 0) & (-arriving > _REST * self.gravity * span)
@@ -317,7 +317,7 @@ class Simulator:
         self._note(pair, where, now)
 
     def _hold_up(self) -> None:
-        """Take the approach out of whatever lies on something, and the overlap; friction acts as it presses."""
+        """Take approach and overlap out of whatever lies on something; friction acts as it presses."""
         soft = Surface(0.0, self.surface.friction)
         for _ in range(_SUPPORT_ROUNDS):
             busy = False
@@ -335,7 +335,7 @@ class Simulator:
                 break
 
     def _note(self, pair: _Pair, where: Array, now: Array) -> None:
-        first = self._first[tuple(pair)]
+        first = self._first[pair.a, pair.b]
         fresh = where & np.isnan(first)
         first[fresh] = now[fresh]
 
@@ -365,7 +365,7 @@ class _Accelerations:
     engine: Simulator
 
     def __call__(self, t: float, q: Any, v: Any) -> Array:
-        return self.engine._accelerations(t, q, v)  # noqa: SLF001 - its other half
+        return self.engine._accelerations(t, q, v)
 
     def params(self) -> dict[str, Any]:
         return {"h": self.engine.h, "gravity": self.engine.gravity}

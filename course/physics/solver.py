@@ -122,7 +122,7 @@ class Chain:
     def _substep(
         self, x: list[float], y: list[float], vx: list[float], vy: list[float], h: float, iterations: int
     ) -> None:
-        """Fall, put the links right, read off the velocities. Plain lists: one link is too small for NumPy."""
+        """Fall, put the links right, read off velocities. Plain lists: one link is too small for NumPy."""
         old_x, old_y = x.copy(), y.copy()
         for i in range(1, len(x)):
             vy[i] -= self.g * h

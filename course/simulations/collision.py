@@ -126,7 +126,8 @@ def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> s
         else ""
     )
     return (
-        f"The surfaces touch at {met:.4g} s, when the centres are still {2 * p['radius']:g} m apart.{passing} "
+        f"The surfaces touch at {met:.4g} s, when the centres are still {2 * p['radius']:g} m apart."
+        f"{passing} "
         f"The blow keeps the momentum, whatever the restitution, and {kept}."
     )
 

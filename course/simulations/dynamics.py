@@ -50,7 +50,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     back = arm.inverse(planned, rates, arm.forward(planned, rates, torques))
     missed = float(np.linalg.norm(real.hand(run.q[-1]) - np.asarray(path.end)))
     rows = (
-        *_kinematic_rows(p, arm, path, planned, t),
+        *_kinematic_rows(p, arm, path, planned),
         *_inverse_rows(arm, planned[0], torques),
         Row("inverse(forward(torque)) - torque, at most", float(np.max(np.abs(back - torques))), "N m", 0.0,
             "the two undo each other"),
@@ -85,9 +85,7 @@ def _with_payload(arm: TwoLinkArm, mass: float) -> TwoLinkArm:
     return replace(arm, mass2=whole, centre2=centre, inertia2=inertia)
 
 
-def _kinematic_rows(
-    p: Mapping[str, Any], arm: TwoLinkArm, path: HandPath, planned: Array, t: Array
-) -> tuple[Row, Row]:
+def _kinematic_rows(p: Mapping[str, Any], arm: TwoLinkArm, path: HandPath, planned: Array) -> tuple[Row, Row]:
     hand = arm.hand(planned)
     line = np.subtract(path.end, path.start)
     length = float(np.linalg.norm(line))
@@ -142,14 +140,17 @@ def _headline(p: Mapping[str, Any], missed: float) -> str:
 def _finding(p: Mapping[str, Any], missed: float, torques: Array) -> str:
     peak = np.max(np.abs(torques), axis=0)
     plan = (
-        "Kinematics plans the joint angles of a straight line without any forces; inverse dynamics says which "
-        f"torques that takes, up to {peak[0]:.3g} N m at the shoulder and {peak[1]:.3g} N m at the elbow; "
+        "Kinematics plans the joint angles of a straight line without any forces; inverse dynamics says "
+        f"which torques that takes, up to {peak[0]:.3g} N m at the shoulder and {peak[1]:.3g} N m at the "
+        "elbow; "
         "forward dynamics says what those torques do. "
     )
     if p["payload"] > 0:
         return (
-            f"{plan}The real arm carries {p['payload']:g} kg that the plan does not know of, and its hand ends "
-            f"{missed:.2g} m from the goal: torques are only as right as the model, and nothing pulls it back: this is what feedback is for."
+            f"{plan}The real arm carries {p['payload']:g} kg that the plan does not know of, and its hand "
+            f"ends {missed:.2g} m from the goal. Torques are only as right as the model, and nothing here "
+            "pulls "
+            "the arm back: that is what feedback is for."
         )
     return f"{plan}The hand ends {missed:.1e} m from its goal, for here plan and arm are one model."
 
@@ -157,8 +158,8 @@ def _finding(p: Mapping[str, Any], missed: float, torques: Array) -> str:
 SIMULATION = Simulation(
     id="dynamics",
     title="Forward, inverse and kinematic: one arm, three questions",
-    question="The torques were computed for an arm of 2 kg with an empty hand. If it holds 10 g, how far from "
-    "its goal does it end: a millimetre, a centimetre, more?",
+    question="The torques were computed for an arm of 2 kg with an empty hand. If it holds 10 g, how far "
+    "from its goal does it end: a millimetre, a centimetre, more?",
     teaches="kinds of simulation; model complexity",
     parameters=(
         Parameter("start_x", 1.2, "m", "where the hand starts", low=-2.0, high=2.0),

@@ -64,9 +64,10 @@ def _run(p: Mapping[str, Any]) -> Result:
         settings=p,
         rows=tuple(rows),
         headline=f"Friction 10 % off moves the stop by {percent(wrong)}; this step by {percent(numeric)}",
-        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]), 2)} m at a friction of "
-        f"0.6 and {digits(float(stopping[_at(0.1)]), 2)} m at 0.1. If the true friction is 10 % lower than the "
-        f"modelled one, the block ends {percent(wrong)} further off; the step of {p['step']:g} s is worth "
+        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]), 2)} m at a "
+        f"friction of 0.6 and {digits(float(stopping[_at(0.1)]), 2)} m at 0.1. If the true friction is 10 % "
+        f"lower than the modelled one, the block ends {percent(wrong)} further off; the step of "
+        f"{p['step']:g} s is worth "
         f"{percent(numeric)}. Measure the floor before refining the step.",
         columns=(
             Column.of("coefficient", "1", _SWEEP),
@@ -122,8 +123,8 @@ def _drop(p: Mapping[str, Any], restitution: Array) -> Array:
 SIMULATION = Simulation(
     id="environment",
     title="Environment: the floor decides",
-    question="If the real friction is 10 % lower than the modelled one, how much further does the block slide? "
-    "And how small must the step be to make up for it?",
+    question="If the real friction is 10 % lower than the modelled one, how much further does the block "
+    "slide? And how small must the step be to make up for it?",
     teaches="environmental modelling",
     parameters=(
         Parameter("speed", 2.0, "m/s", "of the sliding block at the start", low=0.1, high=20.0),

@@ -47,8 +47,9 @@ def _run(p: Mapping[str, Any]) -> Result:
         rows=rows,
         headline=_headline(landed, bias, p["duration"]),
         finding=f"{when} Under constant gravity Verlet and Runge-Kutta are exact. Semi-implicit Euler moves "
-        f"with a velocity that is half a step too fast, so it is too low by g h t / 2, here {digits(bias)} m, and "
-        "explicit Euler as much too high: the sign tells which of the two lines an engine runs first.",
+        f"with a velocity that is half a step too fast, so it is too low by g h t / 2, here {digits(bias)} "
+        "m, "
+        "and explicit Euler as much too high: the sign tells which of the two lines an engine runs first.",
         columns=(
             Column.of("t", "s", record.t),
             Column.of("height", "m", record.position[:, 0, 2]),

@@ -81,7 +81,7 @@ def _energy_theory(p: Mapping[str, Any], z: float, n: int) -> dict[str, tuple[fl
 def _headline(worst: Mapping[str, float]) -> str:
     if worst["velocity_verlet"] > 1.0:
         return "Beyond h ω = 2 even the symplectic methods blow up"
-    return "Explicit Euler's energy grows and grows; that of the symplectic methods does not"
+    return "Explicit Euler's energy keeps growing; the symplectic methods' does not"
 
 
 def _finding(p: Mapping[str, Any], rows: list[Row], worst: Mapping[str, float]) -> str:
@@ -95,10 +95,12 @@ def _finding(p: Mapping[str, Any], rows: list[Row], worst: Mapping[str, float]) 
         )
     return (
         f"At {p['duration']:g} s explicit Euler is off by {digits(off[0])} m and semi-implicit Euler by "
-        f"{digits(off[1])} m: the same two lines in another order. Explicit Euler's energy grows with every step, "
-        f"to {digits(1 + worst['explicit_euler'])} times what it was; semi-implicit Euler and Verlet stay within "
-        f"{percent(worst['semi_implicit_euler'])} and {percent(worst['velocity_verlet'])}, however long the run, "
-        f"and Runge-Kutta, at {percent(worst['rk4'])}, loses a little for ever."
+        f"{digits(off[1])} m: the same two lines in another order. Explicit Euler's energy grows with every "
+        f"step, to {digits(1 + worst['explicit_euler'])} times what it was; semi-implicit Euler and Verlet "
+        "stay "
+        f"within {percent(worst['semi_implicit_euler'])} and {percent(worst['velocity_verlet'])}, however "
+        "long "
+        f"the run, and Runge-Kutta, at {percent(worst['rk4'])}, loses a little for ever."
     )
 
 

@@ -112,7 +112,8 @@ def _headline(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     if math.isnan(far.simulated):
         return f"Still in the air after {p['duration']:g} s"
     if p["drag"] > 0 and far.theory:
-        return f"Air takes {percent(1 - far.simulated / far.theory)} of the range: the model matters, not the step"
+        lost = percent(1 - far.simulated / far.theory)
+        return f"Air takes {lost} of the range: the model matters, not the step"
     return f"Up to {top:.4g} m, down again {far.simulated:.5g} m away, as theory says"
 
 
@@ -126,8 +127,8 @@ def _finding(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     )
     if p["drag"] > 0 and far.theory:
         return (
-            f"{flight} The theory beside it knows no air and is {far.theory - far.simulated:.3g} m out at the "
-            "landing. No smaller step repairs that: the model is what is missing."
+            f"{flight} The theory beside it knows no air and is {far.theory - far.simulated:.3g} m out at "
+            "the landing. No smaller step repairs that: the model is what is missing."
         )
     if p["method"] in ("explicit_euler", "semi_implicit_euler"):
         return f"{flight} What is missing from theory is this method's error, and it shrinks with the step."

@@ -126,8 +126,9 @@ def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> s
     )
     return (
         f"{axis} No torque acts, so the energy must stay: explicit Euler gains "
-        f"{percent(float(drifts['explicit_euler'][-1]))} in {p['duration']:g} s and stretches the quaternion, "
-        f"while split rotations stay within {percent(float(np.max(np.abs(drifts['split']))))} and keep the "
+        f"{percent(float(drifts['explicit_euler'][-1]))} in {p['duration']:g} s and stretches the "
+        f"quaternion, while split rotations stay within {percent(float(np.max(np.abs(drifts['split']))))} "
+        "and keep the "
         "angular momentum to round-off."
     )
 

@@ -42,9 +42,10 @@ def _run(p: Mapping[str, Any]) -> Result:
         rows=tuple(rows),
         headline=f"{tall} boxes need {needed[tall]} iterations to reach {percent(tolerance)}, "
         f"{short} need {needed[short]}",
-        finding=f"After {last} iterations from nothing the ground under {boxes} boxes feels {percent(done)} of "
-        f"their weight. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the number grows "
-        "like the square of the height, because each iteration carries news only from one contact to the next. "
+        finding=f"After {last} iterations from nothing the ground under {boxes} boxes feels {percent(done)} "
+        f"of their weight. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the "
+        "number grows like the square of the height, for the news of a weight spreads from contact to "
+        "contact. "
         "Engines begin from the last step's answer instead, which is why a stack that stands still stays up.",
         columns=(
             Column.of("iteration", "1", np.arange(last + 1)),

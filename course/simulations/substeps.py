@@ -41,8 +41,9 @@ def _run(p: Mapping[str, Any]) -> Result:
         settings=p,
         rows=rows,
         headline=f"Same work: small steps stretch the chain {better} less than iterations do",
-        finding=f"Every variant sweeps over the chain {work} times a frame. One step with {work} iterations lets a "
-        f"link stretch by {digits(one, 2)} of its length, {work} steps with one iteration by {digits(many, 2)}: "
+        finding=f"Every variant sweeps over the chain {work} times a frame. One step with {work} iterations "
+        f"lets a link stretch by {digits(one, 2)} of its length, {work} steps with one iteration by "
+        f"{digits(many, 2)}: "
         "a small step makes a small mess, and the next one starts from where it was cleaned up.",
         columns=(
             Column.of("t", "s", h * np.arange(n + 1)),

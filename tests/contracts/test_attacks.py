@@ -290,24 +290,15 @@ def _state(entry: Path) -> str:
 
 def _files_left(arena: Arena) -> list[str]:
     """What an attack wrote anywhere but in its own folder; all of them use one prefix."""
-    folders = [
-        "/tmp",
-        "/var/tmp",
-        "/dev/shm",
-        "/",
-        "/usr/lib",
-        str(ROOT),
-        str(ROOT / "tests"),
-        str(Path.home()),
+    own = [
+        Path(os.__file__).parent,
+        Path(np.__file__).parent,
+        Path(np.__file__).parents[1],
+        arena.secret.parent,
     ]
-    folders += [str(arena.secret.parent), str(Path(np.__file__).parent), str(Path(np.__file__).parents[1])]
-    folders += [os.path.dirname(os.__file__), str(Path.cwd())]
-    return [
-        f"{folder}/{name}"
-        for folder in folders
-        for name in os.listdir(folder)
-        if name.startswith("course_attack")
-    ]
+    shared = [Path(name) for name in ("/tmp", "/var/tmp", "/dev/shm", "/", "/usr/lib")]
+    folders = {*own, *shared, ROOT, ROOT / "tests", Path.home(), Path.cwd()}
+    return [str(path) for folder in folders for path in folder.glob("course_attack*")]
 
 
 def test_every_attack_has_an_entry_and_says_what_it_tries() -> None:

@@ -13,5 +13,5 @@ def max_stable_step(step, omega):
     if radius(z) <= 1 + 1e-8:
         return math.inf
     while z > 0.05 and radius(z) > 1 + 1e-8:
-        z -= 0.01
+        z *= 0.996
     return z / omega if z > 0.05 else 0.0

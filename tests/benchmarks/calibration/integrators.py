@@ -126,8 +126,8 @@ def report(options, variants, mutants, failures, checks, used, caught, failed_by
         f"{options.mutant_seeds}; verdicts that are not as declared: {failures}. Written by "
         "`tests/benchmarks/calibration/integrators.py`.",
         "",
-        "Share of the tolerance used: below 1 passes; a dash is decided without a number. `its mutants` are those "
-        "that name the check; `fail it` counts all that do.",
+        "Share of the tolerance used: below 1 passes, a dash was decided without a number. `its mutants` "
+        "are those that name the check; `fail it` counts all that do.",
         "",
         "| check | points | correct, at most | its mutants, at least | fail it |",
         "|---|---|---|---|---|",

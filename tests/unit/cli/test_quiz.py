@@ -170,10 +170,11 @@ def test_another_seed_begins_anew(quiz, bank, types):
 
 
 def test_a_retake_asks_in_other_variants(quiz, bank, types):
-    types(*key(bank).values())
-    assert quiz("take", "--seed", str(SEED)).code == 0
-    again = quiz("take", "--questions", "--json").json["seed"]
-    assert all(bank.variant(name, again) != bank.variant(name, SEED) for name in bank.ids)
+    for seed in (SEED, 3):
+        types(*key(bank, seed=seed).values())
+        assert quiz("take", "--seed", str(seed)).code == 0
+        again = quiz("take", "--questions", "--json").json["seed"]
+        assert all(bank.variant(name, again) != bank.variant(name, seed) for name in bank.ids)
 
 
 def test_without_a_terminal_nothing_is_asked(quiz):

@@ -96,6 +96,8 @@ def test_every_case_of_numbers_is_reached_by_some_seed(bank: Bank) -> None:
         for posed in cases(bank, "numerical-integration", variant.id)
     }
     assert prompts == possible
+    (document,) = [entry for entry in bank.documents if entry.value.id == "numerical-integration"]
+    assert len(possible) == sum(variant.cases for variant in document.value.variant)
 
 
 def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank: Bank) -> None:

@@ -86,6 +86,14 @@ def test_the_first_answer_counts_and_nothing_after_the_end(tmp_path: Path, bank:
     assert history(store) == before
 
 
+def test_of_two_answers_to_one_question_the_first_counts(tmp_path: Path, bank: Bank) -> None:
+    """Two terminals may go on with the same attempt."""
+    store = Store(tmp_path / "p.sqlite")
+    take(store, bank, "one", 5, finish=False)
+    store.append(progress.ANSWER, "sums", progress.answer_data("one", "none"))
+    assert history(store).attempts[0].answers == attempt(bank, 5)["answers"]
+
+
 def test_of_one_seed_the_first_attempt_counts_and_of_those_the_best(tmp_path: Path, bank: Bank) -> None:
     store = Store(tmp_path / "p.sqlite")
     take(store, bank, "one", 5, wrong=1)

@@ -1,0 +1,345 @@
+"""The trusted end of the wire: what it believes of a worker, and how long it waits for one.
+
+The worker here is a script of bytes sent over a socket pair, so each lie can be told by itself.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import struct
+import threading
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.levels import Exit
+from course.isolation.session import Connection, LoadRefusedError, RemoteFunction
+from course.isolation.wire import Codec, Kind
+from course.physics import systems
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_SOURCE = b"def f(x):\n    return x\n\nlast = 1\n"
+
+
+class Liar:
+    """A spawner and the worker it starts: a thread that sends what it is told to, then waits to be ended."""
+
+    level = "L1"
+
+    def __init__(self, *frames: bytes, script: Callable[[socket.socket], None] | None = None) -> None:
+        self._frames = frames
+        self._script = script
+        self.printed = ""
+
+    def spawn(self) -> Liar:
+        self.sock, self._theirs = socket.socketpair()
+        self._thread = threading.Thread(target=self._play, daemon=True)
+        self._thread.start()
+        return self
+
+    def _play(self) -> None:
+        try:
+            for frame in self._frames:
+                self._theirs.sendall(frame)
+            if self._script is not None:
+                self._script(self._theirs)
+        except OSError:
+            pass
+
+    def output(self) -> str:
+        return self.printed
+
+    def finish(self) -> Exit:
+        for end in (self.sock, self._theirs):
+            with contextlib.suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)  # wakes the thread, which closing alone would not
+            end.close()
+        return Exit(0, 0)
+
+
+READY = Codec().encode(Kind.READY, None)
+LOADED = Codec().encode(Kind.LOADED, ["f", "g"])
+
+
+def _frame(kind: int, body: bytes) -> bytes:
+    return struct.pack("<IB", len(body) + 1, kind) + body
+
+
+def _value(kind: int, value: Any) -> bytes:
+    return Codec().encode(kind, value)
+
+
+def _connect(*frames: bytes, script: Any = None, seconds: float = 2.0, loaded: bool = True) -> Connection:
+    begin = (READY, LOADED) if loaded else ()
+    liar = Liar(*begin, *frames, script=script)
+    return Connection(liar, {"a.py": _SOURCE}, "a.py", monotonic() + seconds)  # type: ignore[arg-type]
+
+
+def test_an_answer_is_taken_as_a_plain_value() -> None:
+    connection = _connect(_value(Kind.RESULT, [1.0, None]))
+    assert connection.call("f", 1) == [1.0, None]
+    connection.close()
+
+
+def test_a_name_that_was_not_loaded_is_missing_without_asking() -> None:
+    connection = _connect()
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("h")
+    assert caught.value.kind == "missing"
+    connection.close()
+
+
+# -- starting -------------------------------------------------------------------------------------------
+
+
+def test_a_lockdown_that_failed_is_our_fault() -> None:
+    with pytest.raises(IsolationError, match="no Landlock"):
+        _connect(_value(Kind.REFUSED, "LockdownError: no Landlock"), loaded=False)
+
+
+def test_a_worker_that_ends_before_it_is_ready_is_our_fault() -> None:
+    with pytest.raises(IsolationError, match="ready"):
+        _connect(script=lambda theirs: theirs.close(), loaded=False)
+
+
+def test_a_submission_cannot_claim_that_the_lockdown_failed() -> None:
+    claim = {"stage": "lockdown", "message": "no Landlock", "type": "LockdownError"}
+    with pytest.raises(LoadRefusedError) as caught:
+        _connect(READY, _value(Kind.REFUSED, claim), loaded=False)
+    assert caught.value.stage == "import"
+
+
+def test_time_to_start_is_not_taken_from_the_submission() -> None:
+    def late(theirs: socket.socket) -> None:
+        threading.Event().wait(0.4)
+        theirs.sendall(READY + LOADED)
+
+    connection = _connect(script=late, seconds=0.2, loaded=False)
+    assert connection.functions == {"f", "g"}
+    connection.close()
+
+
+def test_loading_that_takes_too_long_is_the_submissions_timeout() -> None:
+    with pytest.raises(LoadRefusedError) as caught:
+        _connect(READY, loaded=False, seconds=0.2)
+    assert caught.value.stage == "timeout"
+
+
+# -- answers --------------------------------------------------------------------------------------------
+
+_BREACHES = {
+    "a kind that is the grader's": _value(Kind.CALL, None),
+    "ready again": READY,
+    "loaded again": LOADED,
+    "no length": struct.pack("<IB", 0, Kind.RESULT),
+    "too long": struct.pack("<IB", 0xFFFFFFFF, Kind.RESULT),
+    "not a value": _frame(Kind.RESULT, b"?"),
+    "systems in systems": _frame(Kind.RESULT, b"p" * 100_000),
+    "a seed": _frame(Kind.RESULT, b"g" + b"\0" * 8),
+    "a function that was not lent": _frame(Kind.RESULT, b"c" + struct.pack("<I", 99)),
+    "an unknown system": _frame(Kind.RESULT, b"p" + _value(0, "X")[5:] + _value(0, {})[5:]),
+    "a system of a million numbers": _frame(
+        Kind.RESULT, b"p" + _value(0, "Oscillator")[5:] + _value(0, {"omega": np.zeros(1 << 20)})[5:]
+    ),
+    "an exception that is no dict": _value(Kind.RAISED, [1]),
+    "a callback without number": _value(Kind.CALLBACK, []),
+    "a callback of number -1": _value(Kind.CALLBACK, [-1, None]),
+    "a callback of number True": _value(Kind.CALLBACK, [False, None]),
+    "a callback of an array": _value(Kind.CALLBACK, np.zeros(3)),
+    "a callback beyond those lent": _value(Kind.CALLBACK, [1, None]),
+    "keywords that are no dict": _value(Kind.CALLBACK, [0, 5]),
+}
+
+
+@pytest.mark.parametrize("frame", _BREACHES.values(), ids=_BREACHES.keys())
+def test_speaking_out_of_turn_ends_the_worker_and_nothing_else(frame: bytes) -> None:
+    connection = _connect(frame)
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f", lambda: 1)
+    assert caught.value.kind == "protocol"
+    assert not connection.alive
+
+
+_REPORTS = {
+    "arrays": {"type": "E", "message": "m", "frames": np.zeros(3), "bases": np.zeros(2), "line": 1.5},
+    "numbers": {"type": 1, "message": 2, "frames": 3, "bases": 4, "line": None},
+    "odd frames": {
+        "frames": [[["x"], 1, "f"], [np.zeros(2), 1, "f"], [1], 7, [{}, {}, {}]],
+        "bases": [[1], {}],
+    },
+    "text": {"frames": "text", "bases": "text", "line": True},
+    "nothing": {},
+}
+
+
+@pytest.mark.parametrize("report", _REPORTS.values(), ids=_REPORTS.keys())
+def test_a_report_of_an_exception_in_any_form_is_an_error_of_the_submission(report: Any) -> None:
+    connection = _connect(_value(Kind.RAISED, report))
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f")
+    assert caught.value.kind == "error"
+    assert caught.value.line is None
+    connection.close()
+
+
+@pytest.mark.parametrize(
+    ("line", "taken"), [(2, 2), (0, None), (5, None), (-1, None), (2**62, None), (True, None)]
+)
+def test_only_lines_that_the_file_has_are_believed(line: Any, taken: int | None) -> None:
+    for report in ({"line": line}, {"frames": [["a.py", line, "f"]]}):
+        connection = _connect(_value(Kind.RAISED, report))
+        with pytest.raises(StudentFailure) as caught:
+            connection.call("f")
+        assert caught.value.line == taken
+        connection.close()
+
+
+def test_a_traceback_shows_the_last_frames_of_the_students_file_only() -> None:
+    frames = [["/usr/lib/numpy.py", 1, "n"], *[["a.py", 1, "f"]] * 30_000, ["a.py", 2, "g\x1b[2J"]]
+    connection = _connect(_value(Kind.RAISED, {"type": "E", "frames": frames}))
+    start = monotonic()
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f")
+    assert monotonic() - start < 1.5
+    lines = caught.value.traceback.splitlines()
+    assert len(lines) <= 24
+    assert lines[-2:] == ["a.py:2 in g\\x1b[2J", "    return x"]
+    connection.close()
+
+
+def test_what_a_submission_says_cannot_steer_a_terminal() -> None:
+    connection = _connect(
+        _value(Kind.RAISED, {"type": "\x1b[2J", "message": "\x9b\u202e\r\n", "bases": ["\x07"]})
+    )
+    connection._handle.printed = "\x1b[1A100/100"  # type: ignore[attr-defined]
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f")
+    assert (caught.value.type, caught.value.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\n")
+    assert connection.output() == "\\x1b[1A100/100"
+    connection.close()
+    assert connection.output() == "\\x1b[1A100/100"
+
+
+def test_printable_text_stays_as_it_is() -> None:
+    text = "naïve 数 Ω → 😀\n\tend"
+    assert printable(text) == text
+    assert printable("a\x00b") == "a\\x00b"
+    assert printable("abc", 2) == "ab"
+
+
+# -- callbacks ------------------------------------------------------------------------------------------
+
+
+def test_functions_are_evaluated_here_and_counted_here() -> None:
+    seen: list[Any] = []
+    connection = _connect(_value(Kind.CALLBACK, [0, None, 2.0]), _value(Kind.RESULT, 1))
+    assert connection.call("f", seen.append) == 1
+    assert seen == [2.0]
+    connection.close()
+
+
+def test_more_data_than_any_solution_needs_ends_a_call() -> None:
+    kept: list[Any] = []
+    connection = _connect(*[_value(Kind.CALLBACK, [0, None, np.zeros(1 << 18)])] * 20, _value(Kind.RESULT, 1))
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f", kept.append)
+    assert caught.value.kind == "protocol"
+    assert sum(array.nbytes for array in kept) <= 18 << 20
+
+
+def test_each_call_may_use_the_allowance_anew() -> None:
+    frames = [_value(Kind.CALLBACK, [0, None, np.zeros(1 << 20)]), _value(Kind.RESULT, 1)] * 4
+    connection = _connect(*frames)
+    assert [connection.call("f", lambda array: None) for _ in range(4)] == [1] * 4
+    connection.close()
+
+
+def test_a_refusal_of_ours_outweighs_what_came_of_it() -> None:
+    def refuses(_: Any) -> None:
+        raise AssertionError("not a vector")
+
+    connection = _connect(_value(Kind.CALLBACK, [0, None, 1]), _value(Kind.RESULT, 5))
+    with pytest.raises(AssertionError, match="not a vector"):
+        connection.call("f", refuses)
+    connection.close()
+
+
+def test_calling_each_other_across_the_wire_has_an_end() -> None:
+    frames = [
+        _frame(Kind.CALLBACK, _value(0, [0, None])[5:-1].replace(b"l\2", b"l\3", 1) + b"N" + b"w\0\0\0\0")
+    ] * 20
+    connection = _connect(*frames)
+
+    def again(function: RemoteFunction) -> Any:
+        return function(1.0)
+
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f", again)
+    assert caught.value.kind == "protocol"
+
+
+def test_systems_and_functions_of_the_student_arrive_as_what_they_are() -> None:
+    body = b"l\2\0\0\0w\7\0\0\0p" + _value(0, "Oscillator")[5:] + _value(0, {"omega": 2.0})[5:]
+    connection = _connect(_frame(Kind.RESULT, body))
+    function, system = connection.call("f")
+    assert isinstance(function, RemoteFunction)
+    assert function.number == 7
+    assert system == systems.Oscillator(2.0)
+    connection.close()
+
+
+@pytest.mark.parametrize("answer", [None, [1], [1, [2], 1], [1, [], True], np.zeros((3, 1)), {"a": 1}])
+def test_an_inspection_in_another_form_is_a_breach(answer: Any) -> None:
+    connection = _connect(_value(Kind.RESULT, answer))
+    with pytest.raises(StudentFailure) as caught:
+        connection.inspect("f", 2)
+    assert caught.value.kind == "protocol"
+
+
+# -- deadlines ------------------------------------------------------------------------------------------
+
+
+def _trickle(theirs: socket.socket) -> None:
+    for byte in _value(Kind.RESULT, [0.5] * 500):
+        theirs.sendall(bytes([byte]))
+        threading.Event().wait(0.005)
+
+
+def _endless_callbacks(theirs: socket.socket) -> None:
+    while True:
+        theirs.sendall(_value(Kind.CALLBACK, [0, None]))
+        theirs.recv(100)
+
+
+def _slow_reader(theirs: socket.socket) -> None:
+    theirs.sendall(_value(Kind.CALLBACK, [0, None]))
+    while theirs.recv(8192):
+        threading.Event().wait(0.01)
+
+
+_HANGS: dict[str, Any] = {
+    "silence": lambda theirs: threading.Event().wait(1),
+    "half a header": lambda theirs: theirs.sendall(b"\x05\0\0"),
+    "half a frame": lambda theirs: theirs.sendall(struct.pack("<IB", 500, Kind.RESULT) + b"l"),
+    "a trickle": _trickle,
+    "endless callbacks": _endless_callbacks,
+    "slow reading": _slow_reader,
+}
+
+
+@pytest.mark.parametrize("script", _HANGS.values(), ids=_HANGS.keys())
+def test_nothing_holds_the_grader_beyond_the_deadline(script: Any) -> None:
+    connection = _connect(script=script)
+    connection.deadline = monotonic() + 0.3
+    large = np.zeros(8 << 20)
+    start = monotonic()
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f", lambda: large)
+    assert caught.value.kind == "timeout"
+    assert monotonic() - start < 1.5

@@ -1,0 +1,307 @@
+"""Starting and ending workers: what they leave, how they fail, and that one end is not the end of all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from pathlib import Path
+from time import monotonic, sleep
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.isolation import forked, launch, probe
+from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.levels import LIMITS, Level
+from course.isolation.plain import ProcessSpawner
+from course.isolation.probe import open_spawner
+from course.isolation.session import Connection
+from course.isolation.spawn import spawner
+from course.isolation.view import View, view_for
+from tests.contracts.levels import require_level
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+linux_only = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+
+
+@pytest.fixture
+def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Temporary files go here, so that a test can see what is left."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return tmp_path
+
+
+def _connect(found: Any, source: str) -> Connection:
+    return Connection(found, {"a.py": source.encode()}, "a.py", monotonic() + 20)
+
+
+# -- cleaning up ----------------------------------------------------------------------------------------
+
+
+def test_a_tree_of_any_depth_is_removed(tmp_path: Path) -> None:
+    top = tmp_path / "top"
+    top.mkdir()
+    here = os.open(top, os.O_RDONLY)
+    for _ in range(1500):  # deeper than recursion goes, and longer than a path may be
+        os.mkdir("d" * 20, dir_fd=here)
+        below = os.open("d" * 20, os.O_RDONLY, dir_fd=here)
+        os.close(here)
+        here = below
+    os.close(here)
+    launch.remove_tree(top)
+    assert not top.exists()
+
+
+def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    kept.mkdir(mode=0o755)
+    (kept / "file").write_text("x", "utf-8")
+    top = tmp_path / "top"
+    (top / "a" / "b").mkdir(parents=True)
+    (top / "a" / "b" / "file").write_text("x", "utf-8")
+    (top / "a" / "link").symlink_to(kept)
+    (top / "-1").symlink_to(kept)
+    (top / "a" / "b").chmod(0o000)
+    (top / "a").chmod(0o300)
+    launch.remove_tree(top)
+    assert not top.exists()
+    assert (kept / "file").exists()
+    assert kept.stat().st_mode & 0o777 == 0o755
+
+
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_a_session_leaves_no_file(level: str, temporary: Path) -> None:
+    require_level(level)
+    found = spawner(Level(level), ("numpy",))
+    connection = _connect(
+        found, "import os\nos.mkdir('closed', 0o300)\nopen('closed/f', 'w').close()\nf = lambda: 1\n"
+    )
+    assert connection.call("f") == 1
+    connection.close()
+    found.close()
+    found.close()
+    assert list(temporary.iterdir()) == []
+
+
+# -- L1 -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def plain() -> Iterator[ProcessSpawner]:
+    found = ProcessSpawner(view_for(("numpy",)), ("numpy",), LIMITS)
+    yield found
+    found.close()
+
+
+def test_a_plain_process_answers_prints_and_ends(plain: ProcessSpawner) -> None:
+    connection = _connect(plain, "import os\ndef f():\n    print('hello')\n    return os.getpid()\n")
+    pid = connection.call("f")
+    assert pid != os.getpid()
+    assert connection.output() == "hello\n"
+    connection.close()
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+def test_a_plain_process_that_dies_is_a_crash_with_its_signal(plain: ProcessSpawner) -> None:
+    connection = _connect(plain, "import os\ndef f():\n    os.abort()\ndef g():\n    os._exit(7)\n")
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("f")
+    assert (caught.value.kind, caught.value.type) == ("crash", f"signal {int(signal.SIGABRT)}")
+    connection = _connect(plain, "import os\ndef g():\n    os._exit(7)\n")
+    with pytest.raises(StudentFailure) as caught:
+        connection.call("g")
+    assert caught.value.type == "exit code 7"
+
+
+@linux_only
+def test_what_a_plain_process_started_ends_with_it_even_if_it_left_first(plain: ProcessSpawner) -> None:
+    connection = _connect(
+        plain,
+        "import os, time\ndef f():\n    pid = os.fork()\n"
+        "    if pid == 0:\n        time.sleep(20)\n        os._exit(0)\n    return pid\n"
+        "def g():\n    os._exit(0)\n",
+    )
+    child = connection.call("f")
+    connection.deadline = monotonic() + 0.5  # the child holds the connection open
+    with pytest.raises(StudentFailure):
+        connection.call("g")
+    end = monotonic() + 5
+    while _alive(child) and monotonic() < end:
+        sleep(0.01)
+    assert not _alive(child)
+
+
+def _alive(pid: int) -> bool:
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()[0] != "Z"
+    return False
+
+
+@linux_only
+def test_output_replaced_by_a_pipe_does_not_hold_the_grader(plain: ProcessSpawner) -> None:
+    connection = _connect(
+        plain,
+        "import os\ndef f():\n    print('before')\n    os.unlink('.output')\n    os.mkfifo('.output')\n",
+    )
+    connection.call("f")
+    start = monotonic()
+    assert connection.output() == "before\n"
+    connection.close()
+    assert monotonic() - start < 1
+
+
+def test_the_next_plain_process_is_ready_before_it_is_needed(plain: ProcessSpawner) -> None:
+    first = plain.spawn()
+    waiting = plain._standby
+    first.finish()
+    second = plain.spawn()
+    assert second is waiting
+    second.finish()
+
+
+# -- L2 and L3 ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("level", ["L2", "L3"])
+def test_a_zygote_that_died_is_replaced(level: str) -> None:
+    require_level(level)
+    found: Any = spawner(Level(level), ("numpy",))
+    try:
+        assert _connect_once(found) == 1
+        found._process.kill()
+        found._process.wait()
+        assert _connect_once(found) == 1
+    finally:
+        found.close()
+
+
+def _connect_once(found: Any) -> int:
+    connection = _connect(found, "f = lambda: 1\n")
+    try:
+        return int(connection.call("f"))
+    finally:
+        connection.close()
+
+
+@pytest.mark.parametrize("level", ["L2", "L3"])
+def test_a_worker_whose_zygote_died_is_our_error_and_not_the_students(level: str) -> None:
+    require_level(level)
+    found: Any = spawner(Level(level), ("numpy",))
+    try:
+        connection = _connect(found, "import time\ndef f():\n    time.sleep(20)\n")
+        found._process.kill()
+        found._process.wait()
+        with pytest.raises(IsolationError):
+            connection.call("f")
+    finally:
+        found.close()
+
+
+@pytest.mark.parametrize("level", ["L2", "L3"])
+def test_a_layer_that_fails_stops_the_worker_before_any_stranger_runs(
+    level: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    require_level(level)
+    copy = launch.copy_flat_files
+
+    def sabotaged(target: Path) -> None:
+        copy(target)
+        with (target / "lockdown.py").open("a", encoding="utf-8") as handle:
+            handle.write("\n\ndef apply_seccomp(program):\n    raise LockdownError(0, 'sabotaged')\n")
+
+    monkeypatch.setattr(launch, "copy_flat_files", sabotaged)
+    found = spawner(Level(level), ("numpy",))
+    try:
+        with pytest.raises(IsolationError, match="sabotaged"):
+            _connect(found, "f = lambda: 1\n")
+    finally:
+        found.close()
+
+
+#: Each layer taken away, and what the canary then reports. That a test can tell proves that it tests.
+_LAYERS = [
+    ("L2", "landlock_apply", "read a file"),
+    ("L2", "apply_seccomp", "start a process"),
+    ("L3", "apply_seccomp", "start a process|open a"),
+]
+
+
+@pytest.mark.parametrize(("level", "layer", "escape"), _LAYERS)
+def test_the_canary_notices_a_layer_that_does_nothing(
+    level: str, layer: str, escape: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    require_level(level)
+    copy = launch.copy_flat_files
+
+    def without(target: Path) -> None:
+        copy(target)
+        with (target / "lockdown.py").open("a", encoding="utf-8") as handle:
+            handle.write(f"\n\ndef {layer}(*_):\n    pass\n")
+            handle.write("\n\ndef apply_limits(**_):\n    pass\n")  # or they would stop the fork as well
+
+    monkeypatch.setattr(launch, "copy_flat_files", without)
+    with pytest.raises(IsolationError, match=escape):
+        open_spawner(("numpy",), at_least=Level(level), at_most=Level(level))
+
+
+def test_without_bubblewrap_the_cause_and_the_advice_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    require_level("L2")
+    which = shutil.which
+    monkeypatch.setattr(shutil, "which", lambda name, *rest, **more: None if name == "bwrap" else which(name))
+    found = probe.probe()
+    assert found.level is Level.L2
+    assert "bubblewrap is not installed" in found.causes[0]
+    assert "bubblewrap" in found.advice[0]
+
+
+def test_a_bubblewrap_that_fails_is_a_cause_in_its_own_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    require_level("L2")
+    broken = tmp_path / "bwrap"
+    broken.write_text("#!/bin/sh\necho 'bwrap: setting up uid map: Permission denied' >&2\nexit 1\n", "utf-8")
+    broken.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    found = probe.probe()
+    assert found.level is Level.L2
+    assert "setting up uid map: Permission denied" in found.causes[0]
+    assert not any("disable" in advice or "sysctl" in advice for advice in found.advice)
+
+
+def test_a_list_of_readable_paths_may_be_longer_than_an_argument(monkeypatch: pytest.MonkeyPatch) -> None:
+    require_level("L2")
+    many = [Path(f"/usr/lib/no-such-library-of-a-large-installation-{k}") for k in range(4000)]
+    expanded = View.expanded
+    monkeypatch.setattr(View, "expanded", lambda self: [*expanded(self), *many])
+    found = spawner(Level.L2, ("numpy",))
+    try:
+        assert _connect_once(found) == 1
+    finally:
+        found.close()
+
+
+def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(level: Level, _: Any) -> None:
+        raise IsolationError(f"no {level} today")
+
+    monkeypatch.setattr(probe, "_proven", refuse)
+    with pytest.raises(IsolationError, match=r"L3: no L3 today; L2: no L2 today"):
+        open_spawner(("numpy",), at_least=Level.L2)
+
+
+def test_folders_above_a_path_are_named_outermost_first_and_none_inside_a_bind() -> None:
+    paths = (Path("/opt/a/lib"), Path("/opt/a/lib/python"), Path("/usr/lib"))
+    assert forked._folders_above(paths) == [Path("/opt"), Path("/opt/a"), Path("/usr")]
+
+
+def test_levels_are_ordered_from_weak_to_strong() -> None:
+    assert Level.L1 < Level.L2 < Level.L3

@@ -1,0 +1,90 @@
+"""What a submission may read: the interpreter and declared packages, whatever links lead elsewhere."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import course
+from course.isolation import view
+from course.isolation.failures import IsolationError
+from course.isolation.view import View, view_for
+
+
+def _view(readable: list[Path], masked: list[Path]) -> View:
+    return View(Path(sys.executable), Path(sys.prefix), tuple(readable), tuple(masked), ())
+
+
+def _readable_under(paths: list[Path], target: Path) -> bool:
+    """As Landlock decides: whether a listed path, links followed, is the target or above it."""
+    real = Path(os.path.realpath(target))
+    return any(real.is_relative_to(os.path.realpath(path)) for path in paths)
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """usr/lib holds a package folder to be masked; lib is a link to it, as on merged systems."""
+    packages = tmp_path / "usr" / "lib" / "python3" / "dist-packages"
+    packages.mkdir(parents=True)
+    (packages / "secret.py").write_text("secret", "utf-8")
+    (tmp_path / "usr" / "lib" / "libc.so").write_text("", "utf-8")
+    (tmp_path / "usr" / "lib" / "python3" / "os.py").write_text("", "utf-8")
+    (tmp_path / "lib").symlink_to("usr/lib")
+    return tmp_path
+
+
+def test_expanding_leaves_out_what_is_masked_and_keeps_the_rest(tree: Path) -> None:
+    paths = _view([tree / "usr" / "lib"], [tree / "usr/lib/python3/dist-packages"]).expanded()
+    assert not _readable_under(paths, tree / "usr/lib/python3/dist-packages/secret.py")
+    assert _readable_under(paths, tree / "usr/lib/python3/os.py")
+    assert _readable_under(paths, tree / "usr/lib/libc.so")
+
+
+def test_a_link_to_a_folder_does_not_uncover_what_is_masked_in_it(tree: Path) -> None:
+    paths = _view([tree / "lib"], [tree / "usr/lib/python3/dist-packages"]).expanded()
+    assert not _readable_under(paths, tree / "lib/python3/dist-packages/secret.py")
+    assert _readable_under(paths, tree / "lib/libc.so")
+
+
+def test_links_inside_a_folder_do_not_uncover_what_is_masked(tree: Path) -> None:
+    lib = tree / "usr" / "lib"
+    (lib / "shortcut").symlink_to("python3/dist-packages")
+    (lib / "file").symlink_to("python3/dist-packages/secret.py")
+    (lib / "around").symlink_to("..")
+    (lib / "python3" / "up").symlink_to(lib)
+    paths = _view([lib], [lib / "python3/dist-packages"]).expanded()
+    assert not _readable_under(paths, lib / "python3/dist-packages/secret.py")
+
+
+def test_a_readable_path_inside_a_masked_one_is_not_listed(tree: Path) -> None:
+    lib = tree / "usr" / "lib"
+    assert _view([lib / "python3" / "dist-packages"], [lib / "python3"]).expanded() == []
+
+
+def test_this_course_and_its_neighbours_are_not_readable() -> None:
+    found = view_for(("numpy",))
+    package = Path(course.__file__).parent
+    allowed = found.expanded()
+    for secret in (package / "grading" / "kit.py", package.parent / "solutions", Path(pytest.__file__)):
+        assert not _readable_under(allowed, secret), secret
+    assert _readable_under(allowed, Path(os.__file__))
+    assert _readable_under(allowed, Path(np.__file__))
+
+
+def test_a_course_chosen_by_the_environment_is_masked(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = tree / "usr" / "lib" / "course-content"
+    (chosen / "solutions").mkdir(parents=True)
+    monkeypatch.setenv("COURSE_CONTENT", str(chosen))
+    monkeypatch.setattr(view, "_SYSTEM", (str(tree / "usr" / "lib"),))
+    found = view_for(("numpy",))
+    assert chosen in found.masked
+    assert not _readable_under(found.expanded(), chosen / "solutions")
+
+
+def test_a_package_that_is_not_installed_is_our_error() -> None:
+    with pytest.raises(IsolationError, match="no_such_package"):
+        view_for(("no_such_package",))

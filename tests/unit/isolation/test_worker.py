@@ -1,0 +1,325 @@
+"""One submission in a worker, as a check meets it: at the strongest level that this machine has."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from course.isolation.failures import StudentFailure
+from course.isolation.levels import MAX_OUTPUT, Level, Limits
+from course.isolation.probe import open_spawner
+from course.isolation.session import Connection, LoadRefusedError
+from course.isolation.spawn import Spawner, spawner
+from course.physics import systems
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture(scope="module")
+def workers() -> Iterator[Spawner]:
+    found = open_spawner(("numpy",))
+    yield found
+    found.close()
+
+
+@pytest.fixture
+def load(workers: Spawner) -> Iterator[Any]:
+    opened: list[Connection] = []
+
+    def load(source: str | bytes, **files: str) -> Connection:
+        raw = source.encode() if isinstance(source, str) else source
+        everything = {"main.py": raw, **{f"{name}.py": text.encode() for name, text in files.items()}}
+        opened.append(Connection(workers, everything, "main.py", monotonic() + 20))
+        return opened[-1]
+
+    yield load
+    for connection in opened:
+        connection.close()
+
+
+def _failure(connection: Connection, *args: Any) -> StudentFailure:
+    with pytest.raises(StudentFailure) as caught:
+        connection.call(*args)
+    return caught.value
+
+
+# -- loading --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        b"\xef\xbb\xbfdef f():\n    return '\xc3\xa9'\n",
+        b"# -*- coding: latin-1 -*-\ndef f():\n    return '\xe9'\n",
+        b"def f():\r\n    return '\xc3\xa9'\r\n",
+        b"def f():\r    return '\xc3\xa9'\r",
+        b"# vim: set fileencoding=cp1252 :\ndef f():\n\treturn '\xe9'",
+    ],
+    ids=["byte-order mark", "latin-1", "CRLF", "CR", "no last newline"],
+)
+def test_source_is_read_as_python_reads_it(load: Any, source: bytes) -> None:
+    assert load(source).call("f") == "é"
+
+
+@pytest.mark.parametrize(
+    ("source", "line"),
+    [
+        (b"def f(:\n    pass\n", 1),
+        (b"x = 1\n\n  y = 2\n", 3),
+        (b"x = '\xff'\n", None),
+        (b"# coding: no-such-coding\nx = 1\n", None),
+        (b"x = 1\0\n", None),
+        (b"x = " + b"(" * 300 + b")" * 300, None),
+        ("\ufeff\ufeffx = 1".encode(), None),
+    ],
+    ids=["colon", "indent", "not UTF-8", "unknown coding", "NUL", "parentheses", "two marks"],
+)
+def test_source_that_python_cannot_read_is_refused_as_syntax(
+    load: Any, source: bytes, line: int | None
+) -> None:
+    with pytest.raises(LoadRefusedError) as caught:
+        load(source)
+    assert caught.value.stage == "syntax"
+    assert caught.value.failure.message
+    if line is not None:
+        assert caught.value.failure.line == line
+
+
+@pytest.mark.parametrize(
+    "source", ["1 / 0", "import sys; sys.exit(0)", "raise KeyboardInterrupt", "import pytest"]
+)
+def test_source_that_raises_is_refused_at_import_with_its_line(load: Any, source: str) -> None:
+    with pytest.raises(LoadRefusedError) as caught:
+        load(f"x = 1\n{source}\n")
+    assert caught.value.stage == "import"
+    assert caught.value.failure.line == 2
+
+
+def test_an_undeclared_import_says_what_is_allowed(load: Any) -> None:
+    with pytest.raises(LoadRefusedError) as caught:
+        load("import scipy.integrate\n")
+    assert "scipy" in caught.value.failure.message
+    assert "numpy" in caught.value.failure.message
+
+
+def test_the_whole_standard_library_can_be_imported_not_just_what_is_warm(load: Any) -> None:
+    connection = load(
+        "import asyncio, csv, ctypes, fractions, sqlite3, tempfile, unittest, xml.dom.minidom\n"
+        "import numpy.ma, numpy.testing\n"
+        "def f():\n    return float(fractions.Fraction(1, 4))\n"
+    )
+    assert connection.call("f") == 0.25
+
+
+def test_other_files_of_the_submission_can_be_imported(load: Any) -> None:
+    connection = load("from helper import g\n\ndef f():\n    return g()\n", helper="def g():\n    return 5\n")
+    assert connection.call("f") == 5
+
+
+def test_a_folder_to_write_to_is_there_and_small(load: Any, workers: Spawner) -> None:
+    connection = load(
+        "import os, tempfile\n"
+        "def f():\n    open('note', 'w').write('x')\n"
+        "    with tempfile.TemporaryFile() as t:\n        t.write(b'y')\n"
+        "    open(os.devnull, 'w').write('z')\n    return open('note').read()\n"
+        "def g():\n    open('big', 'wb').write(b'x' * (2 << 20))\n"
+    )
+    assert connection.call("f") == "x"
+    if workers.level != Level.L1:
+        assert _failure(connection, "g").type == "OSError"
+
+
+def test_only_callables_of_the_module_are_functions(load: Any) -> None:
+    connection = load("import math\nx = 1\nf = lambda: 1\nclass C:\n    pass\n")
+    assert {"f", "C"} <= connection.functions
+    assert "x" not in connection.functions
+
+
+# -- calls ----------------------------------------------------------------------------------------------
+
+
+def test_arguments_and_results_keep_their_types(load: Any) -> None:
+    connection = load(
+        "def f(*args, **kwargs):\n    return [list(args), kwargs, [type(a).__name__ for a in args]]\n"
+    )
+    args = [None, True, 3, 2.5, "é", [1, [2]], {"a": 1.0}]
+    value, kwargs, types = connection.call("f", *args, np.ones(2), key=(1, 2))
+    assert value[:-1] == args
+    assert value[-1].tolist() == [1.0, 1.0]
+    assert kwargs == {"key": [1, 2]}
+    assert types == ["NoneType", "bool", "int", "float", "str", "list", "dict", "ndarray"]
+
+
+def test_an_exception_says_where_in_the_students_file_it_arose(load: Any) -> None:
+    connection = load("def g(x):\n    return 1 / x\n\ndef f():\n    return g(0)\n")
+    failure = _failure(connection, "f")
+    assert (failure.kind, failure.type, failure.line) == ("error", "ZeroDivisionError", 2)
+    assert failure.is_a("ArithmeticError")
+    assert "main.py:5 in f" in failure.traceback
+    assert "return 1 / x" in failure.traceback
+
+
+def test_endless_recursion_is_an_error_and_the_next_call_works(load: Any) -> None:
+    connection = load("def f():\n    return f()\n\ndef g():\n    return 1\n")
+    assert _failure(connection, "f").type == "RecursionError"
+    assert connection.call("g") == 1
+
+
+@pytest.mark.parametrize("what", ["object()", "{1, 2}", "2**70", "[[...]]", "print"])
+def test_a_result_that_cannot_cross_is_named(load: Any, what: str) -> None:
+    connection = load(f"def f():\n    return {what}\n")
+    if what == "print":
+        assert callable(connection.call("f"))
+    else:
+        failure = _failure(connection, "f")
+        assert (failure.kind, failure.type) == ("protocol", "UnsupportedValue")
+
+
+def test_inspection_shows_changed_arguments_and_shared_memory(load: Any) -> None:
+    connection = load(
+        "import numpy as np\n"
+        "def changes(q):\n    q[0] = 9.0\n    return q.copy()\n"
+        "def shares(q):\n    return {'a': 1}, q[1:]\n"
+        "def clean(q):\n    return q * 2\n"
+    )
+    _, after, shared = connection.inspect("changes", np.zeros(2))
+    assert after[0].tolist() == [9.0, 0.0]
+    assert not shared
+    assert connection.inspect("shares", np.zeros(2))[2]
+    assert connection.inspect("clean", np.zeros(2))[1:] == ([pytest.approx([0.0, 0.0])], False)
+
+
+def test_functions_of_both_sides_can_call_each_other(load: Any) -> None:
+    connection = load("def f(call, n):\n    return call(lambda x: x + n, n)\n")
+    assert connection.call("f", lambda function, n: function(10.0) * n, 3) == 39.0
+
+
+def test_what_a_callback_raises_reaches_the_caller_as_a_value_error(load: Any) -> None:
+    connection = load(
+        "def f(call):\n    try:\n        call(1)\n"
+        "    except ValueError as error:\n        return str(error)\n"
+    )
+
+    def refuses(_: Any) -> None:
+        raise KeyError("no")
+
+    assert connection.call("f", refuses) == "KeyError: 'no'"
+
+
+def test_a_generator_crosses_as_a_seed_and_draws_the_same_again(load: Any) -> None:
+    connection = load("def f(rng):\n    return rng.random(4)\n")
+    first, second = (connection.call("f", np.random.default_rng(5)) for _ in range(2))
+    assert first.tolist() == second.tolist()
+    assert connection.call("f", np.random.default_rng(6)).tolist() != first.tolist()
+
+
+def test_right_hand_sides_run_beside_the_students_code(load: Any) -> None:
+    connection = load("def f(accel):\n    return [type(accel).__name__, accel(0.0, [2.0], [0.0])]\n")
+    name, value = connection.call("f", systems.Oscillator(3.0))
+    assert name == "Oscillator"
+    assert value.tolist() == [-18.0]
+
+
+def test_the_students_own_function_can_be_an_argument(load: Any) -> None:
+    connection = load("def g(x):\n    return x + 1\n\ndef f(fn, x):\n    return fn(x)\n")
+    assert connection.call("f", {"$function": "g"}, 1.0) == 2.0
+
+
+def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:
+    connection = load(
+        "def good(accel, t, q, v, h):\n    return q + h * v, v + h * accel(t, q, v)\n"
+        "def spoils(accel, t, q, v, h):\n    q += h * v\n    v += 1\n    return q, v\n"
+        "def bad(accel, t, q, v, h):\n    return q\n"
+        "def none(accel, t, q, v, h):\n    pass\n"
+    )
+    q, v = connection.march("good", systems.FreeFall(10.0), [0.0], [0.0], 0.0, 0.5, 2)
+    assert q.tolist() == [[0.0], [0.0], [-2.5]]
+    assert v.tolist() == [[0.0], [-5.0], [-10.0]]
+    assert connection.march("spoils", systems.FreeFall(10.0), [0.0], [1.0], 0.0, 1.0, 2)[1].tolist() == [
+        [1.0],
+        [2.0],
+        [3.0],
+    ]
+    assert connection.march("bad", systems.FreeFall(), [0.0, 0.0], [0.0, 0.0], 0.0, 1.0, 2)["step"] == 0
+    assert "NoneType" in connection.march("none", systems.FreeFall(), [0.0], [0.0], 0.0, 1.0, 2)["bad"]
+
+
+# -- output, memory, ends -------------------------------------------------------------------------------
+
+
+def test_prints_are_kept_up_to_a_limit_and_never_fail(load: Any) -> None:
+    connection = load(
+        "import sys\nprint('loaded')\ndef f():\n    print('é', file=sys.stderr)\n"
+        "    for _ in range(500):\n        print('x' * 1000)\n    return 1\n"
+    )
+    assert connection.call("f") == 1
+    printed = connection.output()
+    assert printed.startswith("loaded\né\n")
+    assert 60_000 < len(printed) <= MAX_OUTPUT
+    connection.close()
+    assert connection.output() == printed
+
+
+def test_memory_is_limited_and_running_out_is_named(load: Any, workers: Spawner) -> None:
+    if workers.level == Level.L1:
+        pytest.skip("L1 has no limit on memory")
+    connection = load(
+        "import numpy as np\ndef f():\n    return [np.empty(1 << 27) for _ in range(8)]\n"
+        "def g():\n    return 1\n"
+    )
+    assert _failure(connection, "f").kind == "memory"
+    assert connection.call("g") == 1
+
+
+@pytest.mark.parametrize(
+    "code", ["import os; os._exit(3)", "import os; os.abort()", "import ctypes; ctypes.string_at(0)"]
+)
+def test_a_crash_ends_one_worker_and_the_next_one_works(load: Any, code: str) -> None:
+    connection = load(f"def f():\n    {code}\n")
+    failure = _failure(connection, "f")
+    assert failure.kind == "crash"
+    assert not connection.alive
+    assert load("def f():\n    return 1\n").call("f") == 1
+
+
+def test_a_hang_ends_at_the_deadline(load: Any) -> None:
+    connection = load("import time\ndef f():\n    time.sleep(20)\n")
+    connection.deadline = monotonic() + 0.3
+    start = monotonic()
+    assert _failure(connection, "f").kind == "timeout"
+    assert monotonic() - start < 1.3
+
+
+def test_one_worker_sees_nothing_of_another(load: Any) -> None:
+    source = (
+        "import os, builtins, tempfile\n"
+        "def leave():\n    builtins.note = 1\n    open('note', 'w').close()\n    os.environ['NOTE'] = '1'\n"
+        "def look():\n    here, temporary = os.listdir('.'), os.listdir(tempfile.gettempdir())\n"
+        "    return [hasattr(builtins, 'note'), 'note' in here, 'NOTE' in os.environ, 'note' in temporary]\n"
+    )
+    connection = load(source)
+    connection.call("leave")
+    assert connection.call("look")[:3] == [True, True, True]
+    connection.close()
+    assert load(source).call("look") == [False] * 4
+
+
+def test_limits_are_those_that_were_asked_for(workers: Spawner) -> None:
+    if workers.level == Level.L1:
+        pytest.skip("L1 has no limits")
+    small = spawner(Level(workers.level), ("numpy",), limits=Limits(memory=1 << 29, descriptors=16))
+    try:
+        source = (
+            b"import numpy as np\ndef f():\n    return np.zeros(1 << 26).size\n"
+            b"def g():\n    return [open('/dev/zero') for _ in range(20)]\n"
+        )
+        connection = Connection(small, {"main.py": source}, "main.py", monotonic() + 20)
+        assert _failure(connection, "f").kind == "memory"
+        assert _failure(connection, "g").type == "OSError"
+        connection.close()
+    finally:
+        small.close()

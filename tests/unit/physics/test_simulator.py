@@ -1,0 +1,260 @@
+"""The engine against closed forms: flight, impact, rest, sliding, rolling, and many runs at once."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from course.physics.body import Body
+from course.physics.contact import Surface
+from course.physics.integrators import STEPPERS
+from course.physics.invariants import convergence_order
+from course.physics.simulator import Recording, Simulator, step_count
+from course.physics.state import RigidBodyState
+
+few = settings(max_examples=25, deadline=None)
+
+
+def ball(position: object, velocity: object = (0, 0, 0), **options: object) -> Body:
+    mass, radius = float(options.pop("mass", 1.0)), float(options.pop("radius", 0.5))  # type: ignore[arg-type]
+    return Body.sphere(mass, radius, RigidBodyState.of(position, velocity), **options)  # type: ignore[arg-type]
+
+
+def head_on(e: float, v1: float = 2.0, v2: float = -2.0, h: float = 0.01, **masses: float) -> Recording:
+    bodies = [
+        ball([-5, 0, 0], [v1, 0, 0], mass=masses.get("m1", 1.0)),
+        ball([5, 0, 0], [v2, 0, 0], mass=masses.get("m2", 1.0)),
+    ]
+    return Simulator(bodies, h=h, gravity=0.0, ground=None, surface=Surface(e)).run(5.0)
+
+
+# -- counting steps ----------------------------------------------------------------------------------------
+
+
+def test_a_duration_just_short_of_whole_steps_loses_none() -> None:
+    assert step_count(0.29, 0.01) == 29
+    assert step_count(0.0, 0.01) == 0
+
+
+def test_a_step_that_does_not_divide_is_refused_with_values_that_would() -> None:
+    with pytest.raises(ValueError, match=r"does not divide 5 s.*4\.8 s and 5\.1 s.*0\.294118 s or 0\.3125 s"):
+        step_count(5.0, 0.3)
+
+
+@pytest.mark.parametrize(("duration", "h"), [(1.0, 0.0), (1.0, -1.0), (1.0, math.nan), (1.0, math.inf)])
+def test_a_step_that_is_no_step_is_refused(duration: float, h: float) -> None:
+    with pytest.raises(ValueError, match="step must be a positive"):
+        step_count(duration, h)
+
+
+@pytest.mark.parametrize("duration", [-1.0, math.nan, math.inf])
+def test_a_duration_that_is_none_is_refused(duration: float) -> None:
+    with pytest.raises(ValueError, match="duration must be"):
+        step_count(duration, 0.1)
+
+
+@given(st.integers(1, 5000), st.floats(1e-4, 1.0))
+def test_values_named_as_near_do_divide(n: int, h: float) -> None:
+    duration = (n + 0.37) * h
+    with pytest.raises(ValueError, match="does not divide") as caught:
+        step_count(duration, h)
+    steps = str(caught.value).split("or a step of ")[1].removesuffix(" s.").split(" s or ")
+    assert all(abs(duration / float(step) - round(duration / float(step))) < 1e-2 for step in steps)
+
+
+def test_times_are_multiples_of_the_step_and_the_start_is_recorded() -> None:
+    record = Simulator([ball([0, 0, 10])], h=0.01).run(5.0)
+    assert record.t[0] == 0.0
+    assert record.t[-1] == 5.0
+    assert record.position.shape == (501, 1, 3)
+    assert record.position[0, 0, 2] == 10.0
+
+
+# -- flight and ground -------------------------------------------------------------------------------------
+
+
+@few
+@given(st.floats(0.5, 20), st.floats(-5, 5), st.sampled_from(["velocity_verlet", "rk4"]))
+def test_a_ball_meets_the_ground_when_the_closed_form_says(height: float, up: float, method: str) -> None:
+    body = Body(1.0, RigidBodyState.of([0, 0, height], [1, 0, up]))
+    record = Simulator([body], h=0.05, stepper=STEPPERS[method]).run(4.0)
+    due = (up + math.sqrt(up**2 + 2 * 9.81 * height)) / 9.81
+    assume(due < 4.0)
+    assert record.ground_time[0] == pytest.approx(due, abs=1e-10)
+
+
+def test_the_chapters_ball_lands_after_1_428_s_and_stays() -> None:
+    record = Simulator([Body(1.0, RigidBodyState.of([0, 0, 10]))], h=0.01, surface=Surface(0.0)).run(2.0)
+    assert record.ground_time[0] == pytest.approx(1.4278431, abs=1e-7)
+    assert record.position[-1, 0].tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_throw_from_the_ground_does_not_land_where_it_starts() -> None:
+    record = Simulator([Body(1.0, RigidBodyState.of(np.zeros(3), [10, 0, 10]))], h=0.01).run(3.0)
+    assert record.ground_time[0] == pytest.approx(2.0387360, abs=1e-7)
+
+
+@few
+@given(st.floats(0.3, 0.95), st.floats(0.5, 5))
+def test_a_ball_rebounds_to_e_squared_of_its_height(e: float, drop: float) -> None:
+    record = Simulator([ball([0, 0, 0.5 + drop])], h=0.01, surface=Surface(e)).run(8.0)
+    fall = math.sqrt(2 * drop / 9.81)
+    first = (record.t > fall) & (record.t < fall * (1 + 2 * e))
+    i = int(np.argmax(first))
+    top = record.position[i, 0, 2] - 0.5 + record.velocity[i, 0, 2] ** 2 / (2 * 9.81)
+    assert top == pytest.approx(e**2 * drop, rel=1e-9)
+    assert np.all(np.diff(record.energy()) <= 1e-9)
+    assert record.position[:, 0, 2].min() >= 0.5 - 1e-12
+
+
+def test_an_elastic_ball_bounces_for_ever_at_its_own_height() -> None:
+    record = Simulator([ball([0, 0, 1.5])], h=0.01).run(20.0)
+    np.testing.assert_allclose(record.energy(), record.energy()[0], rtol=1e-12)
+
+
+def test_a_ball_at_rest_stays_at_rest() -> None:
+    record = Simulator([ball([0, 0, 0.5])], h=0.01, surface=Surface(0.5, 0.5)).run(1.0)
+    assert np.all(record.position[:, 0] == [0.0, 0.0, 0.5])
+
+
+def test_five_boxes_stacked_stay_where_they_were_put() -> None:
+    bodies = [ball([0, 0, 0.5 + k], spins=False) for k in range(5)]
+    record = Simulator(bodies, h=0.01, surface=Surface(0.0)).run(1.0)
+    assert np.max(np.abs(record.position - record.position[0])) < 0.01
+
+
+@few
+@given(st.floats(0.5, 4), st.floats(0.1, 1.0))
+def test_a_sliding_block_stops_where_the_closed_form_says_but_for_half_a_step(
+    speed: float, mu: float
+) -> None:
+    body = ball([0, 0, 0.5], [speed, 0, 0], spins=False)
+    record = Simulator([body], h=0.005, surface=Surface(0.0, mu)).run(5.0)
+    assume(speed / (mu * 9.81) < 5.0)
+    exact = speed**2 / (2 * mu * 9.81)
+    # Braking acts at the end of a step, so the block has kept its speed half a step too long.
+    assert record.position[-1, 0, 0] == pytest.approx(exact + speed * 0.005 / 2, abs=0.1 * speed * 0.005)
+
+
+def test_a_ball_thrown_flat_ends_rolling_at_five_sevenths_of_its_speed() -> None:
+    record = Simulator([ball([0, 0, 0.5], [2, 0, 0])], h=0.01, surface=Surface(0.0, 0.3)).run(2.0)
+    assert record.velocity[-1, 0, 0] == pytest.approx(10 / 7, rel=1e-9)
+    assert record.angular_velocity[-1, 0, 1] == pytest.approx(10 / 7 / 0.5, rel=1e-9)
+
+
+# -- collisions --------------------------------------------------------------------------------------------
+
+
+def test_the_chapters_pair_touches_at_2_25_s_and_ends_at_six_metres() -> None:
+    record = head_on(1.0)
+    assert record.first_contact[0, 1] == pytest.approx(2.25, abs=1e-12)
+    np.testing.assert_allclose(record.position[-1, :, 0], [-6.0, 6.0], atol=1e-12)
+
+
+@few
+@given(st.floats(0.1, 10), st.floats(0.1, 10), st.floats(0, 1), st.floats(1, 500), st.floats(-500, -1))
+def test_a_collision_keeps_momentum_and_restitution_at_any_speed(
+    m1: float, m2: float, e: float, v1: float, v2: float
+) -> None:
+    record = head_on(e, v1, v2, 0.05, m1=m1, m2=m2)  # up to 50 m a step: nothing tunnels
+    v = record.velocity[-1, :, 0]
+    assert record.first_contact[0, 1] == pytest.approx(9.0 / (v1 - v2), abs=1e-9)
+    assert v[1] - v[0] == pytest.approx(e * (v1 - v2), rel=1e-9, abs=1e-9)
+    momentum = record.momentum()[:, 0]
+    np.testing.assert_allclose(momentum, momentum[0], atol=1e-9 * (m1 * v1 - m2 * v2))
+
+
+@few
+@given(st.floats(-3, 3))
+def test_a_collision_is_the_same_seen_from_a_moving_train(train: float) -> None:
+    still, moving = head_on(0.7), head_on(0.7, 2.0 + train, -2.0 + train)
+    np.testing.assert_allclose(
+        moving.position[..., 0] - train * moving.t[:, None], still.position[..., 0], atol=1e-9
+    )
+
+
+def test_balls_that_graze_past_each_other_do_not_touch() -> None:
+    bodies = [ball([-5, 0, 0], [2, 0, 0]), ball([5, 1.001, 0], [-2, 0, 0])]
+    record = Simulator(bodies, h=0.01, gravity=0.0, ground=None).run(5.0)
+    assert math.isnan(record.first_contact[0, 1])
+    assert np.all(record.velocity[-1] == record.velocity[0])
+
+
+def test_contacts_may_be_switched_off_and_the_ground_stays() -> None:
+    bodies = [ball([-5, 0, 0.5], [2, 0, 0]), ball([5, 0, 0.5], [-2, 0, 0])]
+    record = Simulator(bodies, h=0.01, contacts=False).run(5.0)
+    np.testing.assert_allclose(record.position[-1, :, 0], [5.0, -5.0], atol=1e-12)
+    assert record.position[-1, 0, 2] == 0.5
+
+
+# -- forces, methods, batches ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("method", "order"), [("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)]
+)
+def test_a_spring_between_two_bodies_swings_with_the_order_of_the_method(method: str, order: int) -> None:
+    def spring(t: float, bodies: list[Body]) -> None:
+        pull = 4.0 * (bodies[1].state.position - bodies[0].state.position)
+        bodies[0].add_force(pull)
+        bodies[1].add_force(-pull)
+
+    errors, hs = [], [0.02, 0.01, 0.005]
+    for h in hs:
+        bodies = [Body(1.0, RigidBodyState.of([-1, 0, 0])), Body(2.0, RigidBodyState.of([1, 0, 0]))]
+        engine = Simulator(bodies, h=h, gravity=0.0, ground=None, stepper=STEPPERS[method], laws=[spring])
+        record = engine.run(1.3)
+        apart = record.position[-1, 1, 0] - record.position[-1, 0, 0]
+        errors.append(abs(apart - 2.0 * math.cos(math.sqrt(6.0) * 1.3)))
+        np.testing.assert_allclose(record.momentum(), 0.0, atol=1e-12)
+    assert convergence_order(hs, errors) == pytest.approx(order, abs=0.15)
+
+
+def test_a_law_may_twist_a_body() -> None:
+    def motor(t: float, bodies: list[Body]) -> None:
+        bodies[0].add_torque([0.0, 0.0, 0.1])
+
+    body = ball([0, 0, 5])
+    record = Simulator([body], h=0.01, gravity=0.0, ground=None, laws=[motor]).run(1.0)
+    # Torques are held over a step and read at its start, so the last of 100 steps is not yet in.
+    assert record.angular_velocity[-1, 0, 2] == pytest.approx(1.0, rel=0.011)
+
+
+def test_a_thousand_runs_at_once_are_a_thousand_runs() -> None:
+    rng = np.random.default_rng(3)
+    places = rng.uniform([-1, -1, 1], [1, 1, 5], (20, 3))
+    speeds = rng.normal(size=(20, 3))
+
+    def run(place: np.ndarray, speed: np.ndarray) -> Recording:
+        bodies = [ball(place, speed), ball([0, 0, 0.5])]
+        return Simulator(bodies, h=0.01, surface=Surface(0.6, 0.3)).run(2.0)
+
+    together = run(places, speeds)
+    assert together.position.shape == (201, 2, 20, 3)
+    for k in range(20):
+        alone = run(places[k], speeds[k])
+        np.testing.assert_allclose(together.position[:, :, k], alone.position, atol=1e-9)
+        np.testing.assert_allclose(together.ground_time[:, k], alone.ground_time, atol=1e-9)
+
+
+def test_surfaces_may_differ_from_run_to_run() -> None:
+    restitution = np.array([0.0, 0.5, 1.0])
+    record = Simulator([ball([0, 0, 1.5])], h=0.01, surface=Surface(restitution)).run(0.5)
+    met = math.sqrt(2 / 9.81)
+    expected = restitution * 9.81 * met - np.where(restitution > 0, 9.81 * (0.5 - met), 0.0)
+    np.testing.assert_allclose(record.velocity[-1, 0, :, 2], expected, atol=1e-9)
+
+
+def test_going_on_after_a_run_continues_the_clock() -> None:
+    engine = Simulator([ball([0, 0, 10])], h=0.01)
+    engine.run(1.0)
+    assert engine.run(0.5).t[[0, -1]].tolist() == [1.0, 1.5]
+
+
+def test_an_engine_without_bodies_is_refused() -> None:
+    with pytest.raises(ValueError, match="needs a body"):
+        Simulator([], h=0.01)

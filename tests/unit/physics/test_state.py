@@ -1,0 +1,58 @@
+"""States: shapes are checked where they enter, quaternions are unit, batches fit together or are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course.physics.state import RigidBodyState
+
+
+def test_a_state_from_lists_has_float_arrays_and_a_unit_quaternion() -> None:
+    state = RigidBodyState.of([1, 2, 3], orientation=[2, 0, 0, 0])
+    assert state.position.dtype == np.float64
+    assert state.orientation.tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert state.batch == ()
+
+
+def test_a_state_does_not_share_memory_with_what_it_was_made_of() -> None:
+    position = np.zeros(3)
+    assert not np.shares_memory(RigidBodyState.of(position).position, position)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("position", [0.0, 0.0]),
+        ("velocity", 1.0),
+        ("orientation", [1.0, 0.0, 0.0]),
+        ("angular_velocity", [0.0] * 4),
+    ],
+)
+def test_a_wrong_shape_is_named(name: str, value: object) -> None:
+    arguments = {"position": np.zeros(3), name: value}
+    with pytest.raises(ValueError, match=f"{name} must have shape"):
+        RigidBodyState.of(**arguments)  # type: ignore[arg-type]
+
+
+def test_numbers_that_are_not_finite_are_refused() -> None:
+    with pytest.raises(ValueError, match="velocity must be finite"):
+        RigidBodyState.of(np.zeros(3), velocity=[np.nan, 0.0, 0.0])
+
+
+def test_a_quaternion_without_length_is_no_orientation() -> None:
+    with pytest.raises(ValueError, match="length 0"):
+        RigidBodyState.of(np.zeros(3), orientation=np.zeros(4))
+
+
+def test_leading_axes_broadcast_and_those_that_do_not_fit_are_named() -> None:
+    assert RigidBodyState.of(np.zeros((5, 1, 3)), np.zeros((4, 3))).batch == (5, 4)
+    with pytest.raises(ValueError, match=r"position \(5, 3\)"):
+        RigidBodyState.of(np.zeros((5, 3)), np.zeros((4, 3)))
+
+
+def test_a_broadcast_state_owns_its_memory() -> None:
+    wide = RigidBodyState.of(np.zeros(3)).broadcast((6,))
+    wide.position[0] = 1.0
+    assert wide.position.shape == (6, 3)
+    assert np.all(wide.position[1] == 0.0)

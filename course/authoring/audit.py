@@ -15,6 +15,7 @@ from course.authoring.grading import OpenGrader, grading_session
 from course.authoring.lessons import audit_lesson, audit_syllabus
 from course.authoring.links import LinkChecker
 from course.authoring.proofs import Proof, Prover, plan
+from course.authoring.quiz_audit import audit_quiz
 from course.authoring.report import AuditReport, Findings
 from course.authoring.variants import instructors, solutions_folder
 from course.errors import ContentError, NotFoundError
@@ -48,7 +49,7 @@ def audit(
 
     Args:
         catalog: the course; it needs its solutions and hidden graders.
-        only: id of a lesson or an exercise; None for everything.
+        only: id of a lesson, an exercise or a question; None for everything.
         on_progress: told before each step how many of how many are done.
         open_grader: gives the grader of an exercise.
 
@@ -71,6 +72,7 @@ def audit(
         path = catalog.content.lessons / f"{lesson_id}.md"
         if path.is_file() and not blanks_in(path, findings):
             audit_lesson(catalog, lesson_id, findings, links)
+    questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
     read = [_read(catalog, exercise_id, findings) for exercise_id in exercises]
     candidates = [candidate for candidate in read if candidate is not None]
     graded, isolation = _grade(catalog, candidates, findings, on_progress, open_grader)
@@ -78,6 +80,7 @@ def audit(
         problems=findings.sorted(),
         lessons=lessons,
         exercises=exercises,
+        questions=questions,
         checks=sum(len(candidate.checks) for candidate in candidates),
         graded=graded,
         isolation=isolation,
@@ -96,12 +99,17 @@ def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[
     if only is None:
         return lessons, exercises
     chosen = tuple(i for i in lessons if i == only), tuple(i for i in exercises if i == only)
-    if not any(chosen):
+    questions = _questions(catalog)
+    if not any(chosen) and only not in questions:
         raise NotFoundError(
-            f"Neither a lesson nor an exercise is called {only[:80]!r}.",
-            help=f"There are {', '.join([*lessons, *exercises])}.",
+            f"No lesson, exercise or question is called {only[:80]!r}.",
+            help=f"There are {', '.join([*lessons, *exercises, *questions])}.",
         )
     return chosen
+
+
+def _questions(catalog: Catalog) -> list[str]:
+    return sorted(path.stem for path in catalog.content.quiz.glob("*.toml"))
 
 
 def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate | None:

@@ -47,7 +47,7 @@ class AuditReport:
 
     Attributes:
         problems: sorted by file and line; empty is what one hopes for.
-        lessons, exercises: ids that were looked at.
+        lessons, exercises, questions: ids that were looked at.
         checks: number of checks, public and hidden.
         graded: number of submissions that were graded to find out.
         isolation: protection level they ran at; empty if none ran.
@@ -57,6 +57,7 @@ class AuditReport:
     problems: tuple[AuditProblem, ...]
     lessons: tuple[str, ...] = ()
     exercises: tuple[str, ...] = ()
+    questions: tuple[str, ...] = ()
     checks: int = 0
     graded: int = 0
     isolation: str = ""

@@ -119,7 +119,8 @@ def _show_report(console: Console, report: AuditReport) -> None:
         console.line((problem.fix, "dim"), indent=2)
     looked = (
         f"{_count(len(report.lessons), 'lesson')}, {_count(len(report.exercises), 'exercise')}, "
-        f"{_count(report.checks, 'check')}, {_count(report.graded, 'submission')} graded"
+        f"{_count(len(report.questions), 'question')}, {_count(report.checks, 'check')}, "
+        f"{_count(report.graded, 'submission')} graded"
     )
     level = f" at {report.isolation}" if report.isolation else ""
     if report.ok:
@@ -147,6 +148,7 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
             course=course,
             lessons=report.lessons,
             exercises=report.exercises,
+            questions=report.questions,
             checks=report.checks,
             graded=report.graded,
             isolation=report.isolation,

@@ -33,6 +33,7 @@ class AuthorCheck(Envelope, tag="course.author-check/1", frozen=True, kw_only=Tr
     course: CourseRef
     lessons: tuple[str, ...]
     exercises: tuple[str, ...]
+    questions: tuple[str, ...]
     checks: int
     graded: int
     isolation: str

@@ -51,7 +51,9 @@ COMMANDS: dict[str, Entry] = {
     "lessons": Entry("lessons", "lessons", LEARN, "List the lessons.", "course lessons"),
     "lesson": Entry("lessons", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"),
     "quiz": Entry("quiz", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"),
-    "sim": Entry("sim", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"),
+    "sim": Entry(
+        "sim", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"
+    ),
     "start": Entry(
         "starting", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
     ),

@@ -79,14 +79,20 @@ def tunnelling() -> Figure:
     """How often a wall is missed, over the speed, for three steps."""
     figure, (axes,) = new_figure(3.5)
     speeds = np.linspace(0.05, 24.0, 480)
-    for parts, line, color, aside in ((1, "-", "vermillion", 4), (2, "--", "orange", 4), (4, "-.", "sky", -16)):
+    for parts, line, color, aside in (
+        (1, "-", "vermillion", 4),
+        (2, "--", "orange", 4),
+        (4, "-.", "sky", -16),
+    ):
         h = STEP_S / parts
         share = [100 * passed(float(v), h) for v in speeds]
         axes.plot(speeds, share, color=PALETTE[color], linestyle=line, linewidth=2.0)
         at = 23.6
         axes.text(at, 100 * passed(at, h) + aside, f"h = {1000 * h:g} ms", ha="right", fontsize=8.5)
     axes.axhline(0.0, color=PALETTE["blue"], linewidth=2.4)
-    axes.text(1.0, -7.5, "time of impact: never misses", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
+    axes.text(
+        1.0, -7.5, "time of impact: never misses", color=PALETTE["blue"], fontweight="bold", fontsize=8.5
+    )
     limit = (BALL_M + WALL_M) / STEP_S
     note(axes, f"{limit:g} m/s: one step\nspans wall and ball", (limit, 0.0), (0.6, 32.0), PALETTE["black"])
     axes.set(xlim=(0, 24), ylim=(-12, 100))
@@ -99,7 +105,12 @@ def tunnelling() -> Figure:
 def stacks() -> Figure:
     """What the ground does not yet carry, over the iterations of the solver, for four stacks."""
     figure, (axes,) = new_figure(4.0)
-    looks = ((PALETTE["sky"], ":"), (PALETTE["green"], "-."), (PALETTE["orange"], "--"), (PALETTE["blue"], "-"))
+    looks = (
+        (PALETTE["sky"], ":"),
+        (PALETTE["green"], "-."),
+        (PALETTE["orange"], "--"),
+        (PALETTE["blue"], "-"),
+    )
     for boxes, (color, line) in zip(STACKS, looks, strict=True):
         needed = iterations_to(boxes)
         carried = stack_impulses(boxes, needed + needed // 3)[:, 0] / boxes

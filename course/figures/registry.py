@@ -35,6 +35,8 @@ FIGURES: dict[str, tuple[str, str]] = {
     "sim-rotation": ("simulations", "rotation"),
     "sim-solver-iterations": ("simulations", "solver_iterations"),
     "sim-substeps": ("simulations", "substeps"),
+    "arm-planned": ("forward_inverse_kinematic", "planned"),
+    "arm-torques": ("forward_inverse_kinematic", "torques"),
     "contact-pair": ("collisions_and_contact", "pair"),
     "contact-stacks": ("collisions_and_contact", "stacks"),
     "contact-tunnelling": ("collisions_and_contact", "tunnelling"),

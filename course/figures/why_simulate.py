@@ -80,7 +80,9 @@ def standing() -> Figure:
         ],
     )
     axes[0].set_ylabel("reaction to the speed of leaning (N m s/rad)")
-    share = np.count_nonzero((before == STANDING) & (after == STANDING)) / np.count_nonzero(before == STANDING)
+    share = np.count_nonzero((before == STANDING) & (after == STANDING)) / np.count_nonzero(
+        before == STANDING
+    )
     title(figure, f"Of the settings that stand in the simulator, {100 * share:.0f} % stand on the robot")
     return figure
 

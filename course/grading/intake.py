@@ -11,6 +11,7 @@ with a reason that reaches the report; nothing here executes, unpacks to disk or
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import json
 import os
@@ -19,18 +20,20 @@ import zipfile
 import zlib
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from course.errors import NotFoundError
+from course.errors import NotFoundError, UngradableError
 from course.grading.session import Submission
 from course.grading.verdict import Problem
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from course.catalog.models import Exercise
 
-__all__ = ["Entry", "read_class", "read_student"]
+__all__ = ["Entry", "read_class", "read_quiz", "read_student", "students"]
+
+T = TypeVar("T")
 
 MAX_FILE = 1 << 20
 MAX_FILES = 20
@@ -222,6 +225,29 @@ def _read_regular(path: Path, shown: str) -> bytes:
     return content
 
 
+def read_quiz(folder: Path) -> Any:
+    """The quiz attempts of a student's submission, as JSON gave them; an empty list if there are none.
+
+    An archive that cannot be read gives none: the exercises in it report what is wrong with it.
+
+    Raises:
+        UngradableError: several archives hold attempts.
+    """
+    found: list[Any] = []
+    with contextlib.suppress(OSError, _RefusedError):
+        if folder.is_symlink():
+            return []
+        for path in _archives(folder):
+            with contextlib.suppress(_RefusedError):
+                record = _opened(path, functools.partial(_manifest, path)).get("quiz")
+                found += [record] if record else []
+    if len(found) > 1:
+        raise UngradableError(
+            "Several archives hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
+        )
+    return found[0] if found else []
+
+
 # -- archives -----------------------------------------------------------------------------------------
 
 
@@ -231,23 +257,16 @@ def _from_archive(path: Path, exercise: Exercise) -> bytes | None:
     Raises:
         _RefusedError: the archive is one that must not be opened further, or is damaged.
     """
-    try:
-        if not stat.S_ISREG(path.lstat().st_mode):
-            raise _refused(path, "it is not a regular file")
-        if path.stat().st_size > MAX_ARCHIVE:
-            raise _refused(path, "it is larger than 6 MB")
-        with zipfile.ZipFile(path) as archive:
-            members = _checked_members(path, archive.infolist())
-            manifest = _manifest(path, archive, members)
-            wanted = members.get(f"{exercise.id}/{exercise.module}") or members.get(exercise.module)
-            if wanted is None:
-                return None
-            content = _unpacked(path, archive, wanted)
-    except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError, ValueError) as error:
-        raise _refused(path, f"it cannot be read ({error})") from None
-    except OSError as error:
-        raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
-    expected = manifest.get(wanted.filename)
+
+    def read(archive: zipfile.ZipFile, members: dict[str, zipfile.ZipInfo]) -> tuple[Any, Any, bytes]:
+        manifest = _manifest(path, archive, members)
+        wanted = members.get(f"{exercise.id}/{exercise.module}") or members.get(exercise.module)
+        return manifest, wanted, _unpacked(path, archive, wanted) if wanted else b""
+
+    manifest, wanted, content = _opened(path, read)
+    if wanted is None:
+        return None
+    expected = manifest.get("files", {}).get(wanted.filename)
     if manifest and expected != hashlib.sha256(content).hexdigest():
         raise _RefusedError(
             "checksum_mismatch",
@@ -255,6 +274,25 @@ def _from_archive(path: Path, exercise: Exercise) -> bytes | None:
             "Make the archive again with `course submit` and upload it unchanged.",
         )
     return content
+
+
+def _opened(path: Path, read: Callable[[zipfile.ZipFile, dict[str, zipfile.ZipInfo]], T]) -> T:
+    """What ``read`` makes of an archive whose members were all found harmless.
+
+    Raises:
+        _RefusedError: the archive must not be opened further, or is damaged.
+    """
+    try:
+        if not stat.S_ISREG(path.lstat().st_mode):
+            raise _refused(path, "it is not a regular file")
+        if path.stat().st_size > MAX_ARCHIVE:
+            raise _refused(path, "it is larger than 6 MB")
+        with zipfile.ZipFile(path) as archive:
+            return read(archive, _checked_members(path, archive.infolist()))
+    except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError, ValueError) as error:
+        raise _refused(path, f"it cannot be read ({error})") from None
+    except OSError as error:
+        raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
 
 
 def _refused(path: Path, why: str) -> _RefusedError:
@@ -302,7 +340,7 @@ def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> by
 
 
 def _manifest(path: Path, archive: zipfile.ZipFile, members: dict[str, zipfile.ZipInfo]) -> dict[str, Any]:
-    """The checksums that ``course submit`` wrote; empty for an archive made by hand."""
+    """What ``course submit`` wrote beside the files; empty for an archive made by hand."""
     info = members.get("submission.json")
     if info is None:
         return {}
@@ -316,6 +354,6 @@ def _manifest(path: Path, archive: zipfile.ZipFile, members: dict[str, zipfile.Z
                 f"{path.name} was written by a newer version of this course.",
                 "Update the course on the machine that grades.",
             )
-        case {"format_version": int(), "files": dict(files)} if files:
-            return files
+        case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
+            return dict(manifest)
     raise _refused(path, "its submission.json is damaged")

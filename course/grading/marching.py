@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from course.physics.exact import reference
+from course.physics.exact import solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,7 +79,7 @@ def march_errors(
         Step sizes (s) and, for each, the largest distance in (q, v / rate) over the checkpoints.
     """
     times = problem.t0 + problem.span * np.arange(1, CHECKPOINTS + 1) / CHECKPOINTS
-    q_true, v_true = reference(problem.system, problem.q0, problem.v0, times, problem.t0)
+    q_true, v_true = solution(problem.system, problem.q0, problem.v0, times, problem.t0)
     hs, errors = [], []
     for n in counts:
         h = problem.span / n

@@ -10,12 +10,16 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from course.errors import MissingCapabilityError, UsageError
+from course.catalog.questions import read_questions
+from course.errors import MissingCapabilityError, UngradableError, UsageError
 from course.grading.batch import BatchOptions, grade_all
 from course.grading.exports.lines import CourseRef, write_csv, write_jsonl
 from course.grading.gradebook import Gradebook, Key, Result
-from course.grading.intake import Entry, read_student, students
+from course.grading.intake import Entry, read_quiz, read_student, students
+from course.grading.quiz import EXERCISE_ID as QUIZ
+from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.session import grader_version
+from course.quizzing.bank import Bank
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -32,7 +36,8 @@ class RunOptions:
     """How a class is graded.
 
     Attributes:
-        exercises: ids asked for by name; empty takes all, and then an exercise nobody handed in is no fault.
+        exercises: ids asked for by name, "quiz" among them; empty takes all, and then an exercise nobody
+            handed in is no fault.
         only: students to grade; empty takes all.
         seed: seed of the run; None draws one, and a resumed run keeps its own.
     """
@@ -134,12 +139,41 @@ def grade_class(
             result = Result(key, graded.verdict)
             book.add(result)
             report(result, counter.done, counter.total)
+        if not options.exercises or QUIZ in options.exercises:
+            for result in _quizzes(class_list, catalog, options, book, summary):
+                book.add(result)
+                report(result, counter.total, counter.total)
         book.flush()
         for result in book.results():
             summary.count(result)
         export_all(out, book, CourseRef(catalog.course_id, catalog.version))
     summary.elapsed_s = time.monotonic() - started
     return summary
+
+
+def _quizzes(
+    class_list: list[tuple[str, Path]],
+    catalog: Catalog,
+    options: RunOptions,
+    book: Gradebook,
+    summary: Summary,
+) -> Iterator[Result]:
+    """The quiz attempts that came with the submissions, scored here: no student's code is involved."""
+    bank = Bank(read_questions(catalog.content.quiz))
+    version = quiz_version(bank)
+    for student, path in class_list if bank.ids else ():
+        try:
+            record = read_quiz(path)
+        except UngradableError as error:
+            record = error.code  # no list of attempts, which the scoring says of it
+        verdict = grade_quiz(bank, record)
+        if verdict is None:
+            continue
+        key = Key(student, QUIZ, record_sha256(record), version, summary.seed)
+        if options.resume and book.has(key):
+            summary.already += 1
+        else:
+            yield Result(key, verdict)
 
 
 def export_all(out: Path, book: Gradebook, course: CourseRef) -> None:
@@ -179,7 +213,9 @@ def _left_to_do(
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
-    return tuple(catalog.exercise(name) for name in dict.fromkeys(wanted)) or catalog.exercises()
+    if not wanted:
+        return catalog.exercises()
+    return tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
 
 
 def _class_list(folder: Path, only: tuple[str, ...]) -> list[tuple[str, Path]]:

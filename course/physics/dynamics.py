@@ -216,7 +216,9 @@ class HandPath:
         far = arm.hand(q) - arm.elbow(q)
         # d(J v)/dt without the accelerations: every link's end falls inwards as it turns.
         inward = -(v[..., :1] ** 2) * arm.elbow(q) - (v[..., :1] + v[..., 1:]) ** 2 * far
-        a: Array = np.asarray(np.linalg.solve(j, (acceleration - inward)[..., None])[..., 0], dtype=np.float64)
+        a: Array = np.asarray(
+            np.linalg.solve(j, (acceleration - inward)[..., None])[..., 0], dtype=np.float64
+        )
         return q, v, a
 
 

@@ -42,6 +42,7 @@ __all__ = ["Recording", "Simulator", "step_count"]
 
 _IMPACTS_A_STEP = 8  # blows that one step resolves one by one; what is left is held up at its end
 _SUPPORT_ROUNDS = 10  # how often a step goes over its resting contacts, so that stacks stand
+_SLACK = 1e-12  # m: overlap that round-off leaves, not worth another round
 _REST = 1.5  # speeds below this many g h are what gravity adds in one step, no blow
 
 
@@ -60,13 +61,19 @@ def step_count(duration: float, h: float) -> int:
     n = round(ratio)
     if abs(ratio - n) <= 1e-6:
         return n
-    whole = math.floor(ratio)
-    durations = [f"{k * h:.6g}" for k in (whole, whole + 1) if k > 0]
-    steps = [f"{duration / k:.6g}" for k in (whole + 1, whole) if k > 0]
+    counts = [k for k in (math.floor(ratio), math.floor(ratio) + 1) if k > 0]
+    durations = [_short(k * h) or f"{k * h:.17g}" for k in counts]
+    steps = [_short(duration / k) or f"{duration:.17g}/{k}" for k in reversed(counts)]
     raise ValueError(
-        f"A step of {h:g} s does not divide {duration:g} s: it takes {ratio:.4g} of them. "
+        f"A step of {h:g} s does not divide {duration:g} s: it takes {ratio:.6g} of them. "
         f"Near it, {' s and '.join(durations)} s would do, or a step of {' s or '.join(steps)} s."
     )
+
+
+def _short(value: float) -> str:
+    """A number in six digits if that is all there is to it; otherwise nothing, for it would not divide."""
+    text = f"{value:.6g}"
+    return text if abs(float(text) - value) <= 1e-12 * value else ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +205,7 @@ class Simulator:
             before = self._states()
             self._fly(left)
             share, which = self._first_meeting(before, left)
-            met = share <= 1.0
+            met = (share <= 1.0) & (left > 0)
             if not np.any(met):
                 left = np.zeros(self.batch)
                 break
@@ -277,7 +284,7 @@ class Simulator:
         """Where the gap, a cubic in time, falls through 0; arrivals too slow to bounce do not count."""
         contact, body, _ = self._contact(pair)
         arriving = body.state.velocity @ -contact.normal[(0,) * len(self.batch)]
-        fast = (contact.gap < 0) & (-arriving > _REST * self.gravity * span)
+        fast = (contact.gap < 0) & (-arriving > _REST * self.gravity * self.h)
         if not np.any(fast):
             return np.full(self.batch, np.inf)
         now = body.state
@@ -329,8 +336,10 @@ class Simulator:
                     busy = True
                     strike(contact, a, b, soft, where)
                     self._note(pair, where, np.full(self.batch, self.time + self.h))
-                if np.any(contact.gap < 0):
-                    part(contact, a, b)
+                deep = contact.gap < -_SLACK
+                if np.any(deep):
+                    busy = True
+                    part(contact, a, b, deep)
             if not busy:
                 break
 

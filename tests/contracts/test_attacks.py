@@ -302,7 +302,8 @@ def _files_left(arena: Arena) -> list[str]:
 
 
 def test_every_attack_has_an_entry_and_says_what_it_tries() -> None:
-    files = {path.stem: path for path in CORPUS.glob("*.py") if not path.stem.startswith("wrong_")}
+    others = ("wrong_", "every_value")
+    files = {path.stem: path for path in CORPUS.glob("*.py") if not path.stem.startswith(others)}
     assert files.keys() == ATTACKS.keys()
     for path in files.values():
         assert re.match(r'"""[A-Z].{10,110}\.', path.read_text("utf-8")), path
@@ -314,3 +315,21 @@ def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas: Any) 
     assert model.all_pass
     assert model.score == model.max_score
     assert 0 < arena.wrong_score < 0.2 * model.score
+
+
+@pytest.mark.parametrize("exercise", Catalog().exercise_ids())
+def test_no_plain_value_makes_a_check_itself_fail(exercise: str) -> None:
+    """What a student returns is never our error, so it can never put a verdict off."""
+    catalog = Catalog()
+    found = catalog.exercise(exercise)
+    template = (CORPUS / "every_value.py").read_text("utf-8")
+    template += "".join(f"{task.id} = _answer\n" for task in found.task)
+    broken = {}
+    with GradingSession(found, catalog, scope="full", timeout=5.0) as session:
+        for start in range(0, 52, 4):
+            for stride in (0, 1):
+                source = template.replace("START", str(start)).replace("STRIDE", str(stride))
+                verdict = session.grade(Submission({found.module: source.encode()}))
+                broken |= {c.id: c.message for c in verdict.checks if c.status.value == "grader_error"}
+                assert verdict.state == "graded", (start, stride, verdict.error, broken)
+    assert not broken

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -199,3 +200,34 @@ def _left_behind() -> list[str]:
         if not left or time.monotonic() > deadline:
             return left
         time.sleep(0.2)
+
+
+def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(tmp_path: Path) -> None:
+    """On the real course: its quiz is real, and no worker is needed."""
+    from course.catalog.load import Catalog
+    from course.quizzing.bank import Bank
+
+    catalog = Catalog()
+    bank = Bank.of(catalog)
+    posed = bank.pose(5)
+    right = {one.question: one.key.id for one in posed}
+    attempt = {
+        "seed": 5,
+        "version": "1",
+        "finished_at": "2026-11-21",
+        "questions": list(right),
+        "answers": right,
+    }
+    for student, claimed in (("ada", 5), ("eve", 4)):
+        place = tmp_path / "class" / student
+        place.mkdir(parents=True)
+        manifest = {"format_version": 1, "files": {}, "quiz": [{**attempt, "score": claimed}]}
+        with zipfile.ZipFile(place / "mine.zip", "w") as target:
+            target.writestr("submission.json", json.dumps(manifest))
+    (tmp_path / "class" / "none").mkdir()
+    summary = grade_class(
+        tmp_path / "class", tmp_path / "out", catalog, RunOptions(exercises=("quiz",)), lambda *_: None
+    )
+    assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 1, 1)
+    (trouble,) = summary.troubled
+    assert (trouble.student, trouble.exercise, trouble.code) == ("eve", "quiz", "quiz_record_inconsistent")

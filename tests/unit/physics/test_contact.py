@@ -121,7 +121,7 @@ def test_overlap_is_shared_out_by_inverse_mass() -> None:
 
 @pytest.mark.parametrize("surface", [(-0.1, 0.0), (1.1, 0.0), (0.5, -1.0), (math.nan, 0.0), (0.5, math.inf)])
 def test_impossible_surfaces_are_refused(surface: tuple[float, float]) -> None:
-    with pytest.raises(ValueError, match="restitution|friction"):
+    with pytest.raises(ValueError, match=r"restitution|friction"):
         Surface(*surface)
 
 

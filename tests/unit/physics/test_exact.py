@@ -47,6 +47,26 @@ def test_the_reference_brings_an_eccentric_orbit_back_after_one_period():
     assert v[0] == pytest.approx(v0, abs=1e-10)
 
 
+@pytest.mark.parametrize(
+    "system",
+    [
+        systems.Oscillator(2.3),
+        systems.DampedOscillator(2.3, 0.7),
+        systems.DampedOscillator(0.3, 0.7),
+        systems.ForcedOscillator(2.3, 1.5, 3.1),
+        systems.ForcedOscillator(2.3, 1.5, 2.3),
+        systems.Pendulum(9.81, 1.2),
+    ],
+    ids=repr,
+)
+def test_the_solution_is_the_reference_with_and_without_a_closed_form(system):
+    for found, expected in zip(
+        exact.solution(system, Q0, V0, TIMES, 0.2), exact.reference(system, Q0, V0, TIMES, 0.2), strict=True
+    ):
+        assert found.shape == (4, 2)
+        assert found == pytest.approx(expected, abs=1e-10)
+
+
 def test_times_that_run_backwards_are_refused():
     with pytest.raises(ValueError, match="rise"):
         exact.reference(systems.Oscillator(1.0), [1.0], [0.0], [1.0, 0.5])

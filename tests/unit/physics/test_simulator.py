@@ -16,7 +16,7 @@ from course.physics.invariants import convergence_order
 from course.physics.simulator import Recording, Simulator, step_count
 from course.physics.state import RigidBodyState
 
-few = settings(max_examples=25, deadline=None)
+few = settings(max_examples=15, deadline=None)
 
 
 def ball(position: object, velocity: object = (0, 0, 0), **options: object) -> Body:
@@ -41,7 +41,7 @@ def test_a_duration_just_short_of_whole_steps_loses_none() -> None:
 
 
 def test_a_step_that_does_not_divide_is_refused_with_values_that_would() -> None:
-    with pytest.raises(ValueError, match=r"does not divide 5 s.*4\.8 s and 5\.1 s.*0\.294118 s or 0\.3125 s"):
+    with pytest.raises(ValueError, match=r"does not divide 5 s.*4\.8 s and 5\.1 s.*5/17 s or 0\.3125 s"):
         step_count(5.0, 0.3)
 
 
@@ -62,8 +62,11 @@ def test_values_named_as_near_do_divide(n: int, h: float) -> None:
     duration = (n + 0.37) * h
     with pytest.raises(ValueError, match="does not divide") as caught:
         step_count(duration, h)
-    steps = str(caught.value).split("or a step of ")[1].removesuffix(" s.").split(" s or ")
-    assert all(abs(duration / float(step) - round(duration / float(step))) < 1e-2 for step in steps)
+    near, steps = str(caught.value).split("Near it, ")[1].split(" s would do, or a step of ")
+    assert [step_count(float(value), h) for value in near.split(" s and ")] == [n, n + 1]
+    for count, step in zip((n + 1, n), steps.removesuffix(" s.").split(" s or "), strict=True):
+        above, _, below = step.partition("/")
+        assert step_count(duration, float(above) / float(below or 1)) == count
 
 
 def test_times_are_multiples_of_the_step_and_the_start_is_recorded() -> None:
@@ -81,7 +84,7 @@ def test_times_are_multiples_of_the_step_and_the_start_is_recorded() -> None:
 @given(st.floats(0.5, 20), st.floats(-5, 5), st.sampled_from(["velocity_verlet", "rk4"]))
 def test_a_ball_meets_the_ground_when_the_closed_form_says(height: float, up: float, method: str) -> None:
     body = Body(1.0, RigidBodyState.of([0, 0, height], [1, 0, up]))
-    record = Simulator([body], h=0.05, stepper=STEPPERS[method]).run(4.0)
+    record = Simulator([body], h=0.1, stepper=STEPPERS[method]).run(4.0)
     due = (up + math.sqrt(up**2 + 2 * 9.81 * height)) / 9.81
     assume(due < 4.0)
     assert record.ground_time[0] == pytest.approx(due, abs=1e-10)
@@ -101,7 +104,7 @@ def test_a_throw_from_the_ground_does_not_land_where_it_starts() -> None:
 @few
 @given(st.floats(0.3, 0.95), st.floats(0.5, 5))
 def test_a_ball_rebounds_to_e_squared_of_its_height(e: float, drop: float) -> None:
-    record = Simulator([ball([0, 0, 0.5 + drop])], h=0.01, surface=Surface(e)).run(8.0)
+    record = Simulator([ball([0, 0, 0.5 + drop])], h=0.02, surface=Surface(e)).run(4.0)
     fall = math.sqrt(2 * drop / 9.81)
     first = (record.t > fall) & (record.t < fall * (1 + 2 * e))
     i = int(np.argmax(first))
@@ -112,7 +115,7 @@ def test_a_ball_rebounds_to_e_squared_of_its_height(e: float, drop: float) -> No
 
 
 def test_an_elastic_ball_bounces_for_ever_at_its_own_height() -> None:
-    record = Simulator([ball([0, 0, 1.5])], h=0.01).run(20.0)
+    record = Simulator([ball([0, 0, 1.5])], h=0.02).run(10.0)
     np.testing.assert_allclose(record.energy(), record.energy()[0], rtol=1e-12)
 
 
@@ -133,8 +136,8 @@ def test_a_sliding_block_stops_where_the_closed_form_says_but_for_half_a_step(
     speed: float, mu: float
 ) -> None:
     body = ball([0, 0, 0.5], [speed, 0, 0], spins=False)
-    record = Simulator([body], h=0.005, surface=Surface(0.0, mu)).run(5.0)
-    assume(speed / (mu * 9.81) < 5.0)
+    assume(speed / (mu * 9.81) < 1.5)
+    record = Simulator([body], h=0.005, surface=Surface(0.0, mu)).run(1.5)
     exact = speed**2 / (2 * mu * 9.81)
     # Braking acts at the end of a step, so the block has kept its speed half a step too long.
     assert record.position[-1, 0, 0] == pytest.approx(exact + speed * 0.005 / 2, abs=0.1 * speed * 0.005)
@@ -171,7 +174,7 @@ def test_a_collision_keeps_momentum_and_restitution_at_any_speed(
 @few
 @given(st.floats(-3, 3))
 def test_a_collision_is_the_same_seen_from_a_moving_train(train: float) -> None:
-    still, moving = head_on(0.7), head_on(0.7, 2.0 + train, -2.0 + train)
+    still, moving = head_on(0.7, h=0.1), head_on(0.7, 2.0 + train, -2.0 + train, h=0.1)
     np.testing.assert_allclose(
         moving.position[..., 0] - train * moving.t[:, None], still.position[..., 0], atol=1e-9
     )
@@ -206,7 +209,9 @@ def test_a_spring_between_two_bodies_swings_with_the_order_of_the_method(method:
     errors, hs = [], [0.02, 0.01, 0.005]
     for h in hs:
         bodies = [Body(1.0, RigidBodyState.of([-1, 0, 0])), Body(2.0, RigidBodyState.of([1, 0, 0]))]
-        engine = Simulator(bodies, h=h, gravity=0.0, ground=None, stepper=STEPPERS[method], laws=[spring])
+        engine = Simulator(
+            bodies, h=h, gravity=0.0, ground=None, contacts=False, stepper=STEPPERS[method], laws=[spring]
+        )
         record = engine.run(1.3)
         apart = record.position[-1, 1, 0] - record.position[-1, 0, 0]
         errors.append(abs(apart - 2.0 * math.cos(math.sqrt(6.0) * 1.3)))
@@ -231,10 +236,10 @@ def test_a_thousand_runs_at_once_are_a_thousand_runs() -> None:
 
     def run(place: np.ndarray, speed: np.ndarray) -> Recording:
         bodies = [ball(place, speed), ball([0, 0, 0.5])]
-        return Simulator(bodies, h=0.01, surface=Surface(0.6, 0.3)).run(2.0)
+        return Simulator(bodies, h=0.02, surface=Surface(0.6, 0.3)).run(2.0)
 
     together = run(places, speeds)
-    assert together.position.shape == (201, 2, 20, 3)
+    assert together.position.shape == (101, 2, 20, 3)
     for k in range(20):
         alone = run(places[k], speeds[k])
         np.testing.assert_allclose(together.position[:, :, k], alone.position, atol=1e-9)

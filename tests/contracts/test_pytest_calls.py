@@ -1,0 +1,293 @@
+"""What course/grading/collected.py needs of pytest's insides still holds for the pytest installed here.
+
+Checks are collected once and run again for every submission; that takes calls which pytest does not promise.
+Each test names one thing that must go on being true. When a new major of pytest breaks one, it is repaired in
+that one file, or the cap in pyproject.toml stays.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import re
+import sys
+import textwrap
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.errors import ContentError
+from course.grading.collected import CollectedChecks
+from course.grading.failures import CheckFailed
+from course.grading.verdict import Finding, Visibility
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+_CHECKS = '''
+    """Checks that tell through the submission what became of them."""
+
+    import pytest
+    from course.grading.kit import CheckFailed, Finding
+
+
+    @pytest.fixture
+    def own(submission):
+        submission.log.append("set up")
+        yield object()
+        submission.log.append("torn down")
+
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(1)
+    def test_passes(submission, own):
+        """It passes
+        and this is no part of the title."""
+        submission.log.append(id(own))
+
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(2.5)
+    @pytest.mark.requires("passes", "draws")
+    def test_fails(submission, own):
+        """It fails"""
+        raise CheckFailed(Finding(message=f"seen by {submission.name}"))
+
+
+    @pytest.mark.task("b")
+    @pytest.mark.points(1)
+    def test_draws(submission, rng):
+        """It draws"""
+        submission.log.append(float(rng.random()))
+
+
+    @pytest.mark.task("b")
+    @pytest.mark.points(1)
+    def test_breaks(submission):
+        """It breaks"""
+        return 1 / 0
+'''
+
+
+class Fake:
+    """What stands for a submission; the checks above ask nothing else of it."""
+
+    def __init__(self, name: str = "one", seed: int = 1) -> None:
+        self.name = name
+        self.seed = seed
+        self.log: list[Any] = []
+
+
+@pytest.fixture
+def collect(tmp_path: Path) -> Iterator[Callable[..., CollectedChecks]]:
+    opened: list[CollectedChecks] = []
+
+    def collect(*sources: str) -> CollectedChecks:
+        files = []
+        for number, source in enumerate(sources or (_CHECKS,)):
+            folder = tmp_path / f"file{number}"
+            folder.mkdir(exist_ok=True)
+            path = folder / "checks.py"
+            path.write_text(textwrap.dedent(source), "utf-8")
+            files.append((path, Visibility.HIDDEN if number else Visibility.PUBLIC))
+        opened.append(CollectedChecks(files))
+        return opened[-1]
+
+    yield collect
+    for checks in opened:
+        checks.close()
+
+
+def _run(checks: CollectedChecks, name: str, submission: Any) -> BaseException | None:
+    return checks.run(next(check for check in checks.checks if check.id == name), submission)
+
+
+def test_names_titles_and_marks_are_read(collect: Any) -> None:
+    found = collect().checks
+    assert [(check.id, check.title, check.task, check.points, check.requires) for check in found] == [
+        ("passes", "It passes", "a", 1.0, ()),
+        ("fails", "It fails", "a", 2.5, ("passes", "draws")),
+        ("draws", "It draws", "b", 1.0, ()),
+        ("breaks", "It breaks", "b", 1.0, ()),
+    ]
+
+
+def test_a_check_that_passes_has_really_run_with_its_fixtures(collect: Any) -> None:
+    submission = Fake()
+    assert _run(collect(), "passes", submission) is None
+    assert submission.log[0] == "set up"
+    assert isinstance(submission.log[1], int)
+    assert submission.log[2] == "torn down"
+
+
+def test_fixtures_are_made_anew_for_every_run(collect: Any) -> None:
+    checks, first, second = collect(), Fake("first"), Fake("second")
+    for submission in (first, second, second):
+        assert _run(checks, "passes", submission) is None
+    assert [entry for entry in second.log if isinstance(entry, str)] == ["set up", "torn down"] * 2
+    assert len(first.log) == 3
+
+
+def test_what_a_check_raises_comes_out_as_it_was_raised(collect: Any) -> None:
+    checks = collect()
+    found = _run(checks, "fails", Fake("Ada"))
+    assert isinstance(found, CheckFailed)
+    assert found.finding == Finding(message="seen by Ada")
+    assert isinstance(_run(checks, "breaks", Fake()), ZeroDivisionError)
+    assert _run(checks, "passes", Fake()) is None
+
+
+def test_a_fixture_that_fails_is_no_pass(collect: Any) -> None:
+    source = '''
+    import pytest
+
+    @pytest.fixture
+    def broken():
+        raise OSError("no")
+
+    @pytest.fixture
+    def breaks_later():
+        yield
+        raise KeyError("late")
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(1)
+    def test_before(broken):
+        """Before"""
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(1)
+    def test_after(breaks_later):
+        """After"""
+    '''
+    checks = collect(source)
+    assert isinstance(_run(checks, "before", Fake()), OSError)
+    assert isinstance(_run(checks, "after", Fake()), KeyError)
+
+
+def test_skipping_from_within_is_no_pass(collect: Any) -> None:
+    source = '''
+    import pytest
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(1)
+    def test_skips():
+        """Skips"""
+        pytest.skip("not today")
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(1)
+    def test_expects_to_fail():
+        """Expects to fail"""
+        pytest.xfail("known")
+    '''
+    checks = collect(source)
+    assert _run(checks, "skips", Fake()) is not None
+    assert _run(checks, "expects_to_fail", Fake()) is not None
+
+
+def test_numbers_drawn_depend_on_the_seed_and_the_check_alone(collect: Any) -> None:
+    checks = collect()
+    drawn = []
+    for seed in (1, 1, 2):
+        submission = Fake(seed=seed)
+        assert _run(checks, "draws", submission) is None
+        drawn += submission.log
+    assert drawn[0] == drawn[1] != drawn[2]
+
+
+def test_public_checks_come_first_and_required_ones_before_those_that_need_them(collect: Any) -> None:
+    hidden = _CHECKS.replace("test_", "test_hidden_").replace('("passes", "draws")', '("hidden_draws")')
+    checks = collect(_CHECKS, hidden)
+    assert [check.visibility for check in checks.checks] == [Visibility.PUBLIC] * 4 + [Visibility.HIDDEN] * 4
+    order = [check.id for check in checks.in_order()]
+    assert order.index("draws") < order.index("fails")
+    assert order.index("hidden_draws") < order.index("hidden_fails")
+
+
+def test_two_sessions_at_once_do_not_mix(collect: Any) -> None:
+    first, second = collect(), collect()
+    one, two = Fake("one"), Fake("two")
+    assert "one" in str(_run(first, "fails", one))
+    assert "two" in str(_run(second, "fails", two))
+    assert one.log == two.log == ["set up", "torn down"]
+
+
+def test_many_runs_keep_nothing(collect: Any) -> None:
+    checks = collect()
+
+    def grade(times: int) -> int:
+        for _ in range(times):
+            for check in checks.checks:
+                checks.run(check, Fake())
+        gc.collect()
+        return len(gc.get_objects())
+
+    grade(20)
+    before = grade(20)
+    assert grade(200) - before < 200
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("conftest.py", "raise RuntimeError('a conftest was read')"),
+        ("pytest.ini", "[pytest]\naddopts = --no-such-option\n"),
+        ("pyproject.toml", "[tool.pytest.ini_options]\naddopts = '--no-such-option'\n"),
+        ("sitecustomize.py", "raise RuntimeError('the working folder is on the path')"),
+    ],
+)
+def test_files_around_the_checks_change_nothing(
+    file: str, text: str, collect: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file0").mkdir()
+    for folder in (tmp_path, tmp_path / "file0"):
+        (folder / file).write_text(text, "utf-8")
+    monkeypatch.chdir(tmp_path)
+    path = list(sys.path)
+    checks = collect()
+    assert _run(checks, "passes", Fake()) is None
+    assert sys.path == path
+
+
+def test_settings_in_the_environment_change_nothing_and_stay(
+    collect: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
+        monkeypatch.setenv(name, "--no-such-option" if name == "PYTEST_ADDOPTS" else "no_such_plugin")
+    before = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
+    assert _run(collect(), "passes", Fake()) is None
+    assert {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"} == before
+
+
+def test_nothing_is_written_beside_the_checks(collect: Any, tmp_path: Path) -> None:
+    checks = collect()
+    _run(checks, "fails", Fake())
+    assert [path.name for path in (tmp_path / "file0").iterdir()] == ["checks.py"]
+
+
+@pytest.mark.parametrize(
+    ("source", "problem"),
+    [
+        ("import no_such_module", "no_such_module"),
+        ("def test_a(:\n    pass", "cannot be imported"),
+        ("x = 1", "no check in it"),
+        ("def test_a():\n    pass", "no docstring"),
+        ("def test_a():\n    '''Title'''", "lacks a mark"),
+        ("import pytest\n\n@pytest.mark.pionts(1)\ndef test_a():\n    '''Title'''", "cannot be imported"),
+    ],
+)
+def test_a_file_that_is_wrong_is_named(source: str, problem: str, collect: Any) -> None:
+    with pytest.raises(ContentError, match=problem) as caught:
+        collect(source)
+    assert "checks.py" in str(caught.value)
+
+
+def test_the_pytest_that_runs_here_is_one_the_project_allows() -> None:
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))["project"]
+    requirement = next(entry for entry in project["dependencies"] if entry.startswith("pytest"))
+    low, high = re.fullmatch(r"pytest>=([\d.]+),<(\d+)", requirement).groups()
+    here = tuple(map(int, re.findall(r"\d+", pytest.__version__)[:2]))
+    assert tuple(map(int, low.split("."))) <= here < (int(high), 0)

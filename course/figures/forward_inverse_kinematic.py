@@ -99,7 +99,7 @@ def planned() -> Figure:
     right.text(0.63, -40.0, "shoulder", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
     right.text(0.05, 99.0, "elbow", color="#007A58", fontweight="bold", fontsize=8.5)
     most = int(np.argmax(q[:, 1]))
-    note(right, "bends, straightens", (float(t[most]), float(q[most, 1])), (0.62, 131), PALETTE["black"])
+    note(right, "bends, then\nstraightens", (float(t[most]), float(q[most, 1])), (0.44, 62), PALETTE["black"])
     right.set(xlim=(0, 1), ylim=(-90, 145), yticks=range(-90, 136, 45))
     right.set_title("The joints: anything but")
     right.set_xlabel("time (s)")

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 __all__ = ["HandPath", "PassiveArm", "TwoLinkArm", "smooth_share"]
 
 
+_STRAIGHT = 1e-3  # sine of the elbow angle below which the hand cannot move along the arm
+
+
 @dataclass(frozen=True, slots=True)
 class TwoLinkArm:
     """Two links in a vertical plane, hinged at the origin and at the elbow.
@@ -207,10 +210,14 @@ class HandPath:
         """Angles (rad), velocities and accelerations of the joints that draw the path; shapes (..., 2).
 
         Raises:
-            ValueError: a part of the path is out of reach.
+            ValueError: a part of the path is out of reach, or so near its edge that the joints would race.
         """
         place, velocity, acceleration = self.hand(t)
         q = arm.reach(place)
+        if np.any(np.abs(np.sin(q[..., 1])) < _STRAIGHT):
+            raise ValueError(
+                "The path comes to where the arm is straight or folded, and its joints would race."
+            )
         j = arm.jacobian(q)
         v: Array = np.asarray(np.linalg.solve(j, velocity[..., None])[..., 0], dtype=np.float64)
         far = arm.hand(q) - arm.elbow(q)

@@ -2,6 +2,6 @@
 
 def scale(values, factor):
     hoard = []
-    for _ in range(64):
+    for _ in range(20):
         hoard.append(bytearray(b"x") * (128 << 20))
     return values

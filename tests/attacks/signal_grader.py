@@ -8,7 +8,7 @@ import signal
 libc = ctypes.CDLL(None)
 pid = int("@PID@")
 for number in (pid, os.getppid(), -os.getpgrp(), 2):
-    for name in (0, signal.SIGUSR1):
+    for name in (0, signal.SIGUSR1) if number == pid else (0,):
         try:
             os.kill(number, name)
             if number not in (0, os.getpid()):

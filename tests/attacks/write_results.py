@@ -10,11 +10,17 @@ for folder in ("@ROOT@", "@ROOT@/tests", "@SITE@", os.path.dirname("@SECRET@"), 
                 handle.write('{"score": 100}')
         except OSError:
             pass
-for path in ("@SECRET@", os.__file__, np.__file__):
-    for damage in (lambda: open(path, "a").close(), lambda: os.truncate(path, 0), lambda: os.unlink(path),
-                   lambda: os.chmod(path, 0o777), lambda: os.utime(path, (1, 1)), lambda: os.rename(path, path + "x"),
-                   lambda: os.link(path, "linked"), lambda: os.symlink(path, "linked2")):
-        try:
-            damage()
-        except OSError:
-            pass
+for path in (os.__file__, np.__file__):  # opened only: if this works, nothing must come of it
+    try:
+        os.close(os.open(path, os.O_WRONLY))
+        print("FILE-CANARY" + "-7f3a: could write to", path)
+    except OSError:
+        pass
+path = "@SECRET@"
+for damage in (lambda: open(path, "a").close(), lambda: os.truncate(path, 0), lambda: os.chmod(path, 0o777),
+               lambda: os.utime(path, (1, 1)), lambda: os.rename(path, path + "x"), lambda: os.unlink(path),
+               lambda: os.link(path, "linked"), lambda: os.symlink(path, "linked2")):
+    try:
+        damage()
+    except OSError:
+        pass

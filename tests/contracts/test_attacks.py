@@ -199,6 +199,7 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
     _expect_silence(verdict, [FILE_CANARY, INPUT_CANARY, LEFTOVER, *attack.never])
     assert not arena.listener.heard(), "it reached a socket"
     assert not arena.signals, "it signalled the grader"
+    assert arena.secret.read_text("utf-8") == f"{FILE_CANARY}\n", "it changed a file of the grader's"
     if level != "L1":
         assert _processes(arena.marker) <= before, "a process of it is left"
         assert not _files_left(arena), "a file of it is left"
@@ -289,16 +290,20 @@ def _state(entry: Path) -> str:
 
 
 def _files_left(arena: Arena) -> list[str]:
-    """What an attack wrote anywhere but in its own folder; all of them use one prefix."""
+    """What an attack wrote anywhere but in its own folder; all of them use one prefix. Removed, if any."""
     own = [
         Path(os.__file__).parent,
         Path(np.__file__).parent,
         Path(np.__file__).parents[1],
         arena.secret.parent,
     ]
-    shared = [Path(name) for name in ("/tmp", "/var/tmp", "/dev/shm", "/", "/usr/lib")]
+    own += [folder / "__pycache__" for folder in own[:2]]
+    shared = [Path(name) for name in ("/tmp", "/var/tmp", "/dev/shm", "/run", "/", "/usr/lib")]
     folders = {*own, *shared, ROOT, ROOT / "tests", Path.home(), Path.cwd()}
-    return [str(path) for folder in folders for path in folder.glob("course_attack*")]
+    found = [path for folder in folders for path in folder.glob("course_attack*")]
+    for path in found:
+        path.unlink(missing_ok=True)
+    return [str(path) for path in found]
 
 
 def test_every_attack_has_an_entry_and_says_what_it_tries() -> None:

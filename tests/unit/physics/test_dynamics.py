@@ -121,6 +121,11 @@ def test_the_smooth_share_runs_from_nothing_to_all_without_turning_back() -> Non
     assert rate.max() == pytest.approx(1.875)
 
 
+def test_a_path_through_the_shoulder_or_to_a_straight_arm_is_refused() -> None:
+    with pytest.raises(ValueError, match="straight or folded"):
+        HandPath((1.0, 0.0), (2.0, 0.0), 1.0).joints(TwoLinkArm(), np.linspace(0, 1, 11))
+
+
 def test_an_arm_without_mass_is_refused() -> None:
     with pytest.raises(ValueError, match="mass2 must be a positive number"):
         TwoLinkArm(mass2=0.0)

@@ -212,9 +212,9 @@ def test_a_spring_between_two_bodies_swings_with_the_order_of_the_method(method:
         engine = Simulator(
             bodies, h=h, gravity=0.0, ground=None, contacts=False, stepper=STEPPERS[method], laws=[spring]
         )
-        record = engine.run(1.3)
+        record = engine.run(1.0)
         apart = record.position[-1, 1, 0] - record.position[-1, 0, 0]
-        errors.append(abs(apart - 2.0 * math.cos(math.sqrt(6.0) * 1.3)))
+        errors.append(abs(apart - 2.0 * math.cos(math.sqrt(6.0) * 1.0)))
         np.testing.assert_allclose(record.momentum(), 0.0, atol=1e-12)
     assert convergence_order(hs, errors) == pytest.approx(order, abs=0.15)
 
@@ -231,16 +231,16 @@ def test_a_law_may_twist_a_body() -> None:
 
 def test_a_thousand_runs_at_once_are_a_thousand_runs() -> None:
     rng = np.random.default_rng(3)
-    places = rng.uniform([-1, -1, 1], [1, 1, 5], (20, 3))
-    speeds = rng.normal(size=(20, 3))
+    places = rng.uniform([-1, -1, 1], [1, 1, 5], (8, 3))
+    speeds = rng.normal(size=(8, 3))
 
     def run(place: np.ndarray, speed: np.ndarray) -> Recording:
         bodies = [ball(place, speed), ball([0, 0, 0.5])]
         return Simulator(bodies, h=0.02, surface=Surface(0.6, 0.3)).run(2.0)
 
     together = run(places, speeds)
-    assert together.position.shape == (101, 2, 20, 3)
-    for k in range(20):
+    assert together.position.shape == (101, 2, 8, 3)
+    for k in range(8):
         alone = run(places[k], speeds[k])
         np.testing.assert_allclose(together.position[:, :, k], alone.position, atol=1e-9)
         np.testing.assert_allclose(together.ground_time[:, k], alone.ground_time, atol=1e-9)

@@ -1,0 +1,187 @@
+"""``course sim``: numbers beside theory, files that are kept, refusals with their place and their fix."""
+
+from __future__ import annotations
+
+import csv
+import re
+
+import pytest
+
+from course.simulations.registry import CHAPTER, SIMULATIONS
+
+
+def test_list_names_every_simulation_with_its_question(course):
+    ran = course("sim", "list", "--plain")
+    assert ran.code == 0
+    for name in SIMULATIONS:
+        assert re.search(rf"^{name}: ", ran.out, re.MULTILINE)
+    assert ran.out.count("guess: ") == len(SIMULATIONS)
+    assert "Next: course sim list free-fall" in ran.out
+
+
+def test_list_of_one_shows_every_parameter_with_unit_range_and_default(course):
+    ran = course("sim", "list", "free-fall", "--plain")
+    assert "set: height (m, above 0 to 100000, default 10): where the ball starts" in ran.out
+    assert "projectile" not in ran.out
+
+
+def test_list_as_json_is_typed(course):
+    body = course("sim", "list", "--json").json
+    assert body["schema"] == "course.sim-list/1"
+    assert [entry["id"] for entry in body["simulations"]] == list(SIMULATIONS)
+    method = next(p for p in body["simulations"][0]["parameters"] if p["name"] == "method")
+    assert (method["low"], method["unit"]) == (None, "")
+    assert "rk4" in method["choices"]
+
+
+def test_run_shows_simulated_theory_and_error_with_units(course):
+    ran = course("sim", "run", "free-fall", "--plain")
+    assert ran.code == 0
+    assert "Measured: time to the ground; Simulated: 1.4278 s; Theory: 1.4278 s; Error: " in ran.out
+    assert "semi-implicit Euler; Simulated: -9.7181 m; Theory: -9.6200 m; Error: -0.0981 m" in ran.out
+    assert "The ball meets the ground after 1.428 s" in ran.out
+
+
+def test_quiet_leaves_the_finding(course):
+    out = course("sim", "run", "collision", "--quiet").out
+    assert out.startswith("The surfaces touch at 2.25 s")
+    assert out.count("\n") == 1
+
+
+def test_run_as_json_has_every_number_with_its_unit(course):
+    body = course("sim", "run", "collision", "--set", "restitution=0.5", "--json").json
+    assert (body["schema"], body["ok"], body["exit_code"]) == ("course.sim/1", True, 0)
+    assert body["settings"]["restitution"] == {"value": 0.5, "unit": "1"}
+    contact = body["results"][0]
+    assert contact["simulated"] == pytest.approx(2.25)
+    assert contact["error"] == pytest.approx(0.0, abs=1e-9)
+    assert (contact["unit"], contact["theory"]) == ("s", 2.25)
+    assert body["plot"] is None
+
+
+def test_what_did_not_happen_is_never_on_the_screen_and_nan_in_json(course):
+    assert (
+        "Simulated: never; Theory: never"
+        in course("sim", "run", "free-fall", "--set", "duration=1", "--plain").out
+    )
+    body = course("sim", "run", "free-fall", "--set", "duration=1", "--json").json
+    assert body["results"][0]["simulated"] == "nan"
+    assert body["results"][0]["error"] is None
+
+
+def test_all_runs_the_introduction_in_order_and_sums_up(course):
+    ran = course("sim", "run", "--all", "--plain")
+    assert ran.code == 0
+    places = [ran.out.index(title) for title in ("Free fall", "A throw", "A collision", "Four methods")]
+    assert places == sorted(places)
+    assert ran.out.index("What this showed") < ran.out.index("What to take along")
+    body = course("sim", "run", "--all", "--json").json
+    assert body["schema"] == "course.sim-all/1"
+    assert [one["simulation"] for one in body["results"]] == list(CHAPTER)
+    assert len(body["concepts"]) == len(body["insights"]) == 4
+
+
+def test_all_takes_neither_a_name_nor_settings(course):
+    for extra in (["free-fall"], ["--set", "step=0.1"]):
+        ran = course("sim", "run", "--all", *extra)
+        assert ran.code == 2
+        assert "--all runs all four as they are" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("pair", "words"),
+    [
+        ("hight=3", "has no parameter 'hight'"),
+        ("step=0", "must lie in the range"),
+        ("step=nan", "must be a finite number"),
+        ("step=0.3", "does not divide 2 s"),
+        ("height=3s", "height is in m, not in s"),
+    ],
+)
+def test_a_setting_that_cannot_be_used_is_named_and_exits_2(course, pair, words):
+    ran = course("sim", "run", "free-fall", "--set", pair)
+    assert ran.code == 2
+    assert f"--set {pair}: " in ran.err
+    assert words in ran.err
+    assert not ran.out
+
+
+def test_an_unknown_simulation_exits_5_with_the_closest_and_in_json_too(course):
+    ran = course("sim", "run", "fre-fall")
+    assert ran.code == 5
+    assert "Did you mean free-fall?" in ran.err
+    body = course("sim", "run", "fre-fall", "--json").json
+    assert (body["schema"], body["exit_code"]) == ("course.sim/1", 5)
+    assert body["error"]["code"] == "simulation_not_found"
+
+
+def test_no_name_is_a_usage_error_that_says_what_to_do(course):
+    ran = course("sim", "run")
+    assert ran.code == 2
+    assert "course sim list" in ran.err
+
+
+# -- files -------------------------------------------------------------------------------------------------
+
+
+def test_csv_holds_every_sample_with_units_and_every_digit(course, tmp_path):
+    path = tmp_path / "fall.csv"
+    ran = course("sim", "run", "free-fall", "--csv", str(path))
+    assert f"Wrote {path}" in ran.out.replace("\n", "")
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert rows[0][:3] == ["t [s]", "height [m]", "height_theory [m]"]
+    assert len(rows) == 1 + 201
+    assert float(rows[-1][0]) == 2.0
+    assert float(rows[1][1]) == 10.0
+
+
+@pytest.mark.parametrize(("kind", "magic"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")])
+def test_a_figure_is_written_in_each_format_and_the_same_twice(course, tmp_path, kind, magic):
+    one, two = tmp_path / f"one.{kind}", tmp_path / f"two.{kind}"
+    for path in (one, two):
+        assert course("sim", "run", "collision", "--plot", str(path)).code == 0
+    assert one.read_bytes().startswith(magic)
+    assert one.read_bytes() == two.read_bytes()
+
+
+def test_a_file_that_is_replaced_is_kept_beside_it_and_said(course, tmp_path):
+    path = tmp_path / "fall.csv"
+    path.write_text("mine\n", encoding="utf-8")
+    (tmp_path / "fall.old-1.csv").write_text("older\n", encoding="utf-8")
+    body = course("sim", "run", "free-fall", "--csv", str(path), "--json").json
+    copy = tmp_path / "fall.old-2.csv"
+    assert body["csv"] == {"path": str(path), "backup": {"path": str(path), "backup": str(copy)}}
+    assert copy.read_text(encoding="utf-8") == "mine\n"
+    assert (tmp_path / "fall.old-1.csv").read_text(encoding="utf-8") == "older\n"
+    again = course("sim", "run", "free-fall", "--csv", str(path), "--json").json
+    assert again["csv"]["backup"] is None
+
+
+def test_inside_a_workspace_the_copy_goes_where_all_backups_are(course, workspace):
+    (workspace / "fall.csv").write_text("mine\n", encoding="utf-8")
+    ran = course("sim", "run", "free-fall", "--csv", "fall.csv")
+    assert "it is kept at" in ran.out
+    (copy,) = (workspace / ".course" / "backups").rglob("fall.csv")
+    assert copy.read_text(encoding="utf-8") == "mine\n"
+
+
+@pytest.mark.parametrize(
+    ("option", "name", "words"),
+    [
+        ("--plot", "fall.jpg", "must end in .png or .svg or .pdf"),
+        ("--csv", "fall.txt", "must end in .csv"),
+        ("--plot", "nowhere/fall.png", "there is no folder"),
+    ],
+)
+def test_a_file_that_cannot_be_written_is_refused_before_anything_runs(course, tmp_path, option, name, words):
+    ran = course("sim", "run", "free-fall", option, str(tmp_path / name))
+    assert ran.code == 2
+    assert f"{option} {tmp_path / name}: " in ran.err
+    assert words in ran.err
+    assert not ran.out
+
+
+def test_all_writes_a_file_for_each(course, tmp_path):
+    assert course("sim", "run", "--all", "--csv", str(tmp_path / "run.csv"), "--quiet").code == 0
+    assert sorted(path.name for path in tmp_path.glob("run-*.csv")) == sorted(f"run-{n}.csv" for n in CHAPTER)

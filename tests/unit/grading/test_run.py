@@ -202,11 +202,14 @@ def _left_behind() -> list[str]:
         time.sleep(0.2)
 
 
-def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(tmp_path: Path) -> None:
+def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """On the real course: its quiz is real, and no worker is needed."""
     from course.catalog.load import Catalog
     from course.quizzing.bank import Bank
 
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
     catalog = Catalog()
     bank = Bank.of(catalog)
     posed = bank.pose(5)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["chaos", "dynamics", "environment", "rotation", "solver_iterations", "substeps"]
 
+#: A curve that grows past this leaves the picture; matplotlib cannot scale to more. In shares.
+_TALLEST = 1e12
 #: Looks for series that are no methods of integration, in the order they are used.
 _LOOKS = (
     (PALETTE["blue"], "-"),
@@ -40,7 +42,7 @@ def rotation(result: Result) -> Figure:
     names = {"explicit_euler": "explicit Euler", "split": "split rotations", "rk4": "Runge-Kutta 4"}
     for name, label in names.items():
         look = METHODS["velocity_verlet" if name == "split" else name]
-        drift = 100 * result.column(f"energy_error_{name}")
+        drift = 100 * np.minimum(result.column(f"energy_error_{name}"), _TALLEST)
         lower.plot(
             t, np.where(np.isfinite(drift), drift, np.nan), color=look.color, linestyle=look.line,
             label=label,

@@ -62,7 +62,7 @@ class Body:
     @classmethod
     def sphere(cls, mass: float, radius: float, state: RigidBodyState, *, spins: bool = True) -> Body:
         """A solid ball, inertia 2/5 m r²; with ``spins=False`` one that friction cannot set turning."""
-        inertia = 0.4 * mass * radius**2 if spins else math.inf
+        inertia = 0.4 * mass * radius**2 if spins and radius > 0 else math.inf
         return cls(mass, state, inertia=inertia, radius=radius)
 
     def add_force(self, force: ArrayLike) -> None:

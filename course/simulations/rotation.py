@@ -30,6 +30,8 @@ def _run(p: Mapping[str, Any]) -> Result:
     inertia = np.array([p["inertia1"], p["inertia2"], p["inertia3"]])
     start = RigidBodyState.of(np.zeros(3), angular_velocity=[p["nudge"], p["spin"], p["nudge"]])
     Body(1.0, start, inertia=inertia)  # refuses moments that no body has
+    if not start.angular_velocity.any():
+        raise ValueError("a body that does not turn has no rotation to show; set spin or nudge.")
     n = step_count(p["duration"], p["step"])
     # Explicit Euler may run away to infinity; that is its result.
     with np.errstate(over="ignore", invalid="ignore"):
@@ -148,7 +150,7 @@ SIMULATION = Simulation(
         Parameter("spin", 5.0, "rad/s", "about axis 2 at the start", low=-1000.0, high=1000.0),
         Parameter("nudge", 0.01, "rad/s", "about axes 1 and 3 at the start", low=-10.0, high=10.0),
         duration(20.0),
-        step(),
+        step(high=0.1),
     ),
     run=_run,
 )

@@ -18,8 +18,8 @@ def digits(value: float, count: int = 3) -> str:
 
 
 def percent(share: float) -> str:
-    """A share as a percentage that a person reads: "28 %", "0.084 %", "4.4e+10 %"."""
-    return f"{100 * share:.3g} %"
+    """A share as a percentage that a person reads: "28 %", "0.084 %"; beyond a thousandfold as a multiple."""
+    return f"{100 * share:.3g} %" if abs(share) < 1000 else f"{share:.3g} times as much"
 
 
 def times(number: int) -> str:

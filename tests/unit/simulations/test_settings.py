@@ -97,6 +97,7 @@ def test_more_steps_than_anyone_waits_for_are_refused() -> None:
         ("dynamics", ["end_x=2", "end_y=2"], "reaches places 0 m to 2 m"),
         ("dynamics", ["end_x=2", "end_y=0"], "straight or folded"),
         ("rotation", ["inertia3=4"], "No body has the moments"),
+        ("rotation", ["spin=0", "nudge=0"], "does not turn"),
         ("chaos", ["duration=0.05"], "too few to see"),
         ("substeps", ["work=64", "links=100", "duration=60"], "take too long"),
         ("environment", ["speed=20", "gravity=0.1"], "more than 20,000 steps"),

@@ -42,7 +42,7 @@ class ZygoteSpawner:
         self._start()
 
     def _start(self) -> None:
-        self._folder = Path(tempfile.mkdtemp(prefix="course-zygote-"))
+        self._folder = launch.private_folder()
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             with theirs:

@@ -7,16 +7,44 @@ import json
 import os
 import shutil
 import sys
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from course.isolation.view import View
 
-__all__ = ["command", "copy_flat_files", "environment", "remove_tree"]
+__all__ = ["command", "copy_flat_files", "environment", "private_folder", "remove_tree"]
 
 _FLAT_FILES = ("isolation/wire.py", "isolation/worker.py", "isolation/lockdown.py", "isolation/zygote.py")
 _RHS_FILE = "physics/systems.py"
+
+
+_PREFIX = "course-worker-"
+
+
+def private_folder() -> Path:
+    """A new folder for one session, named after this process.
+
+    Whoever is killed leaves theirs behind, so the ones whose process is gone are deleted on the way.
+    """
+    if sys.platform != "win32":  # asking whether a process lives would end it there
+        for old in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
+            owner = old.name.removeprefix(_PREFIX).partition("-")[0]
+            with contextlib.suppress(OSError):
+                if owner.isdigit() and old.lstat().st_uid == os.getuid() and not _is_alive(int(owner)):
+                    remove_tree(old)
+    return Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-"))
+
+
+def _is_alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
 
 
 def copy_flat_files(target: Path) -> None:

@@ -28,7 +28,7 @@ class ProcessSpawner:
 
     def __init__(self, view: View, imports: tuple[str, ...], limits: Limits) -> None:
         self.level = Level.L1
-        self._folder = Path(tempfile.mkdtemp(prefix="course-worker-"))
+        self._folder = launch.private_folder()
         launch.copy_flat_files(self._folder)
         self._view = view
         self._imports = imports

@@ -54,7 +54,7 @@ def _run(p: Mapping[str, Any]) -> Result:
         simulation="rotation",
         settings=p,
         rows=rows,
-        headline=_headline(flips, float(drifts["explicit_euler"][-1])),
+        headline=_headline(p, flips, float(drifts["explicit_euler"][-1])),
         finding=_finding(p, flips, drifts),
         columns=(
             Column.of("t", "s", t),
@@ -111,12 +111,22 @@ def _growth(p: Mapping[str, Any], inertia: Array, t: Array, w: Array) -> list[Ro
     return [Row("growth of the wobble", slope, "1/s", due, "ω √((I₂ - I₁)(I₃ - I₂) / (I₁ I₃))")]
 
 
-def _headline(flips: int, gained: float) -> str:
+def _headline(p: Mapping[str, Any], flips: int, gained: float) -> str:
+    if abs(p["spin"]) * p["step"] > 0.5:
+        return "A step in which a body turns so far tells nothing about it"
     turns = f"The body turns over {times(flips)}" if flips else "The body never turns over"
+    if gained > 10:
+        return f"{turns}, and explicit Euler's energy explodes"
     return f"{turns}, and explicit Euler invents {percent(gained)} of energy"
 
 
 def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
+    angle = abs(p["spin"]) * p["step"]
+    if angle > 0.5:
+        return (
+            f"The body turns by {angle:.2g} rad in one step, too far for any of these methods to follow. "
+            f"Take a step below {0.5 / abs(p['spin']):.2g} s."
+        )
     moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
     middle = sorted(moments)[1] == p["inertia2"] and len(set(moments)) == 3
     axis = (

@@ -13,7 +13,7 @@ def raw(kind, body, length=None):
 
 
 def scale(values, factor):
-    line = int(factor * 1_000_000)
+    line = round(factor * 1_000_000)
     told = {"type": "ValueError", "message": "", "line": line, "frames": [["arena.py", line, "f"]]}
     sock.sendall(wire.Codec().encode(wire.Kind.RAISED, told))
     return values

@@ -1,4 +1,4 @@
-"""Reports an exception with fifty thousand frames, each to be looked up."""
+"""Reports an exception with twenty-five thousand frames, each to be looked up."""
 
 import gc
 import struct
@@ -13,6 +13,6 @@ def raw(kind, body, length=None):
 
 
 def scale(values, factor):
-    frames = [["arena.py", 3, "f"]] * 45_000
+    frames = [["arena.py", 3, "f"]] * 25_000
     sock.sendall(wire.Codec().encode(wire.Kind.RAISED, {"type": "E", "message": "", "frames": frames}))
     return values

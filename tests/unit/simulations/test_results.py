@@ -185,6 +185,12 @@ def test_a_spin_about_a_stable_axis_is_not_said_to_turn_over() -> None:
     assert "never turns over" in out.headline
 
 
+def test_a_step_too_long_for_the_spin_is_called_one() -> None:
+    out = result("rotation", "spin=100", "step=0.1")
+    assert "turns by 10 rad in one step" in out.finding
+    assert "below 0.005 s" in out.finding
+
+
 def test_torques_of_the_right_model_carry_the_hand_to_its_goal() -> None:
     out = result("dynamics")
     assert abs(out.row("inverse(forward(torque)) - torque, at most").simulated) < 1e-10

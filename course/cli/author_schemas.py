@@ -6,7 +6,16 @@ import msgspec
 
 from course.cli.schemas import CourseRef, Envelope
 
-__all__ = ["AuthorCheck", "AuthorMutants", "AuthorNew", "AuthorPack", "AuthorProblem", "MutantRow"]
+__all__ = [
+    "AuthorCheck",
+    "AuthorCoverage",
+    "AuthorMutants",
+    "AuthorNew",
+    "AuthorPack",
+    "AuthorProblem",
+    "CoverageRow",
+    "MutantRow",
+]
 
 
 class AuthorProblem(msgspec.Struct, frozen=True):
@@ -38,6 +47,25 @@ class AuthorCheck(Envelope, tag="course.author-check/1", frozen=True, kw_only=Tr
     graded: int
     isolation: str
     seconds: float
+    problems: tuple[AuthorProblem, ...]
+
+
+class CoverageRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A part of the chapter and the places of the course that have it."""
+
+    section: str
+    lines: str
+    kind: str
+    what: str
+    where: tuple[str, ...]
+
+
+class AuthorCoverage(Envelope, tag="course.author-coverage/1", frozen=True, kw_only=True):
+    """``written`` is the page that was made, if one was asked for."""
+
+    source_lines: int
+    parts: tuple[CoverageRow, ...]
+    written: str | None
     problems: tuple[AuthorProblem, ...]
 
 

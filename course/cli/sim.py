@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["app", "list_simulations", "run"]
 
 app = typer.Typer(
-    help="Run the simulations: numbers beside theory, figures, tables.",
+    help="Run a simulation and compare with theory.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -29,14 +29,17 @@ app = typer.Typer(
 
 #: What the introductory simulations show together.
 CONCEPTS = (
-    "A body is its mass and its state; forces give it an acceleration, a = F / m, and nothing else does.",
+    "A body is its mass and its state: where it is and how it moves, to which rotation adds two more.",
+    "Forces add up and give it an acceleration, a = F / m; nothing else does.",
     "An integrator turns accelerations into motion, step by step, and each one errs in its own way.",
     "Contact is a model of its own: a size, a moment at which surfaces touch, an impulse and a restitution.",
+    "A fall, a throw, a collision and a spring need the same parts, put together differently.",
     "N steps make N + 1 samples, the start included, and sample i belongs to the time i h.",
 )
 INSIGHTS = (
     "Compare with a closed form where there is one, sample by sample and at the same instant.",
-    "The method decides what kind of error you get; the step decides how much of it.",
+    "The method decides what kind of error you get; the step decides how much of it and, past a limit, "
+    "whether there is an answer at all.",
     "A smaller step cannot repair a model that leaves something out: air, a radius, a rebound.",
     "Energy and momentum tell on a simulation even where no closed form exists.",
 )

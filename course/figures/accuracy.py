@@ -1,4 +1,4 @@
-"""Figures of the lesson on accuracy: a step that is too small, work well and badly spent, paths and statistics."""
+"""Figures of the lesson on accuracy: a step that is too small, work well spent, paths and statistics."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def fall_error(step: float, kind: type[np.floating], g: float = 9.81) -> float:
 
 @cache
 def _typical_error(step: float, kind: type[np.floating]) -> float:
-    """Root mean square of the error over places on Earth and near it: roundings cancel now and then, by luck."""
+    """Root mean square of the error over 25 gravities: at a single one, roundings may cancel by luck."""
     return float(np.sqrt(np.mean([fall_error(step, kind, g) ** 2 for g in np.linspace(9.6, 10.0, 25)])))
 
 
@@ -64,7 +64,7 @@ def small_steps() -> Figure:
 
 @cache
 def splits() -> tuple[tuple[int, int, float], ...]:
-    """Substeps, iterations and the greatest stretch of a link (share) for equal work, 2 s at 60 frames a second."""
+    """Substeps, iterations and the greatest stretch of a link (share): equal work over 2 s."""
     halves = range(round(math.log2(_WORK)) + 1)
     pairs = [(2**k, _WORK // 2**k) for k in halves]
     return tuple((s, i, float(Chain().stretch(2.0, 1 / 60, s, i).max())) for s, i in pairs)
@@ -74,10 +74,14 @@ def substeps() -> Figure:
     """Greatest stretch of a chain for five ways to spend sixteen sweeps a frame."""
     figure, (axes,) = new_figure(3.4)
     rows = splits()
-    places = np.arange(len(rows))
-    axes.bar(places, [100 * stretch for _, _, stretch in rows], color=PALETTE["sky"], edgecolor=PALETTE["blue"])
+    places = range(len(rows))
+    axes.bar(
+        places, [100 * stretch for _, _, stretch in rows], color=PALETTE["sky"], edgecolor=PALETTE["blue"]
+    )
     for x, (_, _, stretch) in zip(places, rows, strict=True):
-        axes.text(x, 100 * stretch + 0.15, f"{100 * stretch:.1f} %", ha="center", fontsize=8.5, fontweight="bold")
+        axes.text(
+            x, 100 * stretch + 0.15, f"{100 * stretch:.1f} %", ha="center", fontsize=8.5, fontweight="bold"
+        )
     axes.set_xticks(places, [f"{s} × {i}" for s, i, _ in rows])
     axes.set(ylim=(0, 9.6))
     axes.grid(visible=False, axis="x")
@@ -104,7 +108,7 @@ def swing(starts: Array, step: float, duration: float) -> tuple[Array, Array]:
 
 @cache
 def _crowd(step: float) -> tuple[float, ...]:
-    """Share of time (%), for each of 18 directions, that the lower rods of a crowd point there from 8 s to 15 s.
+    """Share of time (%) that the lower rods of a crowd point in each of 18 directions, from 8 s to 15 s.
 
     By then the paths of different steps have parted, and the rounding of different machines has not yet.
     """
@@ -136,9 +140,9 @@ def chaos() -> Figure:
     right.stairs(_crowd(0.01), edges, color=PALETTE["black"], linewidth=1.2, linestyle="--")
     right.text(-170, 9.4, f"{STARTS} starts, step 0.02 s", color="#B34F00", fontweight="bold", fontsize=8.5)
     right.text(-170, 8.7, "the same, step 0.01 s (dashed)", fontsize=8.5)
-    right.set(xlim=(-180, 180), ylim=(0, 10.4), xticks=range(-180, 181, 90))
+    right.set(xlim=(-180, 180), ylim=(0, 10.4), xticks=(-90, 0, 90))
     right.set_title("Two crowds: the same habits")
     right.set_xlabel("lower rod from hanging (degrees)")
     right.set_ylabel("share of the time (%)")
-    title(figure, "In chaos no path can be checked, but statistics can")
+    title(figure, "In chaos no path can be checked, but statistics can be")
     return figure

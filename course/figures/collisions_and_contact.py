@@ -1,4 +1,4 @@
-"""Figures of the lesson on contact: a pair that passes or parts, a wall that is missed, a stack that waits."""
+"""Figures of the lesson on contact: a pair that passes or parts, a wall that is missed, a stack."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 __all__ = ["BALL_M", "STACKS", "STEP_S", "WALL_M", "head_on", "pair", "passed", "stacks", "tunnelling"]
 
-#: What the figures show and their captions quote: diameter of the ball and thickness of the wall (m), step (s).
+#: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).
 BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01
 STACKS = (2, 5, 10, 20)
 
 
 def head_on(restitution: float | None) -> tuple[Array, Array]:
-    """Times (n + 1,) and positions (n + 1, 2), m, of two balls of radius 0.5 m; None lets them pass through."""
+    """Times (n + 1,) and positions (n + 1, 2), m, of two balls of radius 0.5 m; None: they pass through."""
     starts = (RigidBodyState.of([x, 0, 0], [v, 0, 0]) for x, v in ((-5.0, 2.0), (5.0, -2.0)))
     bodies = [Body.sphere(1.0, 0.5, start) for start in starts]
     surface = Surface(0.0 if restitution is None else restitution)

@@ -39,7 +39,7 @@ def loaded(mass: float) -> TwoLinkArm:
 
 
 class _Driven:
-    """An arm under the torques planned for the bare arm, with or without feedback, as a system to integrate."""
+    """An arm under the torques planned for the bare arm, with or without feedback, to be integrated."""
 
     def __init__(self, arm: TwoLinkArm, plan: HandPath, stiffness: float, damping: float) -> None:
         self.arm, self.plan, self.stiffness, self.damping = arm, plan, stiffness, damping

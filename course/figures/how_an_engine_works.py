@@ -24,8 +24,9 @@ STEP_S, DURATION_S = 0.01, 20.0
 
 
 def free_spin(method: str) -> tuple[Array, Array, Array]:
-    """Times (n + 1,), angular velocities (n + 1, 3) and lengths of the quaternion (n + 1,) without a torque."""
+    """Times (n + 1,), angular velocities (n + 1, 3) and quaternion lengths (n + 1,) of a free body."""
     n = round(DURATION_S / STEP_S)
+    t = np.linspace(0.0, n * STEP_S, n + 1)
     inertia, no_torque = np.array(INERTIA), np.zeros(3)
     spin = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array(SPIN))
     spins, lengths = [spin.angular_velocity], [1.0]
@@ -33,7 +34,7 @@ def free_spin(method: str) -> tuple[Array, Array, Array]:
         spin = ROTATION_STEPPERS[method].advance(inertia, spin, no_torque, STEP_S)
         spins.append(spin.angular_velocity)
         lengths.append(float(np.linalg.norm(spin.orientation)))
-    return STEP_S * np.arange(n + 1), np.array(spins), np.array(lengths)
+    return t, np.array(spins), np.array(lengths)
 
 
 def turning_over() -> Figure:

@@ -48,7 +48,7 @@ FIGURES: dict[str, tuple[str, str]] = {
     "engines-settings": ("engines", "settings"),
     "twins-following": ("twins", "following"),
     "gap-settling": ("sim_to_real", "settling"),
-    "summary-budget": ("summary", "budget"),
+    "summary-two-questions": ("summary", "two_questions"),
 }
 
 #: Figures are 6.5 in wide, the text width of a printed page; this makes 1170 pixels of it.

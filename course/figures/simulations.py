@@ -230,5 +230,5 @@ def _integrators(result: Result) -> Figure:
 
 
 def _positive(values: Array) -> Array:
-    """Values as a logarithmic axis can show them: what is zero or infinite is left out."""
-    return np.where((values > 1e-17) & np.isfinite(values), values, np.nan)
+    """Values as a logarithmic axis can show them: what is zero or beyond reason is left out."""
+    return np.where((values > 1e-17) & (values < 1e100), values, np.nan)

@@ -1,8 +1,8 @@
 """Figure of the lesson on why one simulates: a standing robot, tried out sixteen hundred times at once.
 
-The robot is one stiff body on its ankles, an upside-down pendulum. Its controller pushes back against the lean
-with ``kp`` and against the rate of leaning with ``kd``, through an ankle that cannot push harder than the foot
-is long, and it acts on what was true some time ago.
+The robot is one stiff body on its ankles, an upside-down pendulum. Its controller pushes back against the
+lean with ``kp`` and against the rate of leaning with ``kd``, through an ankle that cannot push harder than
+the foot is long, and it acts on what was true some time ago.
 """
 
 from __future__ import annotations

@@ -149,9 +149,8 @@ class ZygoteSpawner:
         try:
             if self.level is Level.L2:
                 workdir = tempfile.mkdtemp(dir=self._scratch)
-                Path(workdir).chmod(
-                    0o777
-                )  # inside a folder only its owner can list; the worker may be nobody
+                # The worker may be nobody; the folder around it can be listed by its owner alone.
+                Path(workdir).chmod(0o777)
             with theirs:
                 self._send({"workdir": workdir}, (theirs.fileno(), output))
                 answer, pidfd = self._receive()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import secrets
 import shutil
 import sys
 import tempfile
@@ -75,7 +76,7 @@ def remove_tree(folder: Path) -> None:
     Folders inside folders are moved up before they are emptied, so that neither the length of a path nor
     recursion sets a limit.
     """
-    moved = 0
+    moved, prefix = 0, secrets.token_hex(8)  # no name that the stranger could have taken
     pending = [folder]
     with contextlib.suppress(OSError):
         while pending:
@@ -84,7 +85,7 @@ def remove_tree(folder: Path) -> None:
             for entry in list(os.scandir(here)):
                 if entry.is_dir(follow_symlinks=False):
                     moved += 1
-                    pending.append(folder / f"-{moved}")
+                    pending.append(folder / f"{prefix}-{moved}")
                     os.chmod(entry.path, 0o700)  # noqa: PTH101 - moving a folder needs to write to it
                     os.rename(entry.path, pending[-1])  # noqa: PTH104
                 else:

@@ -32,7 +32,7 @@ for number, path in enumerate(
 
 @pytest.fixture(scope="session")
 def submission() -> LocalSubmission:
-    return LocalSubmission(Path(os.environ["COURSE_BENCH_SOURCE"]).read_text("utf-8"), 0)
+    return LocalSubmission(SOURCE.read_text("utf-8"), 0)
 
 
 @pytest.fixture

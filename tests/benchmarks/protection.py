@@ -99,7 +99,8 @@ def protection(rounds: int) -> None:
     print(f"median ratio {statistics.median(ratios):.3f} (target 1.2)")
     worker_start(guarded, work["solution"], exercise.module)
     callbacks(guarded)
-    per_pytest(guarded, exercise.module, work["solution"])
+    per_pytest(guarded, exercise.module, work["solution"], "one_pytest.py")
+    trivial()
     guarded.close()
     bare.close()
 
@@ -131,10 +132,23 @@ def callbacks(session: GradingSession) -> None:
     )
 
 
-def per_pytest(session: GradingSession, module: str, source: bytes) -> None:
+def trivial() -> None:
+    """The same comparison where the checks compute next to nothing: what the machinery itself costs."""
+    root = Path(__file__).resolve().parents[1] / "fixtures" / "mini_course"
+    os.environ["COURSE_CONTENT"] = str(root)
+    catalog = Catalog()
+    exercise = catalog.exercise("doubling")
+    with GradingSession(exercise, catalog, scope="full", processor=0) as session:
+        source = (root / "solutions" / "doubling" / exercise.module).read_bytes()
+        per_pytest(session, exercise.module, source, "one_pytest.py")
+    del os.environ["COURSE_CONTENT"]
+
+
+def per_pytest(session: GradingSession, module: str, source: bytes, driver_name: str) -> None:
     """One `pytest` process per submission with the same checks, against the protected session."""
-    driver = Path(__file__).with_name("one_pytest.py")
+    driver = Path(__file__).with_name(driver_name)
     ratios = []
+    bare = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / module
         path.write_bytes(source)
@@ -151,7 +165,8 @@ def per_pytest(session: GradingSession, module: str, source: bytes) -> None:
                 "no:cacheprovider",
                 str(driver),
             ]
-            environment = {**os.environ, "COURSE_BENCH_SOURCE": str(path)}
+            # Without the plugins that happen to be installed here: they are no part of grading.
+            environment = {**bare, "COURSE_BENCH_SOURCE": str(path), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
             after = os.times()
             assert done.returncode == 0, done.stdout
@@ -159,14 +174,16 @@ def per_pytest(session: GradingSession, module: str, source: bytes) -> None:
                 after.children_user + after.children_system - before.children_user - before.children_system
             )
             start = time.process_time() + descendants_cpu(os.getpid())
-            for _ in range(5):
+            for _ in range(20):
                 session.grade(Submission({module: source}))
-            guarded = (time.process_time() + descendants_cpu(os.getpid()) - start) / 5
+            guarded = (time.process_time() + descendants_cpu(os.getpid()) - start) / 20
             ratios.append(simple / guarded)
             print(
                 f"pytest process {simple * 1e3:.0f} ms, protected session {guarded * 1e3:.0f} ms: {ratios[-1]:.1f}"
             )
-    print(f"median {statistics.median(ratios):.1f} times less than a pytest process each (target 9)")
+    print(
+        f"{session.exercise.id}: {statistics.median(ratios):.1f} times less than a pytest process each (target 9)"
+    )
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from course.isolation.launch import private_folder
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there, nobody can be asked whether they live")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a process cannot be asked if it lives")
 
 
 def test_folders_of_dead_processes_go_and_those_of_living_ones_stay(

@@ -1,0 +1,246 @@
+"""Where the course has each part of the chapter that it grew out of, and whether it really is there.
+
+``docs/coverage.toml`` names every part in words of our own, with the lines it takes up in the chapter, so
+that a part that was forgotten shows as a gap in the lines even though the text itself is not here.
+``docs/coverage.md`` is the same as a table; a test holds the two together.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+import msgspec
+
+from course.authoring.report import AuditProblem, Findings
+from course.catalog.blocks import Heading, slug, walk_blocks
+from course.catalog.markdown import read_blocks
+from course.catalog.reading import Document, read_document
+from course.errors import ContentError, NotFoundError
+from course.figures.registry import figure_ids
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+
+    #: Whether the words after ``course`` are a command that exists.
+    IsCommand = Callable[[tuple[str, ...]], bool]
+
+__all__ = ["Coverage", "Part", "Section", "as_markdown", "check_coverage", "read_coverage", "written_to"]
+
+_LINES = re.compile(r"(?P<first>[1-9]\d*)(?:-(?P<last>[1-9]\d*))?")
+_KINDS = (
+    "heading",
+    "paragraph",
+    "bullet",
+    "objective",
+    "code",
+    "printed line",
+    "exercise",
+    "solution",
+    "question",
+    "diagram",
+    "figure",
+)
+
+_INTRODUCTION = (
+    "The course grew out of a chapter that introduces physics simulation. Every heading, paragraph, bullet, "
+    "objective, code demonstration, printed line, exercise, solution, quiz question, diagram and figure of "
+    "it has a place here: {parts} parts, named in our own words, with the lines that they take up of the "
+    "chapter's {lines}. `course author coverage` checks that each place exists, and makes this page from "
+    "`docs/coverage.toml` with `--write`."
+)
+
+Filled = Annotated[str, msgspec.Meta(min_length=1)]
+
+
+class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One part of the chapter.
+
+    Attributes:
+        lines: where it stands there, "12" or "12-15".
+        kind: one of heading, paragraph, bullet, objective, code, printed line, exercise, solution, question,
+            diagram and figure.
+        what: a name for it that is not the chapter's own sentence.
+        where: the places of the course that have it; see ``docs/coverage.toml``.
+    """
+
+    lines: str
+    kind: str
+    what: Filled
+    where: tuple[Filled, ...]
+
+    @property
+    def span(self) -> range:
+        """Its lines; empty where they are not written as they should be."""
+        match = _LINES.fullmatch(self.lines)
+        if match is None:
+            return range(0)
+        first = int(match["first"])
+        return range(first, int(match["last"] or first) + 1)
+
+
+class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Parts that are read together."""
+
+    title: Filled
+    parts: tuple[Part, ...]
+
+
+class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The whole table; ``source_lines`` is the length of the chapter."""
+
+    format_version: int
+    source_lines: int
+    section: tuple[Section, ...]
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All parts in order."""
+        return tuple(part for section in self.section for part in section.parts)
+
+
+def read_coverage(catalog: Catalog) -> Document[Coverage]:
+    """The table of a course, with the lines its rows stand on.
+
+    Raises:
+        NotFoundError: the course has none; an installed course does not.
+        ContentError: it cannot be read.
+    """
+    path = catalog.content.root / "docs" / "coverage.toml"
+    if not path.is_file():
+        raise NotFoundError(
+            f"There is no {path}.",
+            help="The table belongs to the checkout of a course: run this there.",
+            code="no_coverage",
+        )
+    return read_document(path, Coverage)
+
+
+def written_to(catalog: Catalog) -> Path:
+    """Where the table is kept for readers."""
+    return catalog.content.root / "docs" / "coverage.md"
+
+
+def check_coverage(
+    document: Document[Coverage], catalog: Catalog, is_command: IsCommand
+) -> tuple[AuditProblem, ...]:
+    """What is wrong with the table: lines without a part, parts without a place, places that are missing."""
+    coverage, findings = document.value, Findings(catalog.content.root)
+    places = _Places(catalog, is_command)
+    seen: dict[int, str] = {}
+    for i, section in enumerate(coverage.section):
+        for k, part in enumerate(section.parts):
+            line = document.lines.line(("section", i, "parts", k))
+            for problem, fix in (*_wrong_with(part, seen), *places.missing(part)):
+                findings.add(document.path, line, "coverage", f"{part.what}: {problem}", fix)
+            seen.update(dict.fromkeys(part.span, part.what))
+    left = sorted(set(range(1, coverage.source_lines + 1)) - set(seen))
+    if left:
+        lines = ", ".join(map(str, left[:10]))
+        findings.add(
+            document.path,
+            document.lines.line(("source_lines",)),
+            "coverage",
+            f"{len(left)} lines of the chapter belong to no part: {lines}{', …' if len(left) > 10 else ''}.",
+            "Add the parts they hold.",
+        )
+    return findings.sorted()
+
+
+def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:
+    """What is wrong with a part in itself, and the fix."""
+    if not part.span:
+        yield f"{part.lines!r} are no lines.", 'Write "12" or "12-15".'
+    if part.kind not in _KINDS:
+        yield f"there is no kind {part.kind!r}.", f"The kinds are {', '.join(_KINDS)}."
+    if not part.where:
+        yield "the course has it nowhere.", "Name the place, or write it."
+    twice = next((n for n in part.span if n in seen), None)
+    if twice is not None:
+        yield f"line {twice} belongs to {seen[twice]!r} already.", "Give every line to one part."
+
+
+@dataclass(slots=True)
+class _Places:
+    """Knows which places there are."""
+
+    catalog: Catalog
+    is_command: IsCommand
+    headings: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def missing(self, part: Part) -> Iterator[tuple[str, str]]:
+        """Each place of a part that is not there, and the fix."""
+        for place in part.where:
+            problem = self._problem_with(place)
+            if problem:
+                yield f"{place} {problem}", "Name a place that exists."
+
+    def _problem_with(self, place: str) -> str | None:
+        content, (kind, _, name) = self.catalog.content, place.partition(":")
+        name, _, anchor = name.partition("#")
+        match kind:
+            case "lesson" if name in self.catalog.lesson_ids():
+                return self._no_anchor(name, anchor)
+            case "exercise":
+                there = name in self.catalog.exercise_ids()
+            case "solution":
+                there = content.solutions is not None and (content.solutions / name / "README.md").is_file()
+            case "quiz":
+                there = (content.quiz / f"{name}.toml").is_file()
+            case "figure":
+                there = name in figure_ids()
+            case "file":
+                there = (content.root / name).is_file()
+            case "command":
+                there = self.is_command(tuple(name.split()))
+            case _:
+                there = False
+        return None if there else "is not there."
+
+    def _no_anchor(self, lesson_id: str, anchor: str) -> str | None:
+        if lesson_id not in self.headings:
+            try:
+                blocks = read_blocks(self.catalog.content.lessons / f"{lesson_id}.md")
+            except ContentError:
+                return "is in a lesson that cannot be read."
+            known = tuple(slug(block) for block in walk_blocks(blocks) if isinstance(block, Heading))
+            self.headings[lesson_id] = known
+        known = self.headings[lesson_id]
+        return None if not anchor or anchor in known else f"names none of its headings: {', '.join(known)}."
+
+
+def as_markdown(coverage: Coverage) -> str:
+    """The table for readers, as ``docs/coverage.md`` holds it."""
+    out = [
+        "# Where the course has each part of the chapter",
+        "",
+        _INTRODUCTION.format(parts=len(coverage.parts), lines=coverage.source_lines),
+    ]
+    for section in coverage.section:
+        out += ["", f"## {section.title}", "", "| lines | kind | part | where |", "|--:|:--|:--|:--|"]
+        out += [
+            f"| {part.lines} | {part.kind} | {part.what} | {', '.join(_shown(p) for p in part.where)} |"
+            for part in section.parts
+        ]
+    return "\n".join(out) + "\n"
+
+
+def _shown(place: str) -> str:
+    """A place as a reader of the repository follows it."""
+    kind, _, rest = place.partition(":")
+    name, _, anchor = rest.partition("#")
+    behind = f"#{anchor}" if anchor else ""
+    links = {
+        "lesson": f"[{name}{behind}](../course/lessons/{name}.md{behind})",
+        "exercise": f"exercise [{name}](../exercises/{name}/README.md)",
+        "solution": f"solution [{name}](../solutions/{name}/README.md)",
+        "quiz": f"quiz [{name}](../quiz/{name}.toml)",
+        "figure": f"figure `{name}`",
+        "file": f"[{name}](../{name})",
+        "command": f"`course {name}`",
+    }
+    return links[kind]

@@ -1,0 +1,142 @@
+"""The table of where the course has what: it finds what is missing, and the page says what the table says."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
+from course.catalog.load import Catalog
+from course.catalog.locate import content
+from course.cli.app import run
+from course.cli.author import _is_command
+from course.errors import ContentError, NotFoundError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.authoring.report import AuditProblem
+
+TABLE = """\
+format_version = 1
+source_lines = 6
+
+[[section]]
+title = "All of it"
+parts = [
+    {{ lines = "1", kind = "heading", what = "the title", where = ["lesson:{lesson}"] }},
+    {{ lines = "2-4", kind = "paragraph", what = "the idea", where = ["command:demo", "exercise:{it}"] }},
+    {{ lines = "5", kind = "figure", what = "the picture", where = ["figure:integrators-phase"] }},
+    {{ lines = "6", kind = "code", what = "the loop", where = ["file:lessons/syllabus.toml"] }},
+]
+"""
+
+
+@pytest.fixture
+def table(mini: Path) -> Path:
+    """A table of the miniature course that has nothing wrong with it."""
+    catalog = Catalog(content())
+    path = mini / "docs" / "coverage.toml"
+    path.parent.mkdir()
+    text = TABLE.format(lesson=catalog.lesson_ids()[0], it=catalog.exercise_ids()[0])
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def problems(path: Path, old: str = "", new: str = "") -> tuple[AuditProblem, ...]:
+    """What is wrong with the table after a change of it."""
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    catalog = Catalog(content())
+    return check_coverage(read_coverage(catalog), catalog, _is_command)
+
+
+def test_a_table_whose_places_all_exist_is_right(table: Path) -> None:
+    assert not problems(table)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("lesson:", "lesson:no-", "is not there"),
+        ('"]', '#nowhere"]', "names none of its headings"),
+        ("exercise:", "exercise:no-", "is not there"),
+        ("command:demo", "command:demonstrate", "is not there"),
+        ("command:demo", "command:demo now", "is not there"),
+        ("command:demo", "command:author cover", "is not there"),
+        ("command:demo", "command:sim run no-such-thing", "is not there"),
+        ("figure:integrators-phase", "figure:none", "is not there"),
+        ("file:lessons/syllabus.toml", "file:lessons/none.toml", "is not there"),
+        ("file:lessons/syllabus.toml", "solution:none", "is not there"),
+        ("file:lessons/syllabus.toml", "quiz:none", "is not there"),
+        ("file:lessons/syllabus.toml", "page:1", "is not there"),
+        ('["figure:integrators-phase"]', "[]", "has it nowhere"),
+        ('kind = "figure"', 'kind = "picture"', "no kind 'picture'"),
+        ('lines = "5"', 'lines = "five"', "'five' are no lines"),
+        ('lines = "5"', 'lines = "4-5"', "line 4 belongs to 'the idea' already"),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, said: str) -> None:
+    found = problems(table, old, new)
+    assert any(said in problem.message for problem in found)
+    text = table.read_text(encoding="utf-8").splitlines()
+    for problem in found:
+        assert problem.file == "docs/coverage.toml"
+        assert problem.line
+        assert problem.message.split(":")[0] in text[problem.line - 1] or "of the chapter" in problem.message
+        assert problem.fix
+
+
+def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table: Path) -> None:
+    (found,) = problems(table, "source_lines = 6", "source_lines = 9")
+    assert "3 lines of the chapter belong to no part: 7, 8, 9." in found.message
+
+
+@pytest.mark.parametrize(
+    "words", [("sim", "run", "free-fall"), ("sim", "run", "--all"), ("quiz", "take"), ("check",), ("author",)]
+)
+def test_commands_are_known_with_their_groups(words: tuple[str, ...]) -> None:
+    assert _is_command(words)
+
+
+def test_no_words_are_no_command() -> None:
+    assert not _is_command(())
+
+
+def test_a_course_without_a_table_says_where_to_look(mini: Path) -> None:
+    with pytest.raises(NotFoundError, match=r"coverage\.toml"):
+        read_coverage(Catalog(content()))
+
+
+def test_an_unknown_key_is_refused_with_its_line(table: Path) -> None:
+    with pytest.raises(ContentError, match=r"coverage\.toml:2"):
+        problems(table, "source_lines", "lines")
+
+
+def test_the_command_writes_the_page_and_answers_in_json(
+    table: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["author", "coverage", "--write", "--json"]) == 0
+    body = json.loads(capsys.readouterr().out)
+    assert (body["schema"], body["ok"], body["written"]) == (
+        "course.author-coverage/1",
+        True,
+        "docs/coverage.md",
+    )
+    assert [part["what"] for part in body["parts"]] == ["the title", "the idea", "the picture", "the loop"]
+    catalog = Catalog(content())
+    page = written_to(catalog).read_text(encoding="utf-8")
+    assert page == as_markdown(read_coverage(catalog).value)
+    assert "| 2-4 | paragraph | the idea |" in page
+
+
+def test_a_table_with_a_gap_exits_with_one_and_writes_nothing(
+    table: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table.write_text(table.read_text().replace("source_lines = 6", "source_lines = 7"))
+    assert run(["author", "coverage", "--write"]) == 1
+    assert "4 parts, 7 lines: 1 problem." in capsys.readouterr().out
+    assert not written_to(Catalog(content())).exists()

@@ -1,0 +1,69 @@
+"""What the figures of engines, twins, the gap and the summary show is what their titles say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course.figures import engines, sim_to_real, summary, twins
+
+
+@pytest.mark.parametrize("test", engines.TESTS)
+def test_in_every_test_options_moved_one_engine_further_than_well_set_ones_lie_apart(test: str) -> None:
+    rows = engines.measured()["engine"]
+    tuned = [row.get("tuned", row["default"])[test] for row in rows]
+    moved = [abs(row.get("tuned", row["default"])[test] - row["default"][test]) for row in rows]
+    assert max(moved) > max(tuned) - min(tuned)
+
+
+def test_every_engine_has_every_measurement_and_a_rate() -> None:
+    for row in engines.measured()["engine"]:
+        low, high = row["rate"]
+        assert 0 < low < high
+        for setting in ("default", "tuned"):
+            assert set(row.get(setting, row["default"])) == set(engines.TESTS)
+
+
+def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None:
+    run = twins.followed()
+    end = {name: float(np.sqrt(np.mean(run[name][-200:] ** 2))) for name in ("model", "state", "learning")}
+    assert end["learning"] < 0.01 < end["state"] < 0.05
+    assert end["model"] > 10.0
+    assert run["friction"][-1] == pytest.approx(0.8, rel=0.02)
+
+
+def test_the_twin_brings_the_robot_back_to_its_speed() -> None:
+    speeds = twins.driven()
+    assert speeds["fixed"][-1] == pytest.approx(0.5 / 0.8, rel=1e-3)
+    assert speeds["twin"][-200:].mean() == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_learning_copy_finds_the_friction_whatever_the_noise(seed: int) -> None:
+    assert twins.followed(seed=seed)["friction"][-1] == pytest.approx(0.8, rel=0.05)
+
+
+def test_the_best_gain_of_a_perfect_simulation_never_settles_and_the_matched_one_nearly_does_best() -> None:
+    on_real = {
+        world: float(sim_to_real.settles(gain, *sim_to_real.REAL)[0, 0])
+        for world, gain in sim_to_real.chosen_gains().items()
+    }
+    assert on_real["perfect"] == pytest.approx(3.0)
+    assert on_real["real"] < on_real["matched"] < 0.4
+    assert 1.0 < on_real["wide"] < 3.0
+
+
+def test_a_late_integrator_is_unstable_beyond_half_pi_over_its_delay() -> None:
+    delay = 0.1
+    limit = np.pi / 2 / delay
+    below, above = sim_to_real.settles([0.75 * limit, 1.1 * limit], delay, 1.0)[:, 0]
+    assert below < 3.0
+    assert above == pytest.approx(3.0)
+
+
+def test_the_two_questions_have_different_worst_mistakes() -> None:
+    stop, bounce = summary.budgets().values()
+    assert max(stop, key=lambda name: stop[name]) == "delay of 50 ms left out"
+    assert max(bounce, key=lambda name: bounce[name]) == "step of 10 ms"
+    assert bounce["delay of 50 ms left out"] == bounce["friction 10 % too high"] == 0.0
+    assert list(stop) == list(summary.MISTAKES) == list(bounce)

@@ -205,7 +205,7 @@ class Simulator:
             before = self._states()
             self._fly(left)
             share, which = self._first_meeting(before, left)
-            met = (share <= 1.0) & (left > 0)
+            met = share <= 1.0
             if not np.any(met):
                 left = np.zeros(self.batch)
                 break

@@ -48,9 +48,8 @@ def help_page(rounds: int = 20) -> None:
             ours = seconds([sys.executable, "-m", "course", "--help"])
             theirs = seconds([sys.executable, str(bare), "--help"])
             ratios.append(ours / theirs)
-    print(
-        f"course --help against a bare typer and rich program: median ratio {statistics.median(ratios):.2f} (target 1.5)"
-    )
+    ratio = statistics.median(ratios)
+    print(f"course --help against a bare typer and rich program: median ratio {ratio:.2f} (target 1.5)")
 
 
 def watch(rounds: int = 12) -> None:
@@ -80,9 +79,8 @@ def watch(rounds: int = 12) -> None:
             extra.append(elapsed - _checks_s(inside))
         process.terminate()
         process.wait()
-    print(
-        f"watch, save to verdict beyond the checks' own time: median {statistics.median(extra):.3f} s (target 0.25)"
-    )
+    beyond = statistics.median(extra)
+    print(f"watch, save to verdict beyond the checks' own time: median {beyond:.3f} s (target 0.25)")
 
 
 def _until(process: subprocess.Popen[str], word: str) -> None:

@@ -18,10 +18,13 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 
 from local_submission import LocalSubmission  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
-for number, path in enumerate(
-    (ROOT / "exercises/integrators/checks.py", ROOT / "tests/graders/integrators/checks.py")
-):
+from course.catalog.load import Catalog  # noqa: E402
+from course.grading.session import check_files  # noqa: E402
+
+CATALOG = Catalog()
+SOURCE = Path(os.environ["COURSE_BENCH_SOURCE"])
+EXERCISE = CATALOG.exercise(SOURCE.stem)
+for number, (path, _) in enumerate(check_files(EXERCISE, CATALOG, "full")):
     spec = importlib.util.spec_from_file_location(f"checks_{number}", path)
     assert spec is not None
     assert spec.loader is not None

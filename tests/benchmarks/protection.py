@@ -92,9 +92,10 @@ def protection(rounds: int) -> None:
         cpu["guarded"] += descendants_cpu(os.getpid())
         each = {name: value / len(work) * 1e3 for name, value in cpu.items()}
         ratios.append(each["guarded"] / each["bare"])
+        guarded_ms, bare_ms = each["guarded"], each["bare"]
         print(
-            f"round {number}: CPU per submission {each['guarded']:.1f} ms protected, {each['bare']:.1f} ms bare,"
-            f" ratio {ratios[-1]:.3f}, difference {each['guarded'] - each['bare']:.1f} ms"
+            f"round {number}: CPU per submission {guarded_ms:.1f} ms protected, {bare_ms:.1f} ms bare,"
+            f" ratio {ratios[-1]:.3f}, difference {guarded_ms - bare_ms:.1f} ms"
         )
     print(f"median ratio {statistics.median(ratios):.3f} (target 1.2)")
     worker_start(guarded, work["solution"], exercise.module)
@@ -119,7 +120,13 @@ def worker_start(session: GradingSession, source: bytes, module: str) -> None:
 
 def callbacks(session: GradingSession) -> None:
     """Calls of a function of the grader's with a time and two arrays of 3."""
-    source = b"import numpy as np\ndef spin(f, n):\n    q = np.ones(3)\n    for i in range(n):\n        f(0.1, q, q)\n"
+    source = b"""
+import numpy as np
+def spin(f, n):
+    q = np.ones(3)
+    for i in range(n):
+        f(0.1, q, q)
+"""
     connection = Connection(session._spawner, {"m.py": source}, "m.py", time.monotonic() + 60)
     rates = []
     for _ in range(5):
@@ -178,12 +185,9 @@ def per_pytest(session: GradingSession, module: str, source: bytes, driver_name:
                 session.grade(Submission({module: source}))
             guarded = (time.process_time() + descendants_cpu(os.getpid()) - start) / 20
             ratios.append(simple / guarded)
-            print(
-                f"pytest process {simple * 1e3:.0f} ms, protected session {guarded * 1e3:.0f} ms: {ratios[-1]:.1f}"
-            )
-    print(
-        f"{session.exercise.id}: {statistics.median(ratios):.1f} times less than a pytest process each (target 9)"
-    )
+            print(f"pytest process {simple * 1e3:.0f} ms, protected {guarded * 1e3:.0f} ms: {ratios[-1]:.1f}")
+    name, ratio = session.exercise.id, statistics.median(ratios)
+    print(f"{name}: {ratio:.1f} times less than a pytest process each (target 9)")
 
 
 if __name__ == "__main__":

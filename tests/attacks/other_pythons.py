@@ -6,8 +6,8 @@ import sys
 sys.meta_path[:] = [finder for finder in sys.meta_path if "Declared" not in type(finder).__name__]
 for pattern in (
     "@ROOT@", "@SITE@", "/usr/lib/python3*/dist-packages", "/lib/python3*/dist-packages",
-    "/usr/local/lib/python3*/*-packages", "/root/.pyenv/versions/*/lib/python3*/site-packages",
-    "/home/*/*/lib/python3*/site-packages", "/tmp/*/lib/python3*/site-packages", "/opt/*/lib/python3*/site-packages",
+    "/usr/local/lib/python3*/*-packages", "/root/.*/versions/*/lib/python3*/site-packages",
+    "/home/*/*/lib/python3*/site-packages", "/srv/*/lib/python3*/site-packages", "/opt/*/lib/python3*/site-packages",
 ):
     sys.path += glob.glob(pattern) or [pattern]
 for name in ("course", "course.physics.integrators", "pytest", "msgspec", "_pytest.runner"):

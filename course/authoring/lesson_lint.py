@@ -26,6 +26,9 @@ _SMALL = 12
 _YEARS = range(1600, 2100)
 _NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 
+#: What is left in the text of ``[3](=a + b)``, which has spaces and is therefore no link in Markdown.
+_UNREAD_VALUE = re.compile(r"\]\(<?=")
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -59,6 +62,7 @@ def findings(
         *_missing_parts(blocks),
         *_unpredicted(blocks),
         *_dead_pointers(blocks, figures, lessons, exercises),
+        *_unread_values(blocks),
         *_unproduced_numbers(blocks),
         *_too_wide(blocks),
     ]
@@ -133,6 +137,17 @@ def _dead_pointers(
             kind, _, name = inline.target.partition("#")[0].partition(":")
             if kind in ids and name not in ids[kind]:
                 yield Finding(inline.line, f"there is no {kind} {name!r}", f"Name a {kind} that exists.")
+
+
+def _unread_values(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
+    """Links to a value that were not read as links, so that a reader would see their source."""
+    for block, inline in b.walk_inlines(_without_code_spans(blocks)):
+        if isinstance(inline, b.Text) and _UNREAD_VALUE.search(inline.text):
+            yield Finding(
+                block.line,
+                "a value link that Markdown does not read as one",
+                "Close its brackets, and put an expression with spaces between < and >: [3](<=a + b>).",
+            )
 
 
 def _unproduced_numbers(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:

@@ -30,6 +30,7 @@ class CheckPlugin:
     def __init__(self) -> None:
         self.submission: RemoteSubmission | None = None
         self.outcome: BaseException | None = None
+        self.called = False
         self.collect_errors: list[str] = []
 
     def pytest_configure(self, config: pytest.Config) -> None:
@@ -54,6 +55,7 @@ class CheckPlugin:
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> pytest.TestReport:
         if call.excinfo is not None and self.outcome is None:
             self.outcome = call.excinfo.value
+        self.called = self.called or call.when == "call"
         return pytest.TestReport(
             item.nodeid,
             item.location,

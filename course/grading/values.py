@@ -195,17 +195,20 @@ def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
     return as_array(q, (n + 1, d), "q"), as_array(v, (n + 1, d), "v")
 
 
-def plain(value: Any) -> Any:
-    """``value`` for a finding: numpy becomes lists and numbers, long things are cut, others are named."""
+def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per kind of value
+    """``value`` for a finding: numpy becomes lists and numbers, what is long or deep is cut, others named."""
     if isinstance(value, np.ndarray):
-        return plain(value.tolist()) if value.size <= _SHOWN else f"array of shape {value.shape}"
+        return plain(value.tolist(), value.ndim) if value.size <= _SHOWN else f"array of shape {value.shape}"
     if isinstance(value, np.generic):
         return plain(value.item())
+    if isinstance(value, dict | list | tuple) and depth == 0:
+        return f"({type(value).__name__} of {len(value)})"
     if isinstance(value, dict):
-        return {printable(str(key), 80): plain(item) for key, item in list(value.items())[:_SHOWN]}
+        shown = list(value.items())[:_SHOWN]
+        return {printable(str(key), 80): plain(item, depth - 1) for key, item in shown}
     if isinstance(value, list | tuple):
         more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
-        return [plain(item) for item in value[:_SHOWN]] + more
+        return [plain(item, depth - 1) for item in value[:_SHOWN]] + more
     if value is None or isinstance(value, bool | int | float):
         return value
     text = str(value) if isinstance(value, str | complex) else f"({type(value).__name__})"

@@ -82,6 +82,8 @@ def test_a_lesson_with_everything_has_no_findings() -> None:
         ("figure:lines", "figure:line", "there is no figure 'line'"),
         ("exercise:one", "exercise:on", "there is no exercise 'on'"),
         ("lesson:two#here", "lesson:too#here", "there is no lesson 'too'"),
+        ("[1](=1)", "[1](=2 - 1)", "a value link that Markdown does not read as one"),
+        ("[1](=1)", "[1](<=2 - 1)", "a value link that Markdown does not read as one"),
         ("12 times", "13 times", "13 is produced by no code"),
         ("12 times", "0.5 times", "0.5 is produced by no code"),
         ("x = 29.5", f"x = 29.5  # {'-' * 50}", "code 62 columns wide"),
@@ -97,6 +99,10 @@ def test_a_run_needs_a_prediction_and_a_cell_that_shows_nothing_does_not() -> No
     assert "a run that nobody was asked about" in [finding.problem for finding in lint(text)]
     silent = "## One\n\n```python\nx = 4\n```\n"
     assert "a run that nobody was asked about" not in [finding.problem for finding in lint(silent)]
+
+
+def test_a_value_link_may_be_quoted_as_code() -> None:
+    assert lint(GOOD.replace("12 times", "`[1](=2 - 1)` 12 times")) == []
 
 
 def test_an_unanswered_prediction_at_the_very_end_is_found() -> None:

@@ -249,3 +249,17 @@ def test_the_graders_version_follows_what_decides_a_score(catalog: Catalog, doub
     first = grader_version(doubling, catalog)
     assert first == grader_version(doubling, catalog)
     assert first != grader_version(catalog.exercise("halving"), catalog)
+
+
+def test_a_check_that_pytest_never_called_is_no_pass(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("course.grading.collected._run_item", lambda _item: None)
+    assert grade(session, solution).state == "grader_error"
+
+
+def test_a_hostile_value_does_not_swell_a_finding(session: GradingSession, solution: bytes) -> None:
+    bushy = b"\ndef double(x):\n    tree = [0.5] * 20\n    for _ in range(3): tree = [tree] * 20\n    return tree\n"
+    verdict = grade(session, solution + bushy)
+    assert all(len(str(check.actual)) < 50_000 for check in results(verdict, "double"))
+    assert results(verdict, "double")[0].status is Status.FAIL

@@ -27,7 +27,7 @@ class _Id(str):
         if len(text) > _MAX_LENGTH or not _PATTERN.fullmatch(text):
             raise UsageError(
                 f"{text[:80]!r} is not a valid {cls.kind} id.",
-                help=f"Use lower-case words joined by hyphens, at most {_MAX_LENGTH} characters: sim-to-real.",
+                help=f"Use lower-case words joined by hyphens, at most {_MAX_LENGTH} letters: sim-to-real.",
                 code="invalid_id",
             )
         return super().__new__(cls, text)

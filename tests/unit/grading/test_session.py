@@ -259,7 +259,13 @@ def test_a_check_that_pytest_never_called_is_no_pass(
 
 
 def test_a_hostile_value_does_not_swell_a_finding(session: GradingSession, solution: bytes) -> None:
-    bushy = b"\ndef double(x):\n    tree = [0.5] * 20\n    for _ in range(3): tree = [tree] * 20\n    return tree\n"
+    bushy = b"""
+def double(x):
+    tree = [0.5] * 20
+    for _ in range(2):
+        tree = [tree] * 20
+    return tree
+"""
     verdict = grade(session, solution + bushy)
     assert all(len(str(check.actual)) < 50_000 for check in results(verdict, "double"))
     assert results(verdict, "double")[0].status is Status.FAIL

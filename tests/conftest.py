@@ -1,9 +1,14 @@
-"""Lets tests import what they share (``tests.contracts.levels``), however pytest is started.
+"""Makes the tests independent of how pytest is started.
 
-The folder goes last on the path: a package that is installed is still the one under test.
+They import what they share (``tests.contracts.levels``) from the checkout, which goes last on the path: a
+package that is installed is still the one under test. And Ctrl-C reaches the programs they start, even if
+pytest itself was started in the background, where a shell has it ignored.
 """
 
+import signal
 import sys
 from pathlib import Path
 
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.append(str(Path(__file__).resolve().parents[1]))

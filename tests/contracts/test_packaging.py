@@ -170,6 +170,15 @@ print(json.dumps({
 """
 
 
+#: What the folder adds comes before what is installed here, which may well be this very checkout.
+_FIRST = """
+import site, sys
+before = list(sys.path)
+site.addsitedir({site!r})
+sys.path[:] = [entry for entry in sys.path if entry not in before] + before
+"""
+
+
 def _ask(folder: Path, code: str, **environment: str) -> str:
     """What a fresh interpreter says that finds the package only as given."""
     kept = {key: value for key, value in os.environ.items() if not key.startswith(("COURSE_", "PYTHON"))}
@@ -200,7 +209,7 @@ def test_an_editable_installation_reads_the_checkout(source: Path, tmp_path: Pat
     with zipfile.ZipFile(_build(source, tmp_path, "editable")) as archive:
         archive.extractall(site)
     assert list(site.glob("*.pth")), "an editable wheel points at the checkout"
-    said = json.loads(_ask(tmp_path, f"import site; site.addsitedir({str(site)!r})\n{_ASK}"))
+    said = json.loads(_ask(tmp_path, _FIRST.format(site=str(site)) + _ASK))
     assert said["checkout"] is True
     assert said["root"] == str(source)
     assert "integrators" in said["exercises"]

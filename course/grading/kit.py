@@ -91,6 +91,7 @@ __all__ = [
     "as_tuple",
     "as_vector",
     "attempt",
+    "black_box",
     "companion",
     "counted",
     "expect_accepts",
@@ -190,6 +191,15 @@ def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Coun
             return np.asarray(fn(t, q, v), dtype=float)
 
     return Counted(checked)
+
+
+def black_box(**methods: Callable[..., Any]) -> dict[str, Any]:
+    """An object for the student's code to experiment with: its methods are functions evaluated on this side.
+
+    Hand it to ``submission.call`` as an argument. The student's code sees an object with those methods and
+    nothing of how they answer.
+    """
+    return {"$methods": methods}
 
 
 def first_divergence(

@@ -12,7 +12,7 @@ from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection, LoadRefusedError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from course.isolation.spawn import Spawner
 
@@ -62,8 +62,8 @@ class RemoteSubmission:
         Args:
             name: the function.
             args, kwargs: plain data, arrays, right-hand sides of ``course.physics.systems`` (evaluated
-                beside the student's code), functions (evaluated here, at a cost of some 50 microseconds a
-                call), ``ref(name)``, or generators (which cross as a seed).
+                beside the student's code), functions and ``kit.black_box`` objects (evaluated here, at a cost
+                of some 50 microseconds a call), ``ref(name)``, or generators (which cross as a seed).
 
         Raises:
             StudentFailure: it gave no value.
@@ -100,6 +100,30 @@ class RemoteSubmission:
         value = self._live().march(step_name, system, list(q0), list(v0), t0, h, n)
         q, v = as_march(value, n, len(q0))
         return t0 + h * np.arange(n + 1), q, v
+
+    def call_each(self, name: str, calls: Iterable[Sequence[Any]]) -> list[Any]:
+        """What the student's function returns for each sequence of arguments, in one round trip.
+
+        Raises:
+            StudentFailure: one of the calls gave no value; the later ones were not made.
+        """
+        return self._live().each(name, [list(args) for args in calls])
+
+    def fold(
+        self, name: str, state: Any, calls: Iterable[Sequence[Any]], *, carry: int | None = None
+    ) -> list[Any]:
+        """Hand a state through ``name(state, *args)``, once for each sequence of arguments.
+
+        Args:
+            carry: which element of a returned pair is the next state; None if the whole value is.
+
+        Returns:
+            The n + 1 states, the given one first; with ``carry``, the n returned values, whole.
+
+        Raises:
+            StudentFailure: one of the calls gave no value.
+        """
+        return self._live().fold(name, state, [list(args) for args in calls], carry)
 
     # -- for the grader -------------------------------------------------------------------------------
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["command", "copy_flat_files", "environment", "private_folder", "remove_tree"]
 
-_FLAT_FILES = ("isolation/wire.py", "isolation/worker.py", "isolation/lockdown.py", "isolation/zygote.py")
+_FLAT_FILES = tuple(f"isolation/{name}.py" for name in ("wire", "loops", "worker", "lockdown", "zygote"))
 _RHS_FILE = "physics/systems.py"
 
 

@@ -152,6 +152,20 @@ class Connection:
         """Positions and velocities of ``n`` steps, or the worker's word on why a step was unusable."""
         return self._ask(Kind.MARCH, [step, rhs, q0, v0, float(t0), float(h), int(n)], step)
 
+    def each(self, function: str, calls: list[list[Any]]) -> list[Any]:
+        """What ``function`` returns for each list of arguments; the loop runs beside the student's code."""
+        answer = self._ask(Kind.EACH, [function, calls], function)
+        if isinstance(answer, list) and len(answer) == len(calls):
+            return answer
+        raise self._breach("a batch of another length")
+
+    def fold(self, function: str, state: Any, calls: list[list[Any]], carry: int | None) -> list[Any]:
+        """The states that ``function(state, *args)`` goes through; see ``loops.fold``."""
+        answer = self._ask(Kind.FOLD, [function, state, calls, carry], function)
+        if isinstance(answer, list) and len(answer) == len(calls) + (carry is None):
+            return answer
+        raise self._breach("a batch of another length")
+
     def output(self) -> str:
         """What the submission printed so far."""
         return printable(self._handle.output()) if self.alive else self._printed

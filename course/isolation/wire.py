@@ -71,6 +71,8 @@ class Kind(enum.IntEnum):
     CALL = 2  # [function, args, kwargs, inspect]
     MARCH = 3  # [step, rhs, q0, v0, t0, h, n]
     REPLY = 4  # value of a callback
+    EACH = 6  # [function, [args, ...]]
+    FOLD = 7  # [function, state, [args, ...], which element is the next state or None]
     REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
     READY = 15  # None: locked down, and nothing of the submission has run yet
     LOADED = 16  # [names of functions]

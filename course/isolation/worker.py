@@ -1,8 +1,8 @@
 """The process that runs a stranger's code: loads one submission and answers calls.
 
 Everything here shares an address space with code that may be hostile, so nothing here is a secret and
-nothing it says is more than a claim. It imports the standard library, numpy and the two files copied beside
-it (the wire and the right-hand sides), and nothing of this course.
+nothing it says is more than a claim. It imports the standard library, numpy and the files copied beside
+it (the wire, the loops and the right-hand sides), and nothing of this course.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ if TYPE_CHECKING:
     import socket
 
 if __package__:  # imported as part of the course (type checking, tests); a copy stands alone
-    from course.isolation import wire
+    from course.isolation import loops, wire
     from course.physics import systems
 else:
+    import loops  # type: ignore[import-not-found,no-redef]
     import systems  # type: ignore[import-not-found,no-redef]
     import wire  # type: ignore[import-not-found,no-redef]
 
@@ -176,7 +177,12 @@ class Worker:
             if kind == Kind.CALL:
                 result = self._call(*value)
             elif kind == Kind.MARCH:
-                result = _march(self._function(value[0]), *value[1:])
+                result = loops.march(self._function(value[0]), *value[1:])
+            elif kind == Kind.EACH:
+                result = loops.each(self._function(value[0]), map(self._owned, value[1]))
+            elif kind == Kind.FOLD:
+                function, state, calls, carry = value
+                result = loops.fold(self._function(function), state, map(self._owned, calls), carry)
             else:
                 raise wire.WireError(f"unexpected kind {kind}")
             frame = self._codec.encode(Kind.RESULT, result)
@@ -228,16 +234,23 @@ class Worker:
 
     def _call(self, spec: Any, args: list[Any], kwargs: dict[str, Any], inspect: bool) -> Any:
         function = self._function(spec)
-        args = [self._own(argument) for argument in args]
+        args = self._owned(args)
         value = function(*args, **{name: self._own(argument) for name, argument in kwargs.items()})
         if not inspect:
             return value
         return [value, args, _shares_memory(value, args)]
 
+    def _owned(self, args: list[Any]) -> list[Any]:
+        return [self._own(argument) for argument in args]
+
     def _own(self, argument: Any) -> Any:
-        """``{"$function": name}`` stands for the submission's own function of that name."""
-        if type(argument) is dict and argument.keys() == {"$function"}:
-            return getattr(self._module, argument["$function"])
+        """``{"$function": name}`` stands for the submission's own function of that name, and
+        ``{"$methods": {...}}`` for an object with the grader's functions as methods."""
+        if type(argument) is dict and len(argument) == 1:
+            if "$function" in argument:
+                return getattr(self._module, argument["$function"])
+            if "$methods" in argument:
+                return loops.Methods(**argument["$methods"])
         return argument
 
     def callback(self, number: int, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
@@ -274,32 +287,6 @@ class _Callback:
 
 
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
-
-
-def _march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
-    """Take ``n`` steps from (q0, v0) and record each; the loop that the checks of a step share.
-
-    Each step gets copies, so that a step which changes its arguments spoils its own result and not the
-    record.
-
-    Returns:
-        [q, v] of shape (n + 1, d), or {"bad": ..., "step": i} where step i returned something else than
-        two vectors of d numbers.
-    """
-    d = len(q0)
-    q = np.empty((n + 1, d))
-    v = np.empty((n + 1, d))
-    q[0], v[0] = q0, v0
-    for i in range(n):
-        result = step(rhs, t0 + i * h, q[i].copy(), v[i].copy(), h)
-        try:
-            q_next, v_next = result
-            if np.shape(q_next) != (d,) or np.shape(v_next) != (d,):
-                return {"bad": f"shapes {np.shape(q_next)} and {np.shape(v_next)}", "step": i}
-            q[i + 1], v[i + 1] = q_next, v_next
-        except (TypeError, ValueError) as error:
-            return {"bad": f"{type(result).__name__}: {error}"[:200], "step": i}
-    return [q, v]
 
 
 def _arrays(value: Any, depth: int = 4) -> list[np.ndarray[Any, Any]]:
@@ -341,7 +328,7 @@ def _described(error: BaseException) -> dict[str, Any]:
     return described
 
 
-_OWN_FILES = ("worker.py", "zygote.py", "wire.py")
+_OWN_FILES = ("worker.py", "zygote.py", "wire.py", "loops.py")
 
 
 def run(sock: socket.socket, imports: frozenset[str]) -> None:

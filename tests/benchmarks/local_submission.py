@@ -15,6 +15,7 @@ import numpy as np
 
 from course.grading.failures import StudentFailure
 from course.grading.values import Inspected, as_march
+from course.isolation import loops
 from course.physics.systems import SYSTEMS
 
 _SYSTEM_TYPES = tuple(SYSTEMS.values())
@@ -42,6 +43,20 @@ class LocalSubmission:
         """Call it, and say what became of the arguments."""
         return self._inspect(name, args, {})
 
+    def call_each(self, name: str, calls: Any) -> list[Any]:
+        """Call the student's function once for each sequence of arguments."""
+        return [self.call(name, *args) for args in calls]
+
+    def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None) -> list[Any]:
+        """Hand a state through the student's function."""
+        function = self._function(name)
+        escaped: list[BaseException] = []
+        given = [[_given(arg, escaped) for arg in args] for args in calls]
+        values = _guarded(lambda: loops.fold(function, _plain(state), given, carry))
+        if escaped:
+            raise escaped[0]
+        return [_plain(value) for value in values]
+
     def ref(self, name: str) -> Any:
         """The student's own function, to be passed back as an argument."""
         return self._function(name)
@@ -51,7 +66,7 @@ class LocalSubmission:
     ) -> tuple[Any, Any, Any]:
         """n steps in a row; times (n + 1,), positions and velocities (n + 1, d)."""
         step = self._function(step_name)
-        q, v = as_march(_guarded(lambda: _march(step, system, q0, v0, t0, h, n)), n, len(q0))
+        q, v = as_march(_guarded(lambda: loops.march(step, system, q0, v0, t0, h, n)), n, len(q0))
         return t0 + h * np.arange(n + 1), q, v
 
     def _inspect(self, name: str, args: Any, kwargs: Any) -> Inspected:
@@ -96,25 +111,10 @@ def _guarded(fn: Any) -> Any:
         ) from None
 
 
-def _march(step: Any, system: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
-    d = len(q0)
-    q = np.empty((n + 1, d))
-    v = np.empty((n + 1, d))
-    q[0], v[0] = q0, v0
-    for i in range(n):
-        result = step(system, t0 + i * h, q[i].copy(), v[i].copy(), h)
-        try:
-            q_next, v_next = result
-            if np.shape(q_next) != (d,) or np.shape(v_next) != (d,):
-                return {"bad": f"shapes {np.shape(q_next)} and {np.shape(v_next)}", "step": i}
-            q[i + 1], v[i + 1] = q_next, v_next
-        except (TypeError, ValueError) as error:
-            return {"bad": f"{type(result).__name__}: {error}"[:200], "step": i}
-    return [q, v]
-
-
 def _given(value: Any, escaped: list[BaseException]) -> Any:
     """An argument as student code gets it: arrays copied, tuples as lists, callbacks behind a wrapper."""
+    if isinstance(value, dict) and value.keys() == {"$methods"}:
+        return loops.Methods(**{name: _given(fn, escaped) for name, fn in value["$methods"].items()})
     if isinstance(value, _SYSTEM_TYPES) or not callable(value):
         return _plain(value) if not isinstance(value, _SYSTEM_TYPES) else value
 

@@ -248,6 +248,53 @@ def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:
     assert "NoneType" in connection.march("none", systems.FreeFall(), [0.0], [0.0], 0.0, 1.0, 2)["bad"]
 
 
+def test_a_batch_of_calls_keeps_each_value_as_it_was_returned(load: Any) -> None:
+    connection = load("kept = []\ndef f(x, y=0):\n    kept.append(x + y)\n    return kept, {'a': (x,)}\n")
+    assert connection.each("f", [[1.0], [2.0, 3.0]]) == [
+        [[1.0], {"a": [1.0]}],
+        [[1.0, 5.0], {"a": [2.0]}],
+    ]
+    assert connection.each("f", []) == []
+
+
+def test_a_batch_of_calls_ends_at_the_first_that_fails(load: Any) -> None:
+    connection = load(
+        "n = []\ndef f(x):\n    n.append(x)\n    return 1 / x\ndef count():\n    return len(n)\n"
+    )
+    with pytest.raises(StudentFailure, match="division") as caught:
+        connection.each("f", [[1.0], [0.0], [2.0]])
+    assert (caught.value.type, caught.value.line) == ("ZeroDivisionError", 4)
+    assert connection.call("count") == 2
+
+
+def test_a_state_is_handed_on(load: Any) -> None:
+    connection = load(
+        "def f(state, x):\n    state['seen'] = state['seen'] + [x]\n    return state\n"
+        "def pair(state, x):\n    return 10 * state, state + x\n"
+    )
+    assert connection.fold("f", {"seen": []}, [[1], [2]], None) == [
+        {"seen": []},
+        {"seen": [1]},
+        {"seen": [1, 2]},
+    ]
+    assert connection.fold("pair", 1, [[1], [2]], 1) == [[10, 2], [20, 4]]
+
+
+def test_methods_are_functions_of_the_graders(load: Any) -> None:
+    asked = []
+    connection = load("def f(box):\n    return [box.info(), box.run(3), repr(box), sorted(vars(box))]\n")
+
+    def run(n: int) -> int:
+        asked.append(n)
+        return 2 * n
+
+    box = {"$methods": {"info": lambda: {"mass": 2.0}, "run": run}}
+    info, ran, shown, names = connection.call("f", box)
+    assert (info, ran, shown, names) == ({"mass": 2.0}, 6, "<object with info, run>", ["info", "run"])
+    assert connection.each("f", [[box], [box]])[1][1] == 6
+    assert asked == [3, 3, 3]
+
+
 # -- output, memory, ends -------------------------------------------------------------------------------
 
 

@@ -1,0 +1,86 @@
+"""Loops around a student's function that run beside it, so that many calls cost one message.
+
+A copy of this file lies next to a stranger's code; it imports numpy and nothing of this course.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+__all__ = ["Methods", "each", "fold", "march"]
+
+_MAX_DEPTH = 32  # of a value that is recorded; the wire refuses a deeper one anyway
+
+
+class Methods:
+    """An object whose methods are the grader's functions; there is nothing else in it to be found."""
+
+    def __init__(self, **methods: Callable[..., Any]) -> None:
+        self.__dict__.update(methods)
+
+    def __repr__(self) -> str:
+        return f"<object with {', '.join(sorted(self.__dict__))}>"
+
+
+def march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
+    """Take ``n`` steps from (q0, v0) and record each; the loop that the checks of a step share.
+
+    Each step gets copies, so that a step which changes its arguments spoils its own result and not the
+    record.
+
+    Returns:
+        [q, v] of shape (n + 1, d), or {"bad": ..., "step": i} where step i returned something else than
+        two vectors of d numbers.
+    """
+    d = len(q0)
+    q = np.empty((n + 1, d))
+    v = np.empty((n + 1, d))
+    q[0], v[0] = q0, v0
+    for i in range(n):
+        result = step(rhs, t0 + i * h, q[i].copy(), v[i].copy(), h)
+        try:
+            q_next, v_next = result
+            if np.shape(q_next) != (d,) or np.shape(v_next) != (d,):
+                return {"bad": f"shapes {np.shape(q_next)} and {np.shape(v_next)}", "step": i}
+            q[i + 1], v[i + 1] = q_next, v_next
+        except (TypeError, ValueError) as error:
+            return {"bad": f"{type(result).__name__}: {error}"[:200], "step": i}
+    return [q, v]
+
+
+def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
+    """What ``function`` returns for each list of arguments, as it was at the time."""
+    return [_snapshot(function(*args)) for args in calls]
+
+
+def fold(function: Any, state: Any, calls: Iterable[list[Any]], carry: int | None) -> list[Any]:
+    """Hand the state through ``function(state, *args)``, once for each list of arguments.
+
+    Args:
+        carry: which element of a returned sequence is the next state; None if the whole value is.
+
+    Returns:
+        The states, the first one included; with ``carry``, the returned values, whole.
+    """
+    record = [] if carry is not None else [_snapshot(state)]
+    for args in calls:
+        value = function(state, *args)
+        record.append(_snapshot(value))
+        state = value if carry is None else value[carry]
+    return record
+
+
+def _snapshot(value: Any, depth: int = _MAX_DEPTH) -> Any:
+    """A copy of plain containers and arrays: the student's code may use them again in the next call."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if depth and isinstance(value, list | tuple):
+        return [_snapshot(item, depth - 1) for item in value]
+    if depth and isinstance(value, dict):
+        return {key: _snapshot(item, depth - 1) for key, item in value.items()}
+    return value

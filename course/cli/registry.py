@@ -61,6 +61,9 @@ COMMANDS: dict[str, Entry] = {
     "watch": Entry("watching", "watch", WORK, "Check again on every save.", "course watch integrators"),
     "hint": Entry("hinting", "hint", WORK, "Show the next hint.", "course hint integrators"),
     "diff": Entry("changing", "diff", WORK, "Show what changed since the stub.", "course diff integrators"),
+    "report": Entry(
+        "reporting", "report", WORK, "Show what your code does, with figures.", "course report sim-to-real"
+    ),
     "solution": Entry(
         "hinting", "solution", WORK, "Show a released solution, after a pass.", "course solution integrators"
     ),

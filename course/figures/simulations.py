@@ -29,7 +29,7 @@ __all__ = ["chaos", "collision", "draw", "dynamics", "environment", "free_fall",
 
 _DPI = 180
 #: Nothing in a file but the picture: no dates, no random ids.
-_METADATA: dict[str, dict[str, Any]] = {
+METADATA: dict[str, dict[str, Any]] = {
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Producer": None, "Creator": None},
@@ -48,7 +48,7 @@ def render(result: Result, kind: str) -> bytes:
 
     out = BytesIO()
     with house_style(), mpl.rc_context({"svg.hashsalt": "course"}):
-        draw(result).savefig(out, format=kind, dpi=_DPI, metadata=_METADATA[kind])
+        draw(result).savefig(out, format=kind, dpi=_DPI, metadata=METADATA[kind])
     return out.getvalue()
 
 

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from course.figures.described import Panel, Plot, Series
 from course.grading.expectations import (
     Diagnose,
     attempt,
@@ -40,6 +41,7 @@ from course.grading.expectations import (
 )
 from course.grading.failures import CheckFailed, Diagnosis, StudentFailure, finding_of
 from course.grading.marching import Problem, march_errors
+from course.grading.report import Report, Section, guarded_section
 from course.grading.values import (
     Inspected,
     as_array,
@@ -74,7 +76,12 @@ __all__ = [
     "Divergence",
     "Finding",
     "Inspected",
+    "Panel",
+    "Plot",
     "Problem",
+    "Report",
+    "Section",
+    "Series",
     "StudentFailure",
     "Tolerance",
     "acceleration",
@@ -109,6 +116,7 @@ __all__ = [
     "fail",
     "finding_of",
     "first_divergence",
+    "guarded_section",
     "march_errors",
     "plain",
     "sibling",

@@ -13,21 +13,21 @@ import random
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
-from course.errors import MissingCapabilityError
+from course.errors import InternalError, MissingCapabilityError, UngradableError
 from course.grading.collected import Check, CollectedChecks
 from course.grading.failures import CheckFailed, finding_of
+from course.grading.outcomes import found, load_problem, no_functions, result, skipped
 from course.grading.remote import RemoteSubmission
-from course.grading.values import plain
-from course.grading.verdict import CheckResult, Finding, Problem, Status, Verdict, Visibility
+from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.probe import open_spawner
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["GradingSession", "Scope", "Submission", "grader_version"]
 
 Scope = Literal["public", "full"]
+T = TypeVar("T")
 
 _STATUS = {
     "error": Status.ERROR,
@@ -138,12 +139,12 @@ class GradingSession:
         try:
             remote = self._load(submission)
         except LoadRefusedError as refused:
-            return self._ungradable(_load_problem(refused, self.exercise.module))
+            return self._ungradable(load_problem(refused, self.exercise.module))
         except IsolationError as error:
             return self._grader_error(str(error))
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
-                return self._ungradable(_no_functions(self.exercise))
+                return self._ungradable(no_functions(self.exercise))
             results = self._run(remote, only)
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -151,6 +152,27 @@ class GradingSession:
             with contextlib.suppress(IsolationError):
                 remote.close()
         return self._graded(results)
+
+    def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
+        """What ``use`` makes of a submission, loaded as for a check; one deadline holds for all of it.
+
+        Raises:
+            UngradableError: it cannot be loaded.
+            InternalError: the sandbox broke.
+        """
+        try:
+            remote = self._load(submission)
+        except LoadRefusedError as refused:
+            problem = load_problem(refused, self.exercise.module)
+            raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
+        except IsolationError as error:
+            raise InternalError(f"The submission could not be run: {error}.") from None
+        try:
+            remote.begin_check()
+            return use(remote)
+        finally:
+            with contextlib.suppress(IsolationError):
+                remote.close()
 
     # -- checks ---------------------------------------------------------------------------------------
 
@@ -170,7 +192,7 @@ class GradingSession:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
             )
-            results[check.id] = _skipped(check, blocking) if blocking else self._run_one(check, remote)
+            results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission) -> CheckResult:
@@ -179,20 +201,20 @@ class GradingSession:
         outcome = self._checks.run(check, remote)
         duration_ms = (perf_counter() - start) * 1e3
         if outcome is None:
-            return _result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
+            return result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
         printed = remote.printed()[:4000] or None
         match outcome:
             case IsolationError():
                 raise outcome
             case CheckFailed():
-                return _found(check, Status.FAIL, outcome.finding, duration_ms, stdout=printed)
+                return found(check, Status.FAIL, outcome.finding, duration_ms, stdout=printed)
             case StudentFailure():
                 status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
                 traceback = outcome.traceback or None
                 finding = finding_of(outcome)
-                return _found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
+                return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
         message = f"The check itself failed: {type(outcome).__name__}: {outcome}"
-        return _result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+        return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
 
     # -- verdicts -------------------------------------------------------------------------------------
 
@@ -318,84 +340,3 @@ def _with_required(only: str, checks: list[Check]) -> set[str]:
             wanted.add(name)
             left += by_id[name].requires
     return wanted
-
-
-def _result(check: Check, status: Status, **fields: Any) -> CheckResult:
-    return CheckResult(
-        id=check.id,
-        title=check.title,
-        task=check.task,
-        status=status,
-        visibility=check.visibility,
-        points=fields.pop("points", 0.0),
-        max_points=check.points,
-        **fields,
-    )
-
-
-def _found(check: Check, status: Status, finding: Finding, duration_ms: float, **extra: Any) -> CheckResult:
-    return _result(
-        check,
-        status,
-        duration_ms=duration_ms,
-        message=finding.message,
-        help=finding.help,
-        diagnosis=finding.diagnosis,
-        input=plain(finding.input),
-        expected=plain(finding.expected),
-        actual=plain(finding.actual),
-        units=finding.units,
-        tolerance=finding.tolerance,
-        first_divergence=finding.first_divergence,
-        **extra,
-    )
-
-
-def _skipped(check: Check, blocking: str) -> CheckResult:
-    return _result(
-        check,
-        Status.SKIP,
-        blocked_by=blocking,
-        message="Not run: it builds on a check that did not pass.",
-        help="Repair that one first.",
-    )
-
-
-def _load_problem(refused: LoadRefusedError, module: str) -> Problem:
-    failure = refused.failure
-    where = f"{module}, line {failure.line}" if failure.line else module
-    if refused.stage == "syntax":
-        if "UnicodeError" in failure.bases:
-            message = f"{where}: Python cannot read this file: {failure.message}."
-            advice = "Save it as UTF-8, or declare its encoding in the first line."
-            return Problem("syntax_error", message, advice)
-        shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
-        return Problem(
-            "syntax_error",
-            f"{where}: Python cannot read this file: {failure.message}{shown}.",
-            "Run `python -m py_compile` on it, or look at that line and the one above it.",
-        )
-    if refused.stage == "timeout":
-        message = f"{module} did not finish loading in time."
-        return Problem(
-            "import_timeout", message, "Move work out of the top level of the file, into functions."
-        )
-    if refused.stage == "import":
-        return Problem(
-            "import_error",
-            f"{where}: loading it raises {failure.type}: {failure.message}.",
-            "A file that is checked must load without errors: try `python -c 'import ...'` on it.",
-        )
-    message = f"{module} ends its process while it is loaded ({failure.message})."
-    return Problem(
-        "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
-    )
-
-
-def _no_functions(exercise: Exercise) -> Problem:
-    names = ", ".join(task.id for task in exercise.task)
-    return Problem(
-        "no_declared_functions",
-        f"{exercise.module} defines none of the functions of this exercise.",
-        f"Keep the names the stub gave: {names}.",
-    )

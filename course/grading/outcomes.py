@@ -1,0 +1,96 @@
+"""Results of checks and problems of submissions, put into the words and fields of a verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from course.grading.values import plain
+from course.grading.verdict import CheckResult, Finding, Problem, Status
+
+if TYPE_CHECKING:
+    from course.catalog.models import Exercise
+    from course.grading.collected import Check
+    from course.isolation.session import LoadRefusedError
+
+__all__ = ["found", "load_problem", "no_functions", "result", "skipped"]
+
+
+def result(check: Check, status: Status, **fields: Any) -> CheckResult:
+    return CheckResult(
+        id=check.id,
+        title=check.title,
+        task=check.task,
+        status=status,
+        visibility=check.visibility,
+        points=fields.pop("points", 0.0),
+        max_points=check.points,
+        **fields,
+    )
+
+
+def found(check: Check, status: Status, finding: Finding, duration_ms: float, **extra: Any) -> CheckResult:
+    return result(
+        check,
+        status,
+        duration_ms=duration_ms,
+        message=finding.message,
+        help=finding.help,
+        diagnosis=finding.diagnosis,
+        input=plain(finding.input),
+        expected=plain(finding.expected),
+        actual=plain(finding.actual),
+        units=finding.units,
+        tolerance=finding.tolerance,
+        first_divergence=finding.first_divergence,
+        **extra,
+    )
+
+
+def skipped(check: Check, blocking: str) -> CheckResult:
+    return result(
+        check,
+        Status.SKIP,
+        blocked_by=blocking,
+        message="Not run: it builds on a check that did not pass.",
+        help="Repair that one first.",
+    )
+
+
+def load_problem(refused: LoadRefusedError, module: str) -> Problem:
+    failure = refused.failure
+    where = f"{module}, line {failure.line}" if failure.line else module
+    if refused.stage == "syntax":
+        if "UnicodeError" in failure.bases:
+            message = f"{where}: Python cannot read this file: {failure.message}."
+            advice = "Save it as UTF-8, or declare its encoding in the first line."
+            return Problem("syntax_error", message, advice)
+        shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
+        return Problem(
+            "syntax_error",
+            f"{where}: Python cannot read this file: {failure.message}{shown}.",
+            "Run `python -m py_compile` on it, or look at that line and the one above it.",
+        )
+    if refused.stage == "timeout":
+        message = f"{module} did not finish loading in time."
+        return Problem(
+            "import_timeout", message, "Move work out of the top level of the file, into functions."
+        )
+    if refused.stage == "import":
+        return Problem(
+            "import_error",
+            f"{where}: loading it raises {failure.type}: {failure.message}.",
+            "A file that is checked must load without errors: try `python -c 'import ...'` on it.",
+        )
+    message = f"{module} ends its process while it is loaded ({failure.message})."
+    return Problem(
+        "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
+    )
+
+
+def no_functions(exercise: Exercise) -> Problem:
+    names = ", ".join(task.id for task in exercise.task)
+    return Problem(
+        "no_declared_functions",
+        f"{exercise.module} defines none of the functions of this exercise.",
+        f"Keep the names the stub gave: {names}.",
+    )

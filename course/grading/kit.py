@@ -40,7 +40,7 @@ from course.grading.expectations import (
     fail,
 )
 from course.grading.failures import CheckFailed, Diagnosis, StudentFailure, finding_of
-from course.grading.marching import Problem, march_errors
+from course.grading.marching import Problem, march_all_errors, march_errors
 from course.grading.report import Report, Section, guarded_section
 from course.grading.values import (
     Inspected,
@@ -117,6 +117,7 @@ __all__ = [
     "finding_of",
     "first_divergence",
     "guarded_section",
+    "march_all_errors",
     "march_errors",
     "plain",
     "sibling",

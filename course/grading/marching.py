@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["CHECKPOINTS", "Marches", "Problem", "march_errors"]
+__all__ = ["CHECKPOINTS", "Marches", "Problem", "march_all_errors", "march_errors"]
 
 #: Instants at which a trajectory is compared with the reference. Several, because the error of a correct
 #: method can pass through zero at one of them: at half a period from rest semi-implicit Euler shows order 2.
@@ -29,10 +29,10 @@ CHECKPOINTS = 4
 class Marches(Protocol):
     """The one thing needed of a submission here."""
 
-    def march(
-        self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
-    ) -> tuple[Array, Array, Array]:
-        """Times (n + 1,), positions and velocities (n + 1, d) of n steps of the student's."""
+    def march_each(
+        self, step_name: str, marches: Sequence[tuple[Any, Any, Any, float, int, float]]
+    ) -> list[tuple[Array, Array, Array]]:
+        """Times (n + 1,), positions and velocities (n + 1, d) of n steps of the student's, for each march."""
         ...
 
 
@@ -79,18 +79,28 @@ def march_errors(
     Returns:
         Step sizes (s) and, for each, the largest distance in (q, v / rate) over the checkpoints.
     """
+    return march_all_errors(submission, step, [problem], counts)[0]
+
+
+def march_all_errors(
+    submission: Marches, step: str, problems: Sequence[Problem], counts: Sequence[int]
+) -> list[tuple[list[float], Array]]:
+    """``march_errors`` on each of several problems, in one round trip."""
+    marches = iter(submission.march_each(step, [problem.run(n) for problem in problems for n in counts]))
+    return [_errors(problem, [next(marches) for _ in counts]) for problem in problems]
+
+
+def _errors(problem: Problem, marches: Sequence[tuple[Array, Array, Array]]) -> tuple[list[float], Array]:
     start = (tuple(map(float, problem.q0)), tuple(map(float, problem.v0)), problem.t0)
     q_true, v_true = _true_motion(cast(Hashable, problem.system), *start, problem.span)
-    hs, errors = [], []
-    for n in counts:
-        h = problem.span / n
-        _, q, v = submission.march(step, problem.system, problem.q0, problem.v0, h, n, t0=problem.t0)
-        rows = slice(n // CHECKPOINTS, None, n // CHECKPOINTS)
+    errors = []
+    for _, q, v in marches:
+        every = (len(q) - 1) // CHECKPOINTS
+        rows = slice(every, None, every)
         with np.errstate(all="ignore"):
             off = np.sum((q[rows] - q_true) ** 2 + ((v[rows] - v_true) / problem.rate) ** 2, axis=1)
             errors.append(float(np.sqrt(np.max(off))))
-        hs.append(h)
-    return hs, np.array(errors)
+    return [problem.span / (len(q) - 1) for _, q, _ in marches], np.array(errors)
 
 
 @functools.lru_cache(maxsize=1024)

@@ -97,9 +97,22 @@ class RemoteSubmission:
         Raises:
             CheckFailed: a step returned something else than two vectors of d numbers.
         """
-        value = self._live().march(step_name, system, list(q0), list(v0), t0, h, n)
-        q, v = as_march(value, n, len(q0))
-        return t0 + h * np.arange(n + 1), q, v
+        return self.march_each(step_name, [(system, q0, v0, h, n, t0)])[0]
+
+    def march_each(
+        self, step_name: str, marches: Sequence[tuple[Any, Any, Any, float, int, float]]
+    ) -> list[tuple[Any, Any, Any]]:
+        """Several marches in one round trip.
+
+        Args:
+            marches: (system, q0, v0, h, n, t0) of each, as for ``march``.
+        """
+        sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
+        values = self._live().march(step_name, sent)
+        return [
+            (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
+            for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
+        ]
 
     def call_each(self, name: str, calls: Iterable[Sequence[Any]]) -> list[Any]:
         """What the student's function returns for each sequence of arguments, in one round trip.

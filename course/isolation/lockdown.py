@@ -121,7 +121,7 @@ def become_unprivileged() -> None:
 
 
 def drop_bounding_set() -> None:
-    """Give up what an exec could regain; before ``become_unprivileged``, which loses the right to do so."""
+    """Give up what an exec could regain, forks included; before the right to do so is itself given up."""
     for capability in range(_LAST_CAP + 1):
         if _prctl(_PR_CAPBSET_DROP, capability) < 0:
             break  # past the last one this kernel knows, or no CAP_SETPCAP: then no_new_privs must do
@@ -137,7 +137,10 @@ def drop_capabilities() -> None:
 
 
 def die_first() -> None:
-    """Be what the kernel ends when memory runs out, rather than the grader or the zygote."""
+    """Be what the kernel ends when memory runs out, rather than the grader; forks inherit it.
+
+    Among those marked so the kernel takes the largest, which is a worker and not the zygote.
+    """
     with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w", encoding="ascii") as handle:  # noqa: PTH123
         handle.write("1000")
 
@@ -323,8 +326,6 @@ def seccomp_program(machine: str = "") -> bytes:
     column = list(_AUDIT_ARCH).index(machine)
     program = [_op(_LOAD, 4), _op(_IF_EQUAL, _AUDIT_ARCH[machine], 1, 0), _op(_RETURN, _KILL), _op(_LOAD, 0)]
     program += [_op(_IF_AT_LEAST, 0x40000000, 0, 1), _op(_RETURN, _KILL)]  # x32 numbers its calls anew
-    for number in sorted(allowed_calls(machine).values()):
-        program += [_op(_IF_EQUAL, number, 0, 1), _op(_RETURN, _ALLOW)]
     # clone3 must look absent, so that the C library falls back to clone, whose flags it reports properly.
     program += [_op(_IF_EQUAL, _CLONE3, 0, 1), _op(_RETURN, _ENOSYS)]
     for x86_64, aarch64, argument, values in _RESTRICTED.values():
@@ -333,8 +334,27 @@ def seccomp_program(machine: str = "") -> bytes:
         for value in values:
             program += [_op(_IF_EQUAL, value, 0, 1), _op(_RETURN, _ALLOW)]
         program.append(_op(_RETURN, _EPERM))
-    program.append(_op(_RETURN, _EPERM))
+    program += _search(_verdicts(set(allowed_calls(machine).values())))
     return b"".join(program)
+
+
+def _verdicts(allowed: set[int]) -> list[tuple[int, int]]:
+    """(first number, answer) of each run of calls with the same answer, from 0 up."""
+    edges = [n for n in range(max(allowed) + 2) if n == 0 or (n in allowed) != (n - 1 in allowed)]
+    return [(number, _ALLOW if number in allowed else _EPERM) for number in edges]
+
+
+def _search(verdicts: list[tuple[int, int]]) -> list[bytes]:
+    """The verdict on the loaded number, by halving.
+
+    The kernel runs a filter once for every call there is when it is put in place, so the length of the way
+    through it is paid for by every worker that starts.
+    """
+    if len(verdicts) == 1:
+        return [_op(_RETURN, verdicts[0][1])]
+    middle = len(verdicts) // 2
+    below, above = _search(verdicts[:middle]), _search(verdicts[middle:])
+    return [_op(_IF_AT_LEAST, verdicts[middle][0], len(below), 0), *below, *above]
 
 
 def apply_seccomp(program: bytes) -> None:

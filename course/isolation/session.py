@@ -148,21 +148,26 @@ class Connection:
                 return value, after, shared
         raise self._breach("an inspection in another form")
 
-    def march(self, step: str, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
-        """Positions and velocities of ``n`` steps, or the worker's word on why a step was unusable."""
-        return self._ask(Kind.MARCH, [step, rhs, q0, v0, float(t0), float(h), int(n)], step)
+    def march(self, step: str, marches: list[list[Any]]) -> list[Any]:
+        """Positions and velocities of each march, or the worker's word on why a step was unusable.
+
+        Args:
+            marches: [right-hand side, q0, v0, t0, h, n] each.
+        """
+        return self._batch(Kind.MARCH, [step, marches], step, len(marches))
 
     def each(self, function: str, calls: list[list[Any]]) -> list[Any]:
         """What ``function`` returns for each list of arguments; the loop runs beside the student's code."""
-        answer = self._ask(Kind.EACH, [function, calls], function)
-        if isinstance(answer, list) and len(answer) == len(calls):
-            return answer
-        raise self._breach("a batch of another length")
+        return self._batch(Kind.EACH, [function, calls], function, len(calls))
 
     def fold(self, function: str, state: Any, calls: list[list[Any]], carry: int | None) -> list[Any]:
         """The states that ``function(state, *args)`` goes through; see ``loops.fold``."""
-        answer = self._ask(Kind.FOLD, [function, state, calls, carry], function)
-        if isinstance(answer, list) and len(answer) == len(calls) + (carry is None):
+        length = len(calls) + (carry is None)
+        return self._batch(Kind.FOLD, [function, state, calls, carry], function, length)
+
+    def _batch(self, kind: wire.Kind, request: list[Any], function: str, length: int) -> list[Any]:
+        answer = self._ask(kind, request, function)
+        if isinstance(answer, list) and len(answer) == length:
             return answer
         raise self._breach("a batch of another length")
 

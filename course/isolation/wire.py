@@ -69,7 +69,7 @@ class Kind(enum.IntEnum):
 
     LOAD = 1  # [files, module name]
     CALL = 2  # [function, args, kwargs, inspect]
-    MARCH = 3  # [step, rhs, q0, v0, t0, h, n]
+    MARCH = 3  # [step, [[rhs, q0, v0, t0, h, n], ...]]
     REPLY = 4  # value of a callback
     EACH = 6  # [function, [args, ...]]
     FOLD = 7  # [function, state, [args, ...], which element is the next state or None]

@@ -177,7 +177,8 @@ class Worker:
             if kind == Kind.CALL:
                 result = self._call(*value)
             elif kind == Kind.MARCH:
-                result = loops.march(self._function(value[0]), *value[1:])
+                step, marches = self._function(value[0]), value[1]
+                result = [loops.march(step, *march) for march in marches]
             elif kind == Kind.EACH:
                 result = loops.each(self._function(value[0]), map(self._owned, value[1]))
             elif kind == Kind.FOLD:

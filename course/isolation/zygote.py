@@ -27,6 +27,7 @@ _COMMON = (
 _NUMPY = ("numpy", "numpy.fft", "numpy.linalg", "numpy.polynomial", "numpy.random", "numpy.testing")
 
 _SOCKET, _RULES = 3, 4  # descriptors of a forked worker
+_libc = ctypes.CDLL(None)
 
 
 def main() -> None:
@@ -75,6 +76,9 @@ def _fork_on_request(config: dict[str, Any], imports: frozenset[str], worker: An
     own_namespace = (
         os.open("/proc/self/ns/pid", os.O_RDONLY | os.O_CLOEXEC) if config["level"] == "L3" else -1
     )
+    # What workers inherit need not be done, and paid for, by each of them.
+    lockdown.die_first()
+    lockdown.drop_bounding_set()
     gc.collect()
     gc.freeze()  # shared pages stay shared: the collector of a worker never touches what it inherited
     numpy = sys.modules["numpy"]
@@ -121,14 +125,12 @@ def _become_worker(
         sock = socket.socket(fileno=_SOCKET)
         workdir = request["workdir"]
         root = os.getuid() == 0
-        lockdown.die_first()
         if config["level"] == "L3":
             lockdown.unshare_worker()
             owner = (os.getuid(), os.getgid())
             lockdown.mount_tmpfs(workdir, size="16m", owner=(lockdown.NOBODY,) * 2 if root else owner)
             lockdown.mount_tmpfs("/proc", size="4k", owner=owner, readonly=True)
         os.chdir(workdir)
-        lockdown.drop_bounding_set()
         if root and config["become_nobody"]:
             lockdown.become_unprivileged()
         lockdown.die_with_parent()
@@ -157,7 +159,7 @@ def _keep_only(sock: int, output: int, rules: int) -> None:
     for target, descriptor in enumerate(high):
         os.dup2(descriptor, target, inheritable=False)
     close_range, last = ctypes.c_long(436), ctypes.c_uint(0xFFFFFFFF)
-    if ctypes.CDLL(None).syscall(close_range, ctypes.c_uint(len(kept)), last, ctypes.c_uint(0)) != 0:
+    if _libc.syscall(close_range, ctypes.c_uint(len(kept)), last, ctypes.c_uint(0)) != 0:
         os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
 
 

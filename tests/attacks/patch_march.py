@@ -1,10 +1,11 @@
 """Replaces the loop that a march of its step runs in."""
 
-import worker
+import loops
+import numpy as np
 
 
 def march(step, rhs, q0, v0, t0, h, n):
     return [np.full((n + 1, len(q0)), np.nan), np.full((n + 1, len(q0)), np.inf)]
 
 
-worker._march = march
+loops.march = march

@@ -65,6 +65,13 @@ class LocalSubmission:
         self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
     ) -> tuple[Any, Any, Any]:
         """n steps in a row; times (n + 1,), positions and velocities (n + 1, d)."""
+        return self.march_each(step_name, [(system, q0, v0, h, n, t0)])[0]
+
+    def march_each(self, step_name: str, marches: Any) -> list[tuple[Any, Any, Any]]:
+        """Several marches, (system, q0, v0, h, n, t0) each."""
+        return [self._march(step_name, *march) for march in marches]
+
+    def _march(self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float) -> Any:
         step = self._function(step_name)
         q, v = as_march(_guarded(lambda: loops.march(step, system, q0, v0, t0, h, n)), n, len(q0))
         return t0 + h * np.arange(n + 1), q, v
@@ -82,7 +89,10 @@ class LocalSubmission:
             raise
         if escaped:
             raise escaped[0]
-        after = [None if callable(arg) else _plain(arg) for arg in given]
+        after = [
+            None if callable(arg) or isinstance(arg, np.random.Generator | loops.Methods) else _plain(arg)
+            for arg in given
+        ]
         return Inspected(_plain(value), after, _shares(value, given))
 
     def _function(self, name: str) -> Any:
@@ -115,6 +125,8 @@ def _given(value: Any, escaped: list[BaseException]) -> Any:
     """An argument as student code gets it: arrays copied, tuples as lists, callbacks behind a wrapper."""
     if isinstance(value, dict) and value.keys() == {"$methods"}:
         return loops.Methods(**{name: _given(fn, escaped) for name, fn in value["$methods"].items()})
+    if isinstance(value, np.random.Generator):  # crosses as a seed
+        return np.random.default_rng(int(value.integers(2**62)))
     if isinstance(value, _SYSTEM_TYPES) or not callable(value):
         return _plain(value) if not isinstance(value, _SYSTEM_TYPES) else value
 

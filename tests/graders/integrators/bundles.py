@@ -100,8 +100,8 @@ WITHIN = {EXPLICIT: 0.15, SEMI: 0.15, VERLET: 0.1, RK4: 0.3}
 
 def expect_orders(submission, task, problems):
     """The step converges at its order on every problem."""
-    for problem in problems:
-        hs, errors = kit.march_errors(submission, task, problem, COUNTS[task])
+    measured = kit.march_all_errors(submission, task, problems, COUNTS[task])
+    for problem, (hs, errors) in zip(problems, measured, strict=True):
         kit.expect_order(
             hs,
             errors,
@@ -212,13 +212,12 @@ def expect_symplectic(submission, task, rng):
     problem = orbit(rng)
     h = rng.uniform(0.5, 0.8) / problem.rate
 
-    def flow(y):
-        return np.concatenate(
-            kit.as_pair(submission.call(task, problem.system, problem.t0, y[:2], y[2:], h), 2)
-        )
+    def flows(states):
+        results = submission.call_each(task, [(problem.system, problem.t0, y[:2], y[2:], h) for y in states])
+        return np.array([np.concatenate(kit.as_pair(result, 2)) for result in results])
 
     with np.errstate(all="ignore"):
-        derivative = invariants.jacobian(flow, np.concatenate([problem.q0, problem.v0]))
+        derivative = invariants.jacobian_of_many(flows, np.concatenate([problem.q0, problem.v0]))
         defect = invariants.symplecticity_defect(derivative)
     kit.expect_close(
         defect,
@@ -259,34 +258,36 @@ def expect_free_fall(submission, task, rng):
         )
 
 
-def expect_slope(submission, hs, errors, message):
-    """observed_order is the least-squares slope of the logarithms."""
-    value = submission.call("observed_order", hs, errors)
-    kit.expect_close(
-        value,
-        invariants.convergence_order(hs, errors),
-        abs=1e-8,
-        source="rounding: the least-squares slope is one number",
-        quantity="order",
-        input={"hs": hs, "errors": errors},
-        message=message,
-        help="Slope of log error over log h by least squares, whatever the order of the points.",
-        diagnose=lambda: probes.of_order(value, hs, errors),
-    )
+def expect_slopes(submission, points):
+    """observed_order is the least-squares slope of the logarithms, for each (hs, errors, message)."""
+    values = submission.call_each("observed_order", [(hs, errors) for hs, errors, _ in points])
+    for value, (hs, errors, message) in zip(values, points, strict=True):
+        kit.expect_close(
+            value,
+            invariants.convergence_order(hs, errors),
+            abs=1e-8,
+            source="rounding: the least-squares slope is one number",
+            quantity="order",
+            input={"hs": hs, "errors": errors},
+            message=message,
+            help="Slope of log error over log h by least squares, whatever the order of the points.",
+            diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(value, hs, errors),
+        )
 
 
-def expect_limit(submission, step, omega, limit, message):
-    """max_stable_step of ``step`` is ``limit / omega`` to 1 %."""
-    value = submission.call("max_stable_step", step, omega)
-    kit.expect_close(
-        value,
-        limit / omega,
-        rel=0.01,
-        source="the contract's 1 %",
-        quantity="largest stable step",
-        units="s",
-        input={**step.params(), "omega": omega},
-        message=message,
-        help="Build the map's matrix from two calls, walk up from 0.05/omega, look at its eigenvalues.",
-        diagnose=lambda: probes.of_stability(submission, value, step, omega, limit),
-    )
+def expect_limits(submission, maps):
+    """max_stable_step is ``limit / omega`` to 1 %, for each (step, omega, limit, message)."""
+    values = submission.call_each("max_stable_step", [(step, omega) for step, omega, _, _ in maps])
+    for value, (step, omega, limit, message) in zip(values, maps, strict=True):
+        kit.expect_close(
+            value,
+            limit / omega,
+            rel=0.01,
+            source="the contract's 1 %",
+            quantity="largest stable step",
+            units="s",
+            input={**step.params(), "omega": omega},
+            message=message,
+            help="Build the map's matrix from two calls, walk up from 0.05/omega, look at its eigenvalues.",
+            diagnose=lambda case=(value, step, omega, limit): probes.of_stability(submission, *case),
+        )

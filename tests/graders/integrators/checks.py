@@ -285,9 +285,8 @@ def test_observed_order_least_squares(submission, rng):
     """observed_order fits all points by least squares where they scatter"""
     hs = 0.3 * np.cumprod(rng.uniform(0.4, 0.8, 7))
     errors = rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 4.5) * np.exp(rng.normal(0.0, 0.2, 7))
-    bundles.expect_slope(
-        submission, hs, errors, "Through points that scatter, observed_order is not the least-squares slope."
-    )
+    message = "Through points that scatter, observed_order is not the least-squares slope."
+    bundles.expect_slopes(submission, [(hs, errors, message)])
 
 
 @pytest.mark.task("observed_order")
@@ -296,16 +295,14 @@ def test_observed_order_any_order(submission, rng):
     """observed_order takes two points or many, in any order, as lists or arrays"""
     two = 10 ** rng.uniform(-4, -1, 2)
     many = rng.permutation(0.5 * np.cumprod(rng.uniform(0.4, 0.8, 5)))
+    points = []
     for hs in (np.sort(two), np.sort(two)[::-1], many):
         errors = rng.uniform(1e-6, 1e3) * hs ** rng.uniform(0.8, 4.5)
         message = "For points in another order than from large to small, observed_order is not the slope."
-        bundles.expect_slope(submission, hs, errors, message)
-        bundles.expect_slope(
-            submission,
-            hs.tolist(),
-            errors.tolist(),
-            "Given lists instead of arrays, observed_order is not the slope.",
-        )
+        points.append((hs, errors, message))
+        message = "Given lists instead of arrays, observed_order is not the slope."
+        points.append((hs.tolist(), errors.tolist(), message))
+    bundles.expect_slopes(submission, points)
 
 
 # -- max_stable_step ------------------------------------------------------------------------------------
@@ -332,11 +329,11 @@ def test_stable_step_limits(submission, rng):
         # The determinant is still small when one eigenvalue passes 1 at z = c.
         ([0.1], [0.0], [rng.uniform(-0.5, 0.5)], [0.7, 0.3 / c], c),
     )
-    for qq, qp, pq, pp, limit in maps:
-        step = systems.LinearStep(qq, qp, pq, qq if pp is None else pp)
-        bundles.expect_limit(
-            submission, step, rng.uniform(0.2, 20.0), limit, "The largest stable step of a map is wrong."
-        )
+    message = "The largest stable step of a map is wrong."
+    steps = [(systems.LinearStep(qq, qp, pq, qq if pp is None else pp), z) for qq, qp, pq, pp, z in maps]
+    bundles.expect_limits(
+        submission, [(step, rng.uniform(0.2, 20.0), limit, message) for step, limit in steps]
+    )
 
 
 @pytest.mark.task("max_stable_step")
@@ -350,14 +347,11 @@ def test_stable_step_pocket(submission, rng):
     )  # the radius starts at 0.5 and rises 0.02 to 0.2 above one between low and high
     growth = [1 - curve * low * high, curve * (low + high), -curve]
     step = systems.LinearStep(growth, [0.0], [0.0], [0.2])
-    bundles.expect_limit(
-        submission,
-        step,
-        rng.uniform(0.2, 20.0),
-        low,
+    message = (
         "For a map that is unstable in a range of steps and stable again beyond it, the result is not the "
-        "start of that range.",
+        "start of that range."
     )
+    bundles.expect_limits(submission, [(step, rng.uniform(0.2, 20.0), low, message)])
 
 
 @pytest.mark.task("max_stable_step")
@@ -365,20 +359,15 @@ def test_stable_step_pocket(submission, rng):
 def test_stable_step_edges(submission, rng):
     """max_stable_step is zero where every step fails and infinite where none does"""
     euler = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
-    bundles.expect_limit(
-        submission,
-        euler,
-        rng.uniform(0.2, 20.0),
-        0.0,
-        "For a map that is unstable at every step, the result is not zero.",
-    )
     calm = systems.LinearStep([0.5, rng.uniform(0.01, 0.04)], [0.1], [0.0], [0.4])
-    bundles.expect_limit(
+    never = "For a map that is unstable at every step, the result is not zero."
+    always = "For a map that is stable at every step of the search, the result is not infinite."
+    bundles.expect_limits(
         submission,
-        calm,
-        rng.uniform(0.2, 20.0),
-        math.inf,
-        "For a map that is stable at every step of the search, the result is not infinite.",
+        [
+            (euler, rng.uniform(0.2, 20.0), 0.0, never),
+            (calm, rng.uniform(0.2, 20.0), math.inf, always),
+        ],
     )
 
 

@@ -376,7 +376,10 @@ class Spoiled:
     def __init__(self, spoil):
         self._spoil = spoil
 
-    def march(self, step_name, system, q0, v0, h, n, t0=0.0):
+    def march_each(self, step_name, marches):
+        return [self._march(*march) for march in marches]
+
+    def _march(self, system, q0, v0, h, n, t0):
         t = t0 + h * np.arange(n + 1)
         q, v = exact.reference(system, q0, v0, t, t0)
         dq, dv = self._spoil(h)

@@ -236,16 +236,13 @@ def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:
         "def bad(accel, t, q, v, h):\n    return q\n"
         "def none(accel, t, q, v, h):\n    pass\n"
     )
-    q, v = connection.march("good", systems.FreeFall(10.0), [0.0], [0.0], 0.0, 0.5, 2)
+    ((q, v),) = connection.march("good", [[systems.FreeFall(10.0), [0.0], [0.0], 0.0, 0.5, 2]])
     assert q.tolist() == [[0.0], [0.0], [-2.5]]
     assert v.tolist() == [[0.0], [-5.0], [-10.0]]
-    assert connection.march("spoils", systems.FreeFall(10.0), [0.0], [1.0], 0.0, 1.0, 2)[1].tolist() == [
-        [1.0],
-        [2.0],
-        [3.0],
-    ]
-    assert connection.march("bad", systems.FreeFall(), [0.0, 0.0], [0.0, 0.0], 0.0, 1.0, 2)["step"] == 0
-    assert "NoneType" in connection.march("none", systems.FreeFall(), [0.0], [0.0], 0.0, 1.0, 2)["bad"]
+    spoiled = connection.march("spoils", 2 * [[systems.FreeFall(10.0), [0.0], [1.0], 0.0, 1.0, 2]])
+    assert [v.tolist() for _, v in spoiled] == 2 * [[[1.0], [2.0], [3.0]]]
+    assert connection.march("bad", [[systems.FreeFall(), [0.0] * 2, [0.0] * 2, 0.0, 1.0, 2]])[0]["step"] == 0
+    assert "NoneType" in connection.march("none", [[systems.FreeFall(), [0.0], [0.0], 0.0, 1.0, 2]])[0]["bad"]
 
 
 def test_a_batch_of_calls_keeps_each_value_as_it_was_returned(load: Any) -> None:

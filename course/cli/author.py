@@ -9,6 +9,7 @@ import typer
 
 from course.cli.completion import exercise_ids, lesson_ids
 from course.cli.console import Console, current
+from course.errors import UsageError
 
 if TYPE_CHECKING:
     from course.authoring.coverage import Coverage
@@ -167,6 +168,10 @@ def mutants(
             metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
         ),
     ] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option("--table", metavar="FILE", help="Write what is caught by what, as Markdown."),
+    ] = None,
 ) -> int:
     """Show what each wrong solution gets to read.
 
@@ -181,6 +186,8 @@ def mutants(
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
+    if table is not None and name is not None:
+        raise UsageError("--table writes the page of all exercises.", help=f"Leave {name} out.")
     chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
     rows = []
     for exercise in chosen:
@@ -194,8 +201,20 @@ def mutants(
         f"{_count(len(rows), 'mutant')}: "
         + ("each is caught as it says." if ok else f"{wrong} not caught as they should be.")
     )
+    if table is not None and ok:
+        _write_table(console, catalog, table)
     console.emit(AuthorMutants(ok=ok, exit_code=0 if ok else 1, mutants=tuple(rows)))
     return 0 if ok else 1
+
+
+def _write_table(console: Console, catalog: Catalog, path: Path) -> None:
+    from course.authoring.kill_table import kill_table
+    from course.cli import sim_files
+    from course.progress.workspace import write_atomically
+
+    full = sim_files.target(path, "--table", ("md",))
+    write_atomically(full, kill_table(catalog).encode())  # generated, and under version control: no copy
+    console.line(f"Wrote {full}")
 
 
 def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:

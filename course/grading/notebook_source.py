@@ -1,0 +1,224 @@
+"""What of a notebook is graded: the module that its cells stand for.
+
+Cells that the course generated for an exercise say so in their metadata; where that was lost, a cell that
+defines one of the exercise's functions is one of them. These count whole and in order, as if they had been
+written into the module one after the other, so that the last definition of a name wins. Of all other cells
+(helpers, experiments, plots) only the statements count that bind a name which the counted code uses.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from bisect import bisect_right
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from course.errors import UngradableError
+from course.grading.notebook_cells import CodeCell, code_cells
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from course.catalog.models import Exercise
+
+__all__ = ["NotebookSource", "notebook_source"]
+
+#: Roles that the course gives cells it generates.
+SOLUTION, SETUP = "solution", "setup"
+
+
+@dataclass(frozen=True)
+class NotebookSource:
+    """A notebook as the module it stands for.
+
+    Attributes:
+        source: the module's text, UTF-8.
+        notes: what was left out or taken for granted, a sentence each.
+        starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
+    """
+
+    source: bytes
+    notes: tuple[str, ...]
+    starts: tuple[tuple[int, int], ...]
+
+    def place(self, line: int) -> str:
+        """A line of the module as a place in the notebook: "cell 7, line 3"."""
+        index = bisect_right(self.starts, (line, 1 << 30)) - 1
+        if index < 0:
+            return f"line {line}"
+        start, cell = self.starts[index]
+        return f"cell {cell}, line {line - start + 1}"
+
+
+def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook") -> NotebookSource:
+    """The module that a notebook stands for.
+
+    Args:
+        data: the file.
+        name: what to call it in messages.
+
+    Raises:
+        UngradableError: it is no notebook, one of another language, or has none of the functions.
+    """
+    try:
+        return _source(code_cells(data, name), exercise, name)
+    except RecursionError:
+        raise UngradableError(
+            f"{name} holds an expression nested too deeply to be read.",
+            help="Split it into several lines.",
+            code="too_deep",
+        ) from None
+
+
+def _source(cells: list[CodeCell], exercise: Exercise, name: str) -> NotebookSource:
+    functions = {task.id for task in exercise.task}
+    chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
+    if not chosen:
+        listed = ", ".join(task.id for task in exercise.task)
+        raise UngradableError(
+            f"{name} defines none of the functions of this exercise.",
+            help=f"Keep the names the notebook gave: {listed}.",
+            code="no_declared_functions",
+        )
+    blocks = _blocks(cells, chosen)
+    return _written(blocks, _notes(cells, chosen, exercise.id))
+
+
+def _counts(cell: CodeCell, exercise: str, functions: set[str]) -> bool:
+    """Whether a cell is part of the solution as a whole."""
+    if cell.tags.get("exercise") == exercise and cell.tags.get("role") in (SOLUTION, SETUP):
+        return bool(cell.text.strip())
+    if cell.tags.get("role") not in (None, SOLUTION, SETUP):
+        return False  # generated to show or to check something
+    if cell.tree is None:
+        # Not Python: what it would have defined decides, so that it is refused as the module would be.
+        found = re.findall(r"^(?:async )?def\s+(\w+)", cell.text, re.MULTILINE)
+        return not functions.isdisjoint(found)
+    return not functions.isdisjoint(name for node in cell.tree.body for name in _bound(node))
+
+
+# -- statements of other cells -----------------------------------------------------------------------------
+
+
+def _blocks(cells: list[CodeCell], chosen: list[CodeCell]) -> list[tuple[CodeCell, str]]:
+    """(cell, text) of everything that counts, in order; lines left out are empty."""
+    whole = {cell.number for cell in chosen}
+    used = {name for cell in chosen if cell.tree for name in _loaded(cell.tree)}
+    others = [
+        (cell, node)
+        for cell in cells
+        if cell.number not in whole and cell.tree and cell.tags.get("role") in (None, SOLUTION, SETUP)
+        for node in cell.tree.body
+    ]
+    kept: set[int] = set()
+    grown = True
+    while grown:
+        grown = False
+        for index, (_, node) in enumerate(others):
+            if index not in kept and not used.isdisjoint(_bound(node)):
+                kept.add(index)
+                used.update(_loaded(node))
+                grown = True
+    nodes: dict[int, list[ast.stmt]] = {}
+    for index in sorted(kept):
+        nodes.setdefault(others[index][0].number, []).append(others[index][1])
+    return [
+        (cell, cell.text if cell.number in whole else _only(cell.text, nodes[cell.number]))
+        for cell in cells
+        if cell.number in whole or cell.number in nodes
+    ]
+
+
+def _bound(node: ast.AST) -> Iterator[str]:
+    """Names that a statement binds at its own level, or changes: x = 1, x[0] = 1, x.append(1), def x."""
+    match node:
+        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+            yield node.name
+        case ast.Import() | ast.ImportFrom():
+            for alias in node.names:
+                yield (alias.asname or alias.name).partition(".")[0]
+        case ast.Name(ctx=ast.Store() | ast.Del()):
+            yield node.id
+        case ast.Attribute(ctx=ast.Store() | ast.Del()) | ast.Subscript(ctx=ast.Store() | ast.Del()):
+            yield from _base(node)
+        case ast.Expr(value=ast.Call(func=ast.Attribute() as method)):
+            yield from _base(method)
+        case ast.Lambda() | ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
+            return
+        case _:
+            for child in ast.iter_child_nodes(node):
+                yield from _bound(child)
+
+
+def _base(node: ast.expr) -> Iterator[str]:
+    """The name at the root of a.b[c].d."""
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        node = node.value
+    if isinstance(node, ast.Name):
+        yield node.id
+
+
+def _loaded(node: ast.AST) -> Iterator[str]:
+    """Every name that is read anywhere in a piece of code."""
+    for child in ast.walk(node):
+        if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load):
+            yield child.id
+        elif isinstance(child, ast.Global | ast.Nonlocal):
+            yield from child.names
+        elif isinstance(child, ast.AugAssign):
+            yield from _base(child.target)
+            if isinstance(child.target, ast.Name):
+                yield child.target.id
+
+
+def _only(text: str, nodes: list[ast.stmt]) -> str:
+    """The lines of some statements of a cell; the lines of all others are empty."""
+    lines = text.split("\n")
+    shown = [""] * len(lines)
+    for node in nodes:
+        decorators = getattr(node, "decorator_list", [])
+        first = min([node.lineno, *(decorator.lineno for decorator in decorators)])
+        shown[first - 1 : node.end_lineno] = lines[first - 1 : node.end_lineno]
+    return "\n".join(shown)
+
+
+# -- the module --------------------------------------------------------------------------------------------
+
+_FUTURE = re.compile(r"^from __future__ import .*$", re.MULTILINE)
+
+
+def _written(blocks: Iterable[tuple[CodeCell, str]], notes: tuple[str, ...]) -> NotebookSource:
+    """The blocks one after the other; ``from __future__`` must come first, so it is moved there."""
+    futures: list[str] = []
+    parts: list[str] = []
+    starts: list[tuple[int, int]] = []
+    line = 1
+    for cell, text in blocks:
+        found = _FUTURE.findall(text) if cell.tree and _imports_future(cell.tree) else []
+        futures += found
+        body = _FUTURE.sub("pass", text) if found else text
+        starts.append((line, cell.number))
+        parts.append(body)
+        line += body.count("\n") + 1
+    head = list(dict.fromkeys(futures))
+    source = "\n".join([*head, *parts]) + "\n"
+    shifted = tuple((start + len(head), number) for start, number in starts)
+    return NotebookSource(source.encode("utf-8", "replace"), notes, shifted)
+
+
+def _imports_future(tree: ast.Module) -> bool:
+    return any(isinstance(node, ast.ImportFrom) and node.module == "__future__" for node in tree.body)
+
+
+def _notes(cells: list[CodeCell], chosen: list[CodeCell], exercise: str) -> tuple[str, ...]:
+    notes = [
+        f"Cell {cell.number}, line {line}: left out, since it is not Python: {text[:80]}"
+        for cell in cells
+        for line, text in cell.dropped
+    ]
+    unmarked = [str(cell.number) for cell in chosen if cell.tags.get("exercise") != exercise]
+    if unmarked:
+        numbers = ", ".join(unmarked)
+        notes.append(f"Taken for part of the solution by what they define: cells {numbers}.")
+    return tuple(notes)

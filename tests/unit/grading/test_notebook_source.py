@@ -1,0 +1,205 @@
+"""Notebooks as submissions: the module they stand for, whatever was done to their cells."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from course.catalog.models import Exercise, Task
+from course.errors import UngradableError
+from course.grading.notebook_cells import MAX_NOTEBOOK
+from course.grading.notebook_source import NotebookSource, notebook_source
+
+EXERCISE = Exercise(
+    format_version=1,
+    id="springs",
+    title="Springs",
+    module="springs.py",
+    lesson="springs",
+    order=1,
+    summary="",
+    task=(Task("force", "Force", 5.0), Task("energy", "Energy", 5.0)),
+)
+SOLUTION = {"course": {"exercise": "springs", "role": "solution", "task": "force"}}
+CHECK = {"course": {"exercise": "springs", "role": "check"}}
+
+
+def code(text: str, metadata: dict[str, Any] | None = None, **rest: Any) -> dict[str, Any]:
+    return {"cell_type": "code", "source": text, "metadata": metadata or {}, "outputs": [], **rest}
+
+
+def notebook(*cells: dict[str, Any], **rest: Any) -> bytes:
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells, **rest}).encode()
+
+
+def source_of(*cells: dict[str, Any]) -> NotebookSource:
+    return notebook_source(notebook(*cells), EXERCISE)
+
+
+def run(source: NotebookSource) -> dict[str, Any]:
+    """The names that the module defines."""
+    names: dict[str, Any] = {}
+    exec(compile(source.source, "springs.py", "exec", dont_inherit=True), names)
+    return names
+
+
+FORCE = "def force(k, x):\n    return -k * x"
+
+
+def test_marked_cells_are_the_module_in_order() -> None:
+    source = source_of(code("K = 2.0", SOLUTION), code(FORCE, SOLUTION), code("print('experiment')"))
+    assert source.source.decode() == f"K = 2.0\n{FORCE}\n"
+    assert source.notes == ()
+
+
+def test_a_cell_that_lost_its_mark_is_known_by_what_it_defines() -> None:
+    source = source_of(code("x = [1, 2]"), code(FORCE))
+    assert run(source)["force"](2.0, 3.0) == -6.0
+    assert source.notes == ("Taken for part of the solution by what they define: cells 2.",)
+
+
+def test_the_last_definition_wins() -> None:
+    source = source_of(code("def force(k, x):\n    return 0", SOLUTION), code(FORCE, SOLUTION))
+    assert run(source)["force"](2.0, 3.0) == -6.0
+
+
+def test_helpers_in_other_cells_count_and_experiments_do_not() -> None:
+    source = source_of(
+        code(
+            "import numpy as np\nimport matplotlib.pyplot as plt\nSCALE = 3\nplt.plot([1])\nraise SystemExit"
+        ),
+        code("TABLE = {}\nTABLE['a'] = SCALE\nunused = TABLE\nprint(force(1, 2))"),
+        code("@np.vectorize\ndef helper(x):\n    return x * TABLE['a']"),
+        code("def force(k, x):\n    return helper(k) * x", SOLUTION),
+    )
+    text = source.source.decode()
+    for kept in ("import numpy as np", "SCALE = 3", "TABLE['a'] = SCALE", "@np.vectorize"):
+        assert kept in text
+    for gone in ("matplotlib", "plt.plot", "SystemExit", "unused", "print"):
+        assert gone not in text
+    assert run(source)["force"](2.0, 3.0) == 18
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["LIST.append(4)", "LIST += [4]", "for i in [4]:\n    LIST.append(i)", "LIST[0] = 4", "del LIST[0]"],
+)
+def test_a_statement_that_changes_what_is_used_counts(statement: str) -> None:
+    source = source_of(code(f"LIST = [1]\n{statement}\nprint('no')"), code("def force():\n    return LIST"))
+    assert statement in source.source.decode()
+    assert "print" not in source.source.decode()
+
+
+def test_generated_check_cells_never_count() -> None:
+    source = source_of(code(FORCE, SOLUTION), code("%course_check springs\ndef force(): pass", CHECK))
+    assert "course_check" not in source.source.decode()
+    assert run(source)["force"](1, 1) == -1
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("%matplotlib inline\nK = 1", "pass\nK = 1"),
+        ("!pip install numpy\nK = 1", "pass\nK = 1"),
+        ("if True:\n    %time force(1, 2)\n    K = 1", "if True:\n    pass\n    K = 1"),
+        ("files = !ls\nK = 1", "pass\nK = 1"),
+        ("took = %timeit -o 1+1\nK = 1", "pass\nK = 1"),
+        ("force?\nK = 1", "pass\nK = 1"),
+        ("?force\nK = 1", "pass\nK = 1"),
+        ("np.sum??\nK = 1", "pass\nK = 1"),
+        ("%%time\nK = 1", "\nK = 1"),
+        ("\n%%capture out\n%time 1\nK = 1", "\n\npass\nK = 1"),
+        ("K = '''\n%time\n!ls\n'''\n%time 1", "K = '''\n%time\n!ls\n'''\npass"),
+        ("K = (7\n% 3)\n%time 1", "K = (7\n% 3)\npass"),
+        ("K = 7 \\\n% 3\n!ls", "K = 7 \\\n% 3\npass"),
+        ("K = 'it''s' # don't\n!ls", "K = 'it''s' # don't\npass"),
+        ("K = 7 \\\n  % 3", "K = 7 \\\n  % 3"),
+    ],
+)
+def test_what_is_not_python_is_taken_out_line_by_line(text: str, left: str) -> None:
+    source = source_of(code(text, SOLUTION), code(FORCE, SOLUTION))
+    assert source.source.decode() == f"{left}\n{FORCE}\n"
+
+
+@pytest.mark.parametrize("text", ["%%bash\nrm -rf /", "%%html\n<b>", "%%writefile a.py\ndef force(): 1"])
+def test_cells_of_another_language_are_left_out(text: str) -> None:
+    source = source_of(code(text, SOLUTION), code(FORCE, SOLUTION))
+    assert source.source.decode() == f"{FORCE}\n"
+    assert source.notes[0].startswith("Cell 1, line 1: left out")
+
+
+def test_a_line_of_the_module_is_a_place_in_the_notebook() -> None:
+    source = source_of(
+        {"cell_type": "markdown", "source": "# Springs", "metadata": {}},
+        code("from __future__ import annotations\nK = 1\n", SOLUTION),
+        code(FORCE, SOLUTION),
+    )
+    lines = source.source.decode().split("\n")
+    assert lines[0] == "from __future__ import annotations"
+    assert source.place(lines.index("K = 1") + 1) == "cell 2, line 2"
+    assert source.place(lines.index("    return -k * x") + 1) == "cell 3, line 2"
+
+
+def test_a_solution_cell_that_is_not_python_spoils_the_module_as_it_would_a_file() -> None:
+    source = source_of(code("def force(k, x:\n    return 1"), code("def energy(k, x):\n    return 1"))
+    with pytest.raises(SyntaxError):
+        run(source)
+
+
+def test_an_experiment_that_is_not_python_is_no_matter() -> None:
+    assert run(source_of(code("for for"), code(FORCE)))["force"](1, 1) == -1
+
+
+def test_lines_may_be_a_list_and_outputs_may_be_enormous() -> None:
+    lines = [line + "\n" for line in FORCE.split("\n")]
+    outputs = [{"output_type": "stream", "name": "stdout", "text": "x" * (4 << 20)}]
+    data = notebook(code("", SOLUTION, outputs=outputs) | {"source": lines})
+    assert run(notebook_source(data, EXERCISE))["force"](1, 1) == -1
+
+
+def test_a_notebook_of_format_3_is_read() -> None:
+    cell = {"cell_type": "code", "input": FORCE, "language": "python", "metadata": {}}
+    old = {"nbformat": 3, "metadata": {"name": ""}, "worksheets": [{"cells": [cell]}]}
+    assert run(notebook_source(json.dumps(old).encode(), EXERCISE))["force"](1, 1) == -1
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        (b"", "not_a_notebook"),
+        (b"def force(): pass", "not_a_notebook"),
+        (b"\xff\xfe\x00", "not_a_notebook"),
+        (b'{"cells": []}', "not_a_notebook"),
+        (b'{"nbformat": 4, "cells": [17]}', "not_a_notebook"),
+        (b'{"nbformat": 4, "cells": ' + b"[" * 100_000, "not_a_notebook"),
+        (notebook(), "no_declared_functions"),
+        (notebook(code("x = 1")), "no_declared_functions"),
+        (
+            notebook(code(FORCE), metadata={"kernelspec": {"language": "julia", "name": "julia"}}),
+            "other_kernel",
+        ),
+        (notebook(code(FORCE), metadata={"language_info": {"name": "R"}}), "other_kernel"),
+        (b" " * (MAX_NOTEBOOK + 1), "too_large"),
+    ],
+)
+def test_what_cannot_be_graded_is_refused_with_a_reason(data: bytes, reason: str) -> None:
+    with pytest.raises(UngradableError) as caught:
+        notebook_source(data, EXERCISE)
+    assert caught.value.code == reason
+    assert caught.value.help
+
+
+def test_deep_nesting_never_breaks_the_reader() -> None:
+    for text in ("x = " + "(" * 5000, "x = " + "-" * 50_000 + "1", "x = " + "+".join(["1"] * 50_000)):
+        data = notebook(code(text), code(FORCE))
+        try:
+            notebook_source(data, EXERCISE)
+        except UngradableError as refused:
+            assert refused.code == "too_deep"  # noqa: PT017 - either is an answer
+
+
+def test_python_kernels_by_any_name_are_accepted() -> None:
+    for metadata in ({}, {"kernelspec": {"name": "python3"}}, {"language_info": {"name": "ipython"}}):
+        assert run(notebook_source(notebook(code(FORCE), metadata=metadata), EXERCISE))["force"](1, 1) == -1

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from course.authoring.variants import instructors
 from course.errors import UsageError
-from course.ids import ExerciseId, LessonId
+from course.ids import ExerciseId, LessonId, QuestionId
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
 
-__all__ = ["new_exercise", "new_lesson"]
+__all__ = ["new_exercise", "new_lesson", "new_question"]
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
@@ -73,6 +73,24 @@ def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:
     instructors(catalog)
     name = LessonId(lesson_id)
     return _write({catalog.content.lessons / f"{name}.md": _TEMPLATES / "lesson.md.tmpl"}, {"id": name})
+
+
+def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
+    """Write the file of a new quiz question, with as many variants as the audit asks for.
+
+    Raises:
+        UsageError: the id is no id, or the file exists.
+        MissingCapabilityError: this is a student's installation.
+    """
+    instructors(catalog)
+    name = QuestionId(question_id)
+    lessons = catalog.lesson_ids()
+    words = {
+        "id": name,
+        "lesson": lessons[-1] if lessons else "<<FILL IN: id of the lesson it is about>>",
+        "order": str(1 + len(list(catalog.content.quiz.glob("*.toml")))),
+    }
+    return _write({catalog.content.quiz / f"{name}.toml": _TEMPLATES / "question.toml.tmpl"}, words)
 
 
 def _module(function: str) -> str:

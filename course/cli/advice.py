@@ -48,7 +48,19 @@ def next_in_course(here: Here) -> str:
         step = "" if exercise.id in done else _exercise_step(here, exercise.id, started)
         if step:
             return step
-    return "course submit" if started else "course lessons"
+    if not started:
+        return "course lessons"
+    return "course submit" if _quiz_passed(here) else "course quiz take"
+
+
+def _quiz_passed(here: Here) -> bool:
+    """Whether the quiz is behind the student, or the course has none."""
+    if not any(here.catalog.content.quiz.glob("*.toml")):
+        return True
+    from course.progress.quiz import quiz_history
+
+    best = quiz_history(here.workspace.store.events()).best
+    return best is not None and best.passed
 
 
 def _exercise_step(here: Here, name: str, started: set[str]) -> str:

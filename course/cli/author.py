@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.cli.author_schemas import MutantRow
 
-__all__ = ["app", "check", "coverage", "mutants", "new_exercise", "new_lesson", "pack"]
+__all__ = ["app", "check", "coverage", "mutants", "new_exercise", "new_lesson", "new_question", "pack"]
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 
@@ -70,6 +70,21 @@ def new_lesson(
 
     catalog = load_catalog()
     return _report_new(catalog, "lesson", name, scaffold.new_lesson(catalog, name))
+
+
+@_new.command("question", epilog="Example: course author new question contact-forces")
+def new_question(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+) -> int:
+    """Write a quiz question with blanks to fill in.
+
+    Nothing is overwritten. It has four variants, each with one right option and three wrong ones.
+    """
+    from course.authoring import scaffold
+    from course.cli.here import load_catalog
+
+    catalog = load_catalog()
+    return _report_new(catalog, "question", name, scaffold.new_question(catalog, name))
 
 
 def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...]) -> int:

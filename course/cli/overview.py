@@ -12,7 +12,7 @@ from course.errors import CourseError
 if TYPE_CHECKING:
     from course.catalog.models import Exercise, Lesson
     from course.cli.here import Here
-    from course.cli.schemas import ExerciseState, LessonState
+    from course.cli.schemas import ExerciseState, LessonState, QuizState
     from course.progress.history import History
 
 __all__ = ["dashboard", "day", "exercise_state", "lesson_states", "progress"]
@@ -57,7 +57,11 @@ def progress() -> int:
     console.heading("Exercises", f"{done} of {len(exercises)} passed")
     for exercise in exercises:
         console.line(f"{exercise.title} ({exercise.id}): {_progress_line(exercise)}", indent=2)
-    console.heading("Handed in", "never" if not sent else f"{len(sent)} times, last {day(sent[-1])}")
+    quiz = quiz_state(here)
+    if quiz is not None:
+        console.heading("Quiz", _quiz_line(quiz))
+    often = _count(len(sent), "time")
+    console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
     step = next_in_course(here)
     console.note(f"Next: {step}")
     console.emit(
@@ -68,6 +72,7 @@ def progress() -> int:
             exercises=exercises,
             submissions=sent,
             next=NextStep(step),
+            quiz=quiz,
         )
     )
     return 0
@@ -94,6 +99,21 @@ def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
         checked_at=last.at.isoformat() if last else None,
         passed_at=first_pass.at.isoformat() if first_pass else None,
     )
+
+
+def quiz_state(here: Here) -> QuizState | None:
+    """What the record says about the quiz; None if the course has none."""
+    from course.cli.schemas import QuizState
+    from course.progress.quiz import quiz_history
+
+    questions = len(list(here.catalog.content.quiz.glob("*.toml")))
+    if not questions:
+        return None
+    history = quiz_history(here.workspace.store.events())
+    best = history.best
+    if best is None:
+        return QuizState(attempts=0, best=None, total=questions, passed=False)
+    return QuizState(attempts=len(history.counting), best=best.score, total=best.total, passed=best.passed)
 
 
 def lesson_states(here: Here) -> tuple[LessonState, ...]:
@@ -170,11 +190,12 @@ def _inside(console: Console, here: Here) -> int:
     try:
         states = tuple(exercise_state(here, exercise) for exercise in catalog.exercises())
         read = sum(lesson.read_at is not None for lesson in lesson_states(here))
+        quiz = quiz_state(here)
         step = next_in_course(here)
     except CourseError as error:
         # The dashboard is where someone in trouble looks first; it must not be one more error.
         here.warnings.append(f"{error.message} {error.help}")
-        states, read, step = (), 0, "course doctor"
+        states, read, quiz, step = (), 0, None, "course doctor"
     total = len(catalog.lesson_ids())
     console.heading(catalog.title)
     console.line(f"Workspace: {here.workspace.root}")
@@ -184,6 +205,8 @@ def _inside(console: Console, here: Here) -> int:
             ("Exercise", "State", "Score"),
             [(state.id, WORDS[state.state], _score(state)) for state in states],
         )
+    if quiz is not None:
+        console.line(f"Quiz: {_quiz_line(quiz)}")
     if here.workspace.version != catalog.version:
         console.note(
             f"The course is at version {catalog.version}, this workspace at {here.workspace.version}: "
@@ -201,6 +224,7 @@ def _inside(console: Console, here: Here) -> int:
             lessons=total,
             exercises=states,
             next=NextStep(step),
+            quiz=quiz,
             warnings=tuple(here.warnings),
         )
     )
@@ -224,6 +248,13 @@ def _progress_line(exercise: ExerciseState) -> str:
     elif exercise.started_at:
         parts.append(f"since {day(exercise.started_at)}")
     return ", ".join(parts)
+
+
+def _quiz_line(quiz: QuizState) -> str:
+    if quiz.best is None:
+        return "not taken yet"
+    parts = ["passed" if quiz.passed else "not passed yet", f"best {quiz.best} of {quiz.total}"]
+    return ", ".join([*parts, _count(quiz.attempts, "attempt")])
 
 
 def _score(state: ExerciseState) -> str:

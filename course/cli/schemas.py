@@ -38,6 +38,7 @@ __all__ = [
     "NextStep",
     "Package",
     "Progress",
+    "QuizState",
     "Reset",
     "Solution",
     "Start",
@@ -177,6 +178,15 @@ class LessonState(msgspec.Struct, frozen=True, kw_only=True):
     read_at: str | None = None
 
 
+class QuizState(msgspec.Struct, frozen=True):
+    """The quiz so far: the attempts that count, and the best of them; None before the first."""
+
+    attempts: int
+    best: int | None
+    total: int
+    passed: bool
+
+
 class Status(Envelope, tag="course.status/1", frozen=True, kw_only=True):
     """The dashboard. ``workspace`` is None outside of one."""
 
@@ -187,6 +197,7 @@ class Status(Envelope, tag="course.status/1", frozen=True, kw_only=True):
     lessons: int
     exercises: tuple[ExerciseState, ...]
     next: NextStep
+    quiz: QuizState | None = None
     warnings: tuple[str, ...] = ()
 
 
@@ -197,6 +208,7 @@ class Progress(Envelope, tag="course.progress/1", frozen=True, kw_only=True):
     exercises: tuple[ExerciseState, ...]
     submissions: tuple[str, ...]
     next: NextStep
+    quiz: QuizState | None = None
 
 
 class Lessons(Envelope, tag="course.lessons/1", frozen=True, kw_only=True):

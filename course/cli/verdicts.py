@@ -86,7 +86,7 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
     mark = exercise.pass_mark * verdict.max_score
     reached = "reached" if verdict.passed else "not reached yet"
     return [
-        f"{passing} of {total} public checks pass{'es' * (passing == 1)}{later}.",
+        f"{passing} of {total} public checks {'passes' if passing == 1 else 'pass'}{later}.",
         _capital(f"{score}; the pass mark, {format_points(mark)} ({exercise.pass_mark:.0%}), is {reached}."),
     ]
 

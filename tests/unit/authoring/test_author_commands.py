@@ -136,7 +136,14 @@ def test_a_student_is_told_that_it_needs_a_checkout(
 
 
 def test_every_author_command_has_a_help_page_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
-    for line in (["check"], ["mutants"], ["pack"], ["new", "exercise"], ["new", "lesson"]):
+    for line in (
+        ["check"],
+        ["mutants"],
+        ["pack"],
+        ["new", "exercise"],
+        ["new", "lesson"],
+        ["new", "question"],
+    ):
         assert run(["author", *line, "--help", "--plain"]) == 0
         assert "Example: course author" in capsys.readouterr().out
 

@@ -8,7 +8,7 @@ import pytest
 
 from course.authoring.audit import audit
 from course.authoring.files import BLANK
-from course.authoring.scaffold import new_exercise, new_lesson
+from course.authoring.scaffold import new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError
 
@@ -152,3 +152,15 @@ def test_a_student_has_no_place_for_new_exercises(mini: Path) -> None:
         new_exercise(Catalog(), "tripling")
     with pytest.raises(MissingCapabilityError):
         new_lesson(Catalog(), "three-times")
+
+
+def test_a_new_question_passes_once_it_is_filled(mini: Path) -> None:
+    (path,) = new_question(Catalog(), "twice-or-square")
+    blanks = [p for p in audit(Catalog()).problems if p.code == "blank"]
+    assert {p.file for p in blanks} == {"quiz/twice-or-square.toml"}
+    texts = iter(range(1000))  # texts of options must differ from each other
+    filled = BLANK.sub(lambda _: f"Sentence number {next(texts)} of this question, 2026", path.read_text())
+    path.write_text(filled)
+    assert [p.message for p in audit(Catalog()).problems] == []
+    with pytest.raises(UsageError, match="nothing is overwritten"):
+        new_question(Catalog(), "twice-or-square")

@@ -407,3 +407,23 @@ def test_nothing_is_wider_than_the_terminal(quiz, bank, tmp_path, monkeypatch, w
         shown = re.sub(r"\x1b\[[0-9;]*m", "", ran.out)
         assert max(len(line) for line in shown.split("\n")) <= int(width)
         assert "\x1b[3" not in ran.out
+
+
+def test_the_quiz_is_part_of_progress_and_of_the_dashboard(quiz, bank, types, course):
+    assert course("progress", "--json").json["quiz"] == {
+        "attempts": 0,
+        "best": None,
+        "total": 5,
+        "passed": False,
+    }
+    assert "Quiz: not taken yet" in course("--plain").out
+    types(*key(bank, ("why-simulate", "digital-twin")).values())
+    quiz("take", "--seed", str(SEED))
+    assert "Quiz: not passed yet, best 3 of 5, 1 attempt" in course("progress", "--plain").out
+    types(*key(bank).values())
+    quiz("take", "--seed", str(SEED))
+    assert course("--json").json["quiz"]["passed"] is False, "the same questions again do not count"
+    later = SEED + 1
+    types(*key(bank, (), later).values())
+    quiz("take", "--seed", str(later))
+    assert course("--json").json["quiz"] == {"attempts": 2, "best": 5, "total": 5, "passed": True}

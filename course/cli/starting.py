@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["HANDED_OUT", "init", "start"]
 
-#: Files of an exercise that a student gets besides the stub.
-HANDED_OUT = ("README.md",)
+#: Files of an exercise that a student gets besides the stub, where the exercise has them.
+HANDED_OUT = ("README.md", "boxes.py")
 
 
 def init(

@@ -123,12 +123,19 @@ class RemoteSubmission:
         return self._live().each(name, [list(args) for args in calls])
 
     def fold(
-        self, name: str, state: Any, calls: Iterable[Sequence[Any]], *, carry: int | None = None
+        self,
+        name: str,
+        state: Any,
+        calls: Iterable[Sequence[Any]],
+        *,
+        carry: int | None = None,
+        keep: Sequence[str] | None = None,
     ) -> list[Any]:
         """Hand a state through ``name(state, *args)``, once for each sequence of arguments.
 
         Args:
             carry: which element of a returned pair is the next state; None if the whole value is.
+            keep: of states that are dicts, the keys to report; the last state comes whole.
 
         Returns:
             The n + 1 states, the given one first; with ``carry``, the n returned values, whole.
@@ -136,7 +143,8 @@ class RemoteSubmission:
         Raises:
             StudentFailure: one of the calls gave no value.
         """
-        return self._live().fold(name, state, [list(args) for args in calls], carry)
+        kept = None if keep is None else list(keep)
+        return self._live().fold(name, state, [list(args) for args in calls], carry, kept)
 
     # -- for the grader -------------------------------------------------------------------------------
 

@@ -58,21 +58,34 @@ def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
     return [_snapshot(function(*args)) for args in calls]
 
 
-def fold(function: Any, state: Any, calls: Iterable[list[Any]], carry: int | None) -> list[Any]:
+def fold(
+    function: Any, state: Any, calls: Iterable[list[Any]], carry: int | None, keep: list[str] | None = None
+) -> list[Any]:
     """Hand the state through ``function(state, *args)``, once for each list of arguments.
 
     Args:
         carry: which element of a returned sequence is the next state; None if the whole value is.
+        keep: of states that are dicts, the keys to record; the last state is recorded whole.
 
     Returns:
         The states, the first one included; with ``carry``, the returned values, whole.
     """
-    record = [] if carry is not None else [_snapshot(state)]
+    record = [] if carry is not None else [_snapshot(_part(state, keep))]
+    value = state
     for args in calls:
         value = function(state, *args)
-        record.append(_snapshot(value))
+        record.append(_snapshot(_part(value, keep)))
         state = value if carry is None else value[carry]
+    if keep is not None and record:
+        record[-1] = _snapshot(value)
     return record
+
+
+def _part(value: Any, keep: list[str] | None) -> Any:
+    """The kept keys of a dict; anything else whole, so that whoever reads it sees what it is."""
+    if keep is None or not isinstance(value, dict):
+        return value
+    return {key: value[key] for key in keep if key in value}
 
 
 def _snapshot(value: Any, depth: int = _MAX_DEPTH) -> Any:

@@ -160,10 +160,12 @@ class Connection:
         """What ``function`` returns for each list of arguments; the loop runs beside the student's code."""
         return self._batch(Kind.EACH, [function, calls], function, len(calls))
 
-    def fold(self, function: str, state: Any, calls: list[list[Any]], carry: int | None) -> list[Any]:
+    def fold(
+        self, function: str, state: Any, calls: list[list[Any]], carry: int | None, keep: list[str] | None
+    ) -> list[Any]:
         """The states that ``function(state, *args)`` goes through; see ``loops.fold``."""
         length = len(calls) + (carry is None)
-        return self._batch(Kind.FOLD, [function, state, calls, carry], function, length)
+        return self._batch(Kind.FOLD, [function, state, calls, carry, keep], function, length)
 
     def _batch(self, kind: wire.Kind, request: list[Any], function: str, length: int) -> list[Any]:
         answer = self._ask(kind, request, function)

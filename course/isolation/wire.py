@@ -59,6 +59,8 @@ HEADER = struct.Struct("<IB")
 _U32 = struct.Struct("<I")
 _I64 = struct.Struct("<q")
 _F64 = struct.Struct("<d")
+_SHAPE = struct.Struct("<II")
+_TABLE = b"\x00\x02"  # dtype and dimensions of a table of float64
 _FLOAT64 = np.dtype(np.float64)
 _DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
 _WIDEN = {"f": 0, "i": 1, "u": 1, "b": 2, "c": 3}
@@ -72,7 +74,7 @@ class Kind(enum.IntEnum):
     MARCH = 3  # [step, [[rhs, q0, v0, t0, h, n], ...]]
     REPLY = 4  # value of a callback
     EACH = 6  # [function, [args, ...]]
-    FOLD = 7  # [function, state, [args, ...], which element is the next state or None]
+    FOLD = 7  # [function, state, [args, ...], which element is the next state or None, keys to keep or None]
     REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
     READY = 15  # None: locked down, and nothing of the submission has run yet
     LOADED = 16  # [names of functions]
@@ -240,6 +242,10 @@ def _put_array(value: Any, parts: list[bytes], _names: Names | None, _depth: int
         raw = value.tobytes()
         parts += (b"v", _U32.pack(len(value)), raw)
         return len(raw)
+    if value.dtype is _FLOAT64 and value.ndim == 2:
+        raw = value.tobytes()
+        parts += (b"a" + _TABLE, _SHAPE.pack(*value.shape), raw)
+        return len(raw)
     code = _WIDEN.get(value.dtype.kind)
     if code is None:
         raise UnsupportedValueError(f"an array of dtype {value.dtype}")
@@ -316,42 +322,67 @@ _QUICK_COUNT = 64
 
 
 def _quick(body: bytes) -> Any:  # noqa: PLR0911 - it gives up at the first thing it does not know
-    """A vector, or a short list of numbers, None and vectors: what a callback and its answer are.
+    """A vector, or a short list of numbers, words, vectors and tables: what a callback and its answer are.
 
     Twenty thousand of them pass in a second, so they are read in one loop; ``_OTHER`` stands for anything
     else, which takes the long way from the start.
     """
+    if len(body) > MAX_VALUE_BYTES:  # larger ones must not be copied twice
+        return _OTHER
     if body[0] == _V:
-        size = 8 * _U32.unpack_from(body, 1)[0]
-        if size != len(body) - 5 or size > MAX_VALUE_BYTES:  # larger ones must not be copied twice
-            return _OTHER
-        return np.frombuffer(bytearray(body[5:]), _FLOAT64)  # writable, and aligned as malloc aligns
-    if body[0] != _L or len(body) > MAX_VALUE_BYTES:
+        values, end = _quick_vector(body, 1)
+        return values if end == len(body) else _OTHER
+    if body[0] != _L:
         return _OTHER
     count, at = _U32.unpack_from(body, 1)[0], 5
     if count > _QUICK_COUNT:
         return _OTHER
     items: list[Any] = []
     for _ in range(count):
-        tag = body[at]
-        if tag == _V:
-            end = at + 5 + 8 * _U32.unpack_from(body, at + 1)[0]
-            if end > len(body):
-                return _OTHER
-            items.append(np.frombuffer(bytearray(body[at + 5 : end]), _FLOAT64))
-            at = end
-        elif tag == _FL:
+        if body[at] == _FL:
             items.append(_F64.unpack_from(body, at + 1)[0])
             at += 9
-        elif tag == _I:
-            items.append(_I64.unpack_from(body, at + 1)[0])
-            at += 9
-        elif tag == _N:
-            items.append(None)
-            at += 1
-        else:
+            continue
+        read = _QUICK.get(body[at])
+        if read is None:
             return _OTHER
+        value, at = read(body, at + 1)
+        if value is _OTHER:
+            return _OTHER
+        items.append(value)
+    # A length that runs past the end shows here.
     return items if at == len(body) else _OTHER
+
+
+def _quick_vector(body: bytes, at: int) -> tuple[Any, int]:
+    end = at + 4 + 8 * _U32.unpack_from(body, at)[0]
+    # Writable, and aligned as malloc aligns.
+    return (np.frombuffer(bytearray(body[at + 4 : end]), _FLOAT64) if end <= len(body) else _OTHER), end
+
+
+def _quick_table(body: bytes, at: int) -> tuple[Any, int]:
+    rows, columns = _SHAPE.unpack_from(body, at + 2)
+    end = at + 10 + 8 * rows * columns
+    # Empty ones may have extents that overflow: those are for the careful reader.
+    if body[at : at + 2] != _TABLE or end > len(body) or not rows * columns:
+        return _OTHER, at
+    return np.frombuffer(bytearray(body[at + 10 : end]), _FLOAT64).reshape(rows, columns), end
+
+
+def _quick_text(body: bytes, at: int) -> tuple[Any, int]:
+    end = at + 4 + _U32.unpack_from(body, at)[0]
+    return (body[at + 4 : end].decode("utf-8") if end <= len(body) else _OTHER), end
+
+
+_QUICK: dict[int, Callable[[bytes, int], tuple[Any, int]]] = {
+    _V: _quick_vector,
+    _A: _quick_table,
+    _S: _quick_text,
+    _I: lambda body, at: (_I64.unpack_from(body, at)[0], at + 8),
+    _N: lambda _body, at: (None, at),
+    _T: lambda _body, at: (True, at),
+    _F: lambda _body, at: (False, at),
+}
 
 
 class _Reader:

@@ -182,8 +182,8 @@ class Worker:
             elif kind == Kind.EACH:
                 result = loops.each(self._function(value[0]), map(self._owned, value[1]))
             elif kind == Kind.FOLD:
-                function, state, calls, carry = value
-                result = loops.fold(self._function(function), state, map(self._owned, calls), carry)
+                function, state, calls, *how = value
+                result = loops.fold(self._function(function), state, map(self._owned, calls), *how)
             else:
                 raise wire.WireError(f"unexpected kind {kind}")
             frame = self._codec.encode(Kind.RESULT, result)
@@ -239,7 +239,9 @@ class Worker:
         value = function(*args, **{name: self._own(argument) for name, argument in kwargs.items()})
         if not inspect:
             return value
-        return [value, args, _shares_memory(value, args)]
+        # Generators and objects of methods have no value to look at.
+        after = [None if isinstance(arg, np.random.Generator | loops.Methods) else arg for arg in args]
+        return [value, after, _shares_memory(value, args)]
 
     def _owned(self, args: list[Any]) -> list[Any]:
         return [self._own(argument) for argument in args]

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, overload
 
 import numpy as np
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SYSTEMS",
+    "AveragePolynomial",
     "DampedOscillator",
     "DrivenPendulum",
     "ForcedOscillator",
@@ -240,8 +241,44 @@ class LinearStep(_Plain):
         return q_next, omega * p_next
 
 
-def _polynomial(coefficients: Sequence[float], z: float) -> float:
-    value = 0.0
+@dataclass(frozen=True, slots=True)
+class AveragePolynomial(_Plain):
+    """A made-up statistic: the average of a polynomial of the samples, e.g. (0, 1) the mean.
+
+    It is called as statistics are, ``statistic(e)``, with one-dimensional samples. It is here so that
+    thousands of resamples need no messages. Coefficients, lowest power first.
+    """
+
+    coefficients: Sequence[float]
+
+    def __post_init__(self) -> None:
+        values = tuple(float(c) for c in self.coefficients)
+        if not values or not all(map(math.isfinite, values)):
+            raise ValueError("AveragePolynomial.coefficients must be finite numbers, lowest power first.")
+        object.__setattr__(self, "coefficients", values)
+
+    def params(self) -> dict[str, Any]:
+        """The coefficients as a list."""
+        return {"coefficients": list(self.coefficients)}
+
+    def __call__(self, e: ArrayLike) -> float:
+        """The statistic of the samples, shape (n,).
+
+        Raises:
+            ValueError: the samples are none, or not one-dimensional.
+        """
+        e = np.asarray(e, dtype=float)
+        if e.ndim != 1 or not e.size:
+            raise ValueError(f"A statistic takes samples of shape (n,), n > 0; these have shape {e.shape}.")
+        return float(_polynomial(self.coefficients, e).sum() / e.size)
+
+
+@overload
+def _polynomial(coefficients: Sequence[float], z: float) -> float: ...
+@overload
+def _polynomial(coefficients: Sequence[float], z: Array) -> Array: ...
+def _polynomial(coefficients: Sequence[float], z: Any) -> Any:
+    value: Any = 0.0
     for coefficient in reversed(coefficients):
         value = value * z + coefficient
     return value
@@ -260,5 +297,6 @@ SYSTEMS: dict[str, type[Any]] = {
         VanDerPol,
         Kepler,
         LinearStep,
+        AveragePolynomial,
     )
 }

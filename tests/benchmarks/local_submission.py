@@ -47,12 +47,12 @@ class LocalSubmission:
         """Call the student's function once for each sequence of arguments."""
         return [self.call(name, *args) for args in calls]
 
-    def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None) -> list[Any]:
+    def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None, keep: Any = None) -> Any:
         """Hand a state through the student's function."""
         function = self._function(name)
         escaped: list[BaseException] = []
         given = [[_given(arg, escaped) for arg in args] for args in calls]
-        values = _guarded(lambda: loops.fold(function, _plain(state), given, carry))
+        values = _guarded(lambda: loops.fold(function, _plain(state), given, carry, keep))
         if escaped:
             raise escaped[0]
         return [_plain(value) for value in values]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.kill_table import kill_table
 from course.authoring.variants import accepted_files
 from course.catalog.load import Catalog
 
@@ -72,3 +73,10 @@ def test_a_stub_explains_every_function(catalog: Catalog, exercise_id: str) -> N
     tree = ast.parse(exercise.stub_path.read_text(encoding="utf-8"))
     bare = [n.name for n in tree.body if isinstance(n, ast.FunctionDef) and not ast.get_docstring(n)]
     assert bare == []
+
+
+def test_the_page_of_what_graders_catch_is_up_to_date(catalog: Catalog) -> None:
+    page = catalog.content.root / "docs" / "graders.md"
+    assert page.read_text(encoding="utf-8") == kill_table(catalog), (
+        "run `course author mutants --table docs/graders.md`"
+    )

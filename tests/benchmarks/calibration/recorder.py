@@ -131,7 +131,7 @@ def report(exercise: str, tables: Tables, seeds: int, mutant_seeds: int) -> str:
         "",
         f"{tables.variants} correct solutions over {seeds} seeds, {tables.mutants} mutants over "
         f"{mutant_seeds}; verdicts that are not as declared: {tables.failures}. Written by "
-        f"`tests/benchmarks/calibration/{exercise.replace('-', '_')}.py`.",
+        f"`tests/benchmarks/calibration/{exercise}.py`.",
         "",
         "Share of the tolerance used: below 1 passes, a dash was decided without a number. `its mutants` "
         "are those that name the check; `fail it` counts all that do.",
@@ -145,10 +145,10 @@ def report(exercise: str, tables: Tables, seeds: int, mutant_seeds: int) -> str:
         used = tables.used[check.id]
         lines.append(f"| {check.id} | {check.points} | {used:.2g} | {wrong} | {tables.failed_by[check.id]} |")
     if tables.bounded:
-        lines += ["", "Values of correct solutions that were compared with bounds.", ""]
+        lines += ["", "Values of correct solutions that were compared with bounds, or that decide.", ""]
         lines += ["| quantity | least | mean | most | n |", "|---|---|---|---|---|"]
         lines += [
-            f"| {name} | {min(v):.3f} | {np.mean(v):.3f} | {max(v):.3f} | {len(v)} |"
+            f"| {name} | {min(v):.4g} | {np.mean(v):.4g} | {max(v):.4g} | {len(v)} |"
             for name, v in sorted(tables.bounded.items())
         ]
     return "\n".join(lines)

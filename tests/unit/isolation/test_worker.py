@@ -193,6 +193,13 @@ def test_inspection_shows_changed_arguments_and_shared_memory(load: Any) -> None
     assert connection.inspect("clean", np.zeros(2))[1:] == ([pytest.approx([0.0, 0.0])], False)
 
 
+def test_inspection_shows_nothing_of_a_generator(load: Any) -> None:
+    connection = load("def draws(x, rng):\n    return x + rng.random()\n")
+    value, after, _ = connection.inspect("draws", np.zeros(2), np.random.default_rng(1))
+    assert 0.0 < value[0] < 1.0
+    assert after[1] is None
+
+
 def test_functions_of_both_sides_can_call_each_other(load: Any) -> None:
     connection = load("def f(call, n):\n    return call(lambda x: x + n, n)\n")
     assert connection.call("f", lambda function, n: function(10.0) * n, 3) == 39.0
@@ -269,12 +276,19 @@ def test_a_state_is_handed_on(load: Any) -> None:
         "def f(state, x):\n    state['seen'] = state['seen'] + [x]\n    return state\n"
         "def pair(state, x):\n    return 10 * state, state + x\n"
     )
-    assert connection.fold("f", {"seen": []}, [[1], [2]], None) == [
+    assert connection.fold("f", {"seen": []}, [[1], [2]], None, None) == [
         {"seen": []},
         {"seen": [1]},
         {"seen": [1, 2]},
     ]
-    assert connection.fold("pair", 1, [[1], [2]], 1) == [[10, 2], [20, 4]]
+    assert connection.fold("pair", 1, [[1], [2]], 1, None) == [[10, 2], [20, 4]]
+    grows = "def g(state, x):\n    return {'sum': state['sum'] + x, 'all': state['all'] + [x]}\n"
+    assert load(grows).fold("g", {"sum": 0, "all": []}, [[1], [2]], None, ["sum", "none"]) == [
+        {"sum": 0},
+        {"sum": 1},
+        {"sum": 3, "all": [1, 2]},
+    ]
+    assert load("def g(state, x):\n    return 7\n").fold("g", {"sum": 0}, [[1]], None, ["sum"])[1] == 7
 
 
 def test_methods_are_functions_of_the_graders(load: Any) -> None:

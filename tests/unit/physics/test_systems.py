@@ -26,6 +26,7 @@ EXAMPLES = [
     systems.Kepler(1.7),
 ]
 VERLET_MAP = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
+STATISTIC = systems.AveragePolynomial([0.5, 0.0, 2.0])
 Q, V = np.array([0.6, -1.1]), np.array([0.4, 0.9])
 
 
@@ -33,14 +34,14 @@ def name_of(system):
     return type(system).__name__
 
 
-@pytest.mark.parametrize("system", [*EXAMPLES, VERLET_MAP], ids=name_of)
+@pytest.mark.parametrize("system", [*EXAMPLES, VERLET_MAP, STATISTIC], ids=name_of)
 def test_a_system_is_rebuilt_from_its_name_and_plain_parameters(system):
     params = json.loads(json.dumps(system.params()))
     assert systems.SYSTEMS[name_of(system)](**params) == system
 
 
 def test_every_system_is_registered_under_its_own_name_and_has_an_example_here():
-    assert {name_of(system) for system in [*EXAMPLES, VERLET_MAP]} == set(systems.SYSTEMS)
+    assert {name_of(system) for system in [*EXAMPLES, VERLET_MAP, STATISTIC]} == set(systems.SYSTEMS)
     assert set(systems.SYSTEMS) | {"SYSTEMS", "System"} == set(systems.__all__)
 
 
@@ -135,3 +136,14 @@ def test_the_file_that_goes_beside_student_code_imports_only_the_standard_librar
             assert node.level == 0
             names.add((node.module or "").split(".")[0])
     assert names <= set(sys.stdlib_module_names) | {"numpy"}
+
+
+def test_a_statistic_is_the_average_of_its_polynomial():
+    assert STATISTIC(np.array([1.0, -2.0, 3.0])) == pytest.approx(0.5 + 2.0 * 14 / 3)
+    assert systems.AveragePolynomial([1.5])([4, 5]) == 1.5
+
+
+@pytest.mark.parametrize("samples", [[], [[1.0, 2.0]], 3.0], ids=["none", "two-dimensional", "a number"])
+def test_a_statistic_refuses_what_are_no_samples(samples):
+    with pytest.raises(ValueError, match="shape"):
+        STATISTIC(samples)

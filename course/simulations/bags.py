@@ -1,0 +1,325 @@
+"""Sensor streams as ROS 2 bags, written and read without ROS.
+
+A bag is a folder. One topic a stream, with the names that are usual for them:
+
+    ImuStream       /imu/data_raw   sensor_msgs/msg/Imu         (REP 145: no orientation)
+    ScanStream      /scan           sensor_msgs/msg/LaserScan
+    OdometryStream  /odom           nav_msgs/msg/Odometry
+
+What the messages say beyond the streams:
+
+- Stamps are the stream's times from the epoch 0 on, to the nanosecond; a message is logged when it is
+  stamped.
+- A range of ``range_max`` means that nothing came back and is written as +inf (REP 117); ranges and angles
+  of a LaserScan are 32-bit.
+- What is not measured says so: the first element of the covariance of orientation and of acceleration is -1;
+  turn rates about x and y have the variance ``UNMEASURED``.
+- The robot moves in a plane: z, roll and pitch of an Odometry are 0 with the variance ``PLANAR``. All other
+  off-diagonal covariances are 0, and a variance of 0 means that it is not known.
+
+Writing the same streams to the same name gives the same bytes. This needs the extra ``ros``.
+"""
+
+from __future__ import annotations
+
+import math
+import shutil
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.simulations.streams import ImuStream, OdometryStream, ScanStream, Stream
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+__all__ = ["PLANAR", "STORAGES", "UNMEASURED", "available", "read_bag", "write_bag"]
+
+STORAGES = ("mcap", "sqlite3")
+#: Variance of a turn rate that no sensor looks at, (rad/s)².
+UNMEASURED = 1e6
+#: Variance of what is 0 because the world is flat, m² and rad².
+PLANAR = 1e-9
+
+_TOPICS = {
+    ImuStream: ("/imu/data_raw", "sensor_msgs/msg/Imu"),
+    ScanStream: ("/scan", "sensor_msgs/msg/LaserScan"),
+    OdometryStream: ("/odom", "nav_msgs/msg/Odometry"),
+}
+
+
+def available() -> bool:
+    """Whether the extra is installed."""
+    from importlib.util import find_spec
+
+    return find_spec("rosbags") is not None
+
+
+def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "mcap") -> Path:
+    """Write streams as a bag: all of it, or nothing.
+
+    Args:
+        path: folder of the bag; must not exist. Its name is part of the bag.
+        streams: at most one of each type.
+        storage: "mcap" or "sqlite3".
+
+    Returns:
+        ``path``.
+
+    Raises:
+        UsageError: the path exists, there is nothing to write, or a type comes twice.
+        MissingCapabilityError: the extra ``ros`` is not installed.
+    """
+    rosbag2 = _rosbag2()
+    given = list(streams)
+    chosen: dict[type[Stream], Stream] = {type(stream): stream for stream in given}
+    if not chosen or len(chosen) != len(given):
+        raise UsageError(
+            "A bag holds one stream of each kind, and at least one in all.",
+            help="Give an ImuStream, a ScanStream, an OdometryStream, or several of them.",
+            code="bag_streams",
+        )
+    if storage not in STORAGES:
+        raise UsageError(
+            f"There is no storage {storage!r}.", help=f"There are {', '.join(STORAGES)}.", code="bag_storage"
+        )
+    if path.exists():
+        raise UsageError(f"{path} exists already.", help="Name a folder that does not.", code="path_exists")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    plugin = rosbag2.StoragePlugin[storage.upper()]
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".bag-") as scratch:
+        written = Path(scratch) / path.name  # the bag's files are called after their folder
+        with rosbag2.Writer(written, version=9, storage_plugin=plugin) as writer:
+            _write(writer, [chosen[kind] for kind in _TOPICS if kind in chosen])
+        shutil.move(written, path)
+    return path
+
+
+def read_bag(path: Path) -> tuple[Stream, ...]:
+    """The streams of a bag that ``write_bag`` wrote, in the order imu, scan, odometry.
+
+    Stamps come back to the nanosecond, ranges to 32 bits, headings within (-pi, pi].
+
+    Raises:
+        NotFoundError: there is no bag.
+        IntegrityError: it cannot be read as one.
+        UsageError: it has none of the topics, or a scan that changes its shape.
+        MissingCapabilityError: the extra ``ros`` is not installed.
+    """
+    rosbag2 = _rosbag2()
+    if not (path / "metadata.yaml").is_file():
+        raise NotFoundError(
+            f"{path} is no bag: it holds no metadata.yaml.",
+            help="Name the folder that the bag was written to.",
+            code="bag_not_found",
+        )
+    messages: dict[str, list[Any]] = {}
+    try:
+        with rosbag2.Reader(path) as reader:
+            wanted = {kind: topic for topic, kind in _TOPICS.values()}
+            for connection, _, data in reader.messages():
+                if wanted.get(connection.msgtype) == connection.topic:
+                    message = _typestore().deserialize_cdr(data, connection.msgtype)
+                    messages.setdefault(connection.topic, []).append(message)
+    except Exception as error:
+        raise IntegrityError(
+            f"{path} cannot be read as a bag: {type(error).__name__}: {error}",
+            help="Write it again.",
+            code="bag_damaged",
+        ) from error
+    if not messages:
+        raise UsageError(
+            f"{path} has none of the topics {', '.join(topic for topic, _ in _TOPICS.values())}.",
+            help="Only bags written by this course are read.",
+            code="bag_topics",
+        )
+    return tuple(_READERS[topic](messages[topic]) for topic, _ in _TOPICS.values() if topic in messages)
+
+
+def _rosbag2() -> Any:
+    """The module that writes and reads bags.
+
+    Raises:
+        MissingCapabilityError: it is not installed.
+    """
+    try:
+        from rosbags import rosbag2
+    except ImportError:
+        raise MissingCapabilityError(
+            "ROS 2 bags need the package rosbags, which is not installed.",
+            help='Install it: pip install "physics-sim-course[ros]"',
+            code="missing_extra",
+        ) from None
+    return rosbag2
+
+
+@cache
+def _typestore() -> Any:
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+# -- writing ----------------------------------------------------------------------------------------------
+
+
+def _write(writer: Any, streams: list[Stream]) -> None:
+    """All messages in order of time; at one time in the order imu, scan, odometry."""
+    store = _typestore()
+    rows: list[tuple[int, int, Any, str, Any]] = []
+    for order, stream in enumerate(streams):
+        topic, kind = _TOPICS[type(stream)]
+        connection = writer.add_connection(topic, kind, typestore=store)
+        stamps = [round(float(t) * 1e9) for t in stream.t]
+        rows += [
+            (stamp, order, connection, kind, message)
+            for stamp, message in zip(stamps, _messages(stream, stamps), strict=True)
+        ]
+    for stamp, _, connection, kind, message in sorted(rows, key=lambda row: row[:2]):
+        writer.write(connection, stamp, store.serialize_cdr(message, kind))
+
+
+def _messages(stream: Stream, stamps: list[int]) -> Iterator[Any]:
+    if isinstance(stream, ImuStream):
+        return _imu_messages(stream, stamps)
+    if isinstance(stream, ScanStream):
+        return _scan_messages(stream, stamps)
+    return _odometry_messages(stream, stamps)
+
+
+def _new(kind: str, *values: Any) -> Any:
+    """A message of a type such as "std_msgs/Header", from its fields in order."""
+    package, _, name = kind.partition("/")
+    return _typestore().types[f"{package}/msg/{name}"](*values)
+
+
+def _header(stamp: int, frame: str) -> Any:
+    return _new("std_msgs/Header", _new("builtin_interfaces/Time", *divmod(stamp, 10**9)), frame)
+
+
+def _vector(x: float, y: float, z: float) -> Any:
+    return _new("geometry_msgs/Vector3", x, y, z)
+
+
+def _about_z(angle: float) -> Any:
+    return _new("geometry_msgs/Quaternion", 0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2))
+
+
+def _imu_messages(stream: ImuStream, stamps: list[int]) -> Iterator[Any]:
+    unknown = np.array([-1.0] + [0.0] * 8)
+    turning = np.diag([UNMEASURED, UNMEASURED, stream.variance]).ravel()
+    for stamp, rate in zip(stamps, stream.angular_velocity_z.tolist(), strict=True):
+        yield _new(
+            "sensor_msgs/Imu",
+            _header(stamp, stream.frame),
+            _about_z(0.0),
+            unknown,
+            _vector(0.0, 0.0, rate),
+            turning,
+            _vector(0.0, 0.0, 0.0),
+            unknown,
+        )
+
+
+def _scan_messages(stream: ScanStream, stamps: list[int]) -> Iterator[Any]:
+    beams = stream.ranges.shape[1]
+    angle_max = stream.angle_min + (beams - 1) * stream.angle_increment
+    period = float(np.mean(np.diff(stream.t))) if len(stream.t) > 1 else 0.0
+    for stamp, row in zip(stamps, stream.ranges, strict=True):
+        yield _new(
+            "sensor_msgs/LaserScan",
+            _header(stamp, stream.frame),
+            stream.angle_min,
+            angle_max,
+            stream.angle_increment,
+            0.0,  # all beams of a scan are taken at once
+            period,
+            0.0,
+            stream.range_max,
+            np.where(row == stream.range_max, np.inf, row).astype(np.float32),
+            np.zeros(0, dtype=np.float32),
+        )
+
+
+def _odometry_messages(stream: OdometryStream, stamps: list[int]) -> Iterator[Any]:
+    spread = [stream.position_variance] * 2 + [PLANAR] * 3 + [stream.heading_variance]
+    pose_covariance, twist_covariance = np.diag(spread).ravel(), np.diag([0.0, *[PLANAR] * 4, 0.0]).ravel()
+    columns = (stream.x, stream.y, stream.heading, stream.speed, stream.turn_rate)
+    for stamp, x, y, heading, speed, rate in zip(stamps, *(c.tolist() for c in columns), strict=True):
+        pose = _new("geometry_msgs/Pose", _new("geometry_msgs/Point", x, y, 0.0), _about_z(heading))
+        twist = _new("geometry_msgs/Twist", _vector(speed, 0.0, 0.0), _vector(0.0, 0.0, rate))
+        yield _new(
+            "nav_msgs/Odometry",
+            _header(stamp, stream.frame),
+            stream.child_frame,
+            _new("geometry_msgs/PoseWithCovariance", pose, pose_covariance),
+            _new("geometry_msgs/TwistWithCovariance", twist, twist_covariance),
+        )
+
+
+# -- reading ----------------------------------------------------------------------------------------------
+
+
+def _times(messages: list[Any]) -> Any:
+    stamps = [message.header.stamp for message in messages]
+    return np.array([stamp.sec + stamp.nanosec * 1e-9 for stamp in stamps])
+
+
+def _imu(messages: list[Any]) -> Stream:
+    rates = np.array([message.angular_velocity.z for message in messages])
+    first = messages[0]
+    variance = float(first.angular_velocity_covariance[8])
+    return ImuStream(_times(messages), rates, variance, first.header.frame_id)
+
+
+def _scan(messages: list[Any]) -> Stream:
+    first = messages[0]
+    if any(len(message.ranges) != len(first.ranges) for message in messages):
+        raise UsageError(
+            "The scans of this bag have different numbers of beams.",
+            help="Only bags written by this course are read.",
+            code="bag_scans",
+        )
+    ranges = np.array([message.ranges for message in messages], dtype=float)
+    return ScanStream(
+        _times(messages),
+        np.where(np.isinf(ranges), first.range_max, ranges),
+        first.angle_min,
+        first.angle_increment,
+        first.range_max,
+        first.header.frame_id,
+    )
+
+
+def _odometry(messages: list[Any]) -> Stream:
+    poses = [message.pose.pose for message in messages]
+    twists = [message.twist.twist for message in messages]
+    first = messages[0]
+    return OdometryStream(
+        _times(messages),
+        np.array([pose.position.x for pose in poses]),
+        np.array([pose.position.y for pose in poses]),
+        np.array([_angle_about_z(pose.orientation) for pose in poses]),
+        np.array([twist.linear.x for twist in twists]),
+        np.array([twist.angular.z for twist in twists]),
+        first.header.frame_id,
+        first.child_frame_id,
+        float(first.pose.covariance[0]),
+        float(first.pose.covariance[35]),
+    )
+
+
+def _angle_about_z(orientation: Any) -> float:
+    """Within (-pi, pi]; a quaternion and its negative are the same attitude."""
+    return math.remainder(2 * math.atan2(orientation.z, orientation.w), 2 * math.pi)
+
+
+_READERS: dict[str, Callable[[list[Any]], Stream]] = {
+    "/imu/data_raw": _imu,
+    "/scan": _scan,
+    "/odom": _odometry,
+}

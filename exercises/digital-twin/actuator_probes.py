@@ -1,0 +1,223 @@
+"""Finding out which mistake an actuator or the odometry of ``digital-twin`` makes.
+
+Formulas that are often written instead are tried on one call where every argument matters; whichever gives
+what the submission gives is named.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+named = kit.companion("digital-twin", "diagnosis").named
+
+
+def _clip(u, limit):
+    return min(max(u, -limit), limit)
+
+
+# -- motor ----------------------------------------------------------------------------------------------
+
+_DT, _TAU, _U_MAX, _DEAD = 0.3, 0.5, 10.0, 2.0
+_GONE = 1 - math.exp(-_DT / _TAU)
+#: w, u: a usual step, backwards, too large both ways, swallowed both ways, at the edge, w beyond u_max
+_MOTOR = (
+    (1.0, 6.0),
+    (1.0, -6.0),
+    (1.0, 14.0),
+    (1.0, -14.0),
+    (4.0, 1.5),
+    (4.0, -1.5),
+    (4.0, 2.0),
+    (30.0, 5.0),
+)
+
+
+def _motor(w, u, share=_GONE, keep=None, clip=_clip):
+    u = (keep or (lambda u: 0.0 if abs(u) <= _DEAD else u))(u)
+    return w + share * (clip(u, _U_MAX) - w)
+
+
+def _motor_slips():
+    """(code, what it gives for each of ``_MOTOR``)."""
+
+    def row(**slip):
+        return [_motor(w, u, **slip) for w, u in _MOTOR]
+
+    yield "LAG_EULER_UNSTABLE", row(share=_DT / _TAU)
+    yield "LAG_EULER_UNSTABLE", row(share=min(_DT / _TAU, 1.0))
+    yield "LAG_IMPLICIT", row(share=_DT / (_TAU + _DT))
+    yield "LAG_INVERTED", row(share=1 - _GONE)
+    yield "LAG_MISSING", row(share=1.0)
+    unlimited = row(clip=lambda u, _limit: u)
+    yield "CLIPS_SPEED_NOT_COMMAND", [_clip(w, _U_MAX) for w in unlimited]
+    yield "CLIPS_SPEED_NOT_COMMAND", [_clip(w, _U_MAX) for w in row()]
+    yield "CLIPS_SPEED_NOT_COMMAND", [_motor(_clip(w, _U_MAX), u) for w, u in _MOTOR]
+    yield "SATURATION_MISSING", unlimited
+    yield "SATURATION_ONE_SIDED", row(clip=min)
+    yield "DEADBAND_MISSING", row(keep=lambda u: u)
+    yield "DEADBAND_ONE_SIDED", row(keep=lambda u: 0.0 if u <= _DEAD else u)
+    yield "DEADBAND_ONE_SIDED", row(keep=lambda u: 0.0 if 0 <= u <= _DEAD else u)
+    yield "DEADBAND_SUBTRACTED", row(keep=lambda u: math.copysign(max(abs(u) - _DEAD, 0.0), u))
+    yield "DEADBAND_EDGE", row(keep=lambda u: 0.0 if abs(u) < _DEAD else u)
+    for stuck in (0.0, 1.0):
+        yield (
+            "DEADBAND_STOPS_MOTOR",
+            [stuck * w if abs(u) <= _DEAD else _motor(w, u) for w, u in _MOTOR],
+        )
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_motor(submission):
+    """The mistake that ``motor_step`` makes."""
+    values = submission.call_each("motor_step", [(w, u, _DT, _TAU, _U_MAX, _DEAD) for w, u in _MOTOR])
+    return _matching([kit.as_number(value, "w_next") for value in values], _motor_slips())
+
+
+def _matching(values, slips):
+    """The first slip that gives exactly these values."""
+    for code, expected in slips:
+        if np.allclose(values, expected, rtol=1e-9, atol=1e-12):
+            return named(code)
+    return None
+
+
+# -- backlash -------------------------------------------------------------------------------------------
+
+#: x, state, for a gap of 1: inside the play, beyond either side, near zero, far off, exactly at the edge
+_PLAY = (
+    (0.3, 0.1),
+    (0.9, 0.0),
+    (-0.9, 0.0),
+    (0.2, 1.4),
+    (0.2, -1.4),
+    (5.0, 4.8),
+    (5.0, 1.0),
+    (-2.0, -2.4),
+    (1.5, 1.0),
+)
+
+
+def _play_slips():
+    """(code, y for each of ``_PLAY``)."""
+
+    def row(rule):
+        return [rule(x, state) for x, state in _PLAY]
+
+    def right(x, s, half=0.5):
+        return min(max(s, x - half), x + half)
+
+    yield "GAP_DOUBLED", row(lambda x, s: right(x, s, 1.0))
+    yield "GAP_HALVED", row(lambda x, s: right(x, s, 0.25))
+    yield "BACKLASH_MISSING", row(lambda x, _s: x)
+    yield "BACKLASH_IS_DEAD_BAND", row(lambda x, _s: x - _clip(x, 0.5))
+    yield "BACKLASH_IS_DEAD_BAND", row(lambda x, _s: 0.0 if abs(x) <= 0.5 else x)
+    yield "BACKLASH_SNAPS", row(lambda x, s: s if abs(x - s) <= 0.5 else x)
+    yield "BACKLASH_ONE_SIDED", row(lambda x, s: max(s, x - 0.5))
+    yield "BACKLASH_ONE_SIDED", row(lambda x, s: min(s, x + 0.5))
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_backlash(submission):
+    """The mistake that ``backlash`` makes in single calls from known states."""
+    values = submission.call_each("backlash", [(x, 1.0, state) for x, state in _PLAY])
+    pairs = [kit.as_tuple(value, ("y", "state_next")) for value in values]
+    outputs = [kit.as_number(y, "y") for y, _ in pairs]
+    found = _matching(outputs, _play_slips())
+    if found:
+        return found
+    right = [min(max(s, x - 0.5), x + 0.5) for x, s in _PLAY]
+    if np.allclose(outputs, right, rtol=0, atol=1e-12):
+        states = [kit.as_number(state, "state_next") for _, state in pairs]
+        return None if np.allclose(states, outputs, rtol=0, atol=1e-12) else named("STATE_IS_NOT_OUTPUT")
+    # What it covers of the way to the edge of the gap is neither none nor all: it is a lag.
+    shares = [
+        (y - s) / (r - s) for y, r, (_, s) in zip(outputs, right, _PLAY, strict=True) if abs(r - s) > 1e-9
+    ]
+    return named("BACKLASH_RATE_DEPENDENT") if all(0 < share < 1 for share in shares) else None
+
+
+# -- delay ----------------------------------------------------------------------------------------------
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_delay(value, x, dt, latency):
+    """The mistake behind a delayed signal."""
+    t = dt * np.arange(len(x))
+    samples = latency / dt
+    looks = [
+        ("DELAY_HOLDS_FIRST", np.interp(t - latency, t, x)),
+        ("DELAY_ADVANCES", np.interp(t + latency, t, x)),
+        ("DELAY_ADVANCES", np.interp(t + latency, t, x, right=0.0)),
+        ("DELAY_RAMPS_IN", np.interp(t - latency, np.append(-dt, t), np.append(0.0, x), left=0.0)),
+        ("DELAY_IN_SAMPLES", np.interp(t - latency * dt, t, x, left=0.0)),
+    ]
+    for whole in {math.floor(samples), round(samples), math.ceil(samples)}:
+        shifted = np.concatenate((np.zeros(whole), x))[: len(x)]
+        looks.append(("DELAY_WHOLE_SAMPLES", shifted))
+        looks.append(("DELAY_WHOLE_SAMPLES", np.concatenate((np.full(whole, x[0]), x))[: len(x)]))
+        looks.append(("DELAY_WRAPS", np.roll(x, whole)))
+    looks.append(("DELAY_WRAPS", np.interp(t - latency, t, x, period=dt * len(x))))
+    return _matching(value, looks)
+
+
+# -- differential drive ---------------------------------------------------------------------------------
+
+_POSE, _LEFT, _RIGHT, _TRACK, _STEP = (1.0, 2.0, 2.5), 0.3, 0.9, 0.5, 1.2
+
+
+def _arc(left=_LEFT, right=_RIGHT, track=_TRACK, at=0.5, chord=True, reach=1.0):
+    """One step; ``at`` is where in the turn the heading of the way is taken."""
+    turn = (right - left) / track * _STEP
+    way = reach * (left + right) / 2 * _STEP * (np.sinc(turn / (2 * np.pi)) if chord else 1.0)
+    heading = _POSE[2] + at * turn
+    return np.array([_POSE[0] + way * math.cos(heading), _POSE[1] + way * math.sin(heading), _POSE[2] + turn])
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_drive(submission):
+    """The mistake that ``diff_drive_step`` makes: one turn, then ever slower ones."""
+    value = kit.as_vector(submission.call("diff_drive_step", _POSE, _LEFT, _RIGHT, _TRACK, _STEP), 3, "pose")
+    right = _arc()
+    found = _matching(value, (("HEADING_WRAPPED", _wrapped(right)), *_drive_slips()))
+    return found or kit.attempt(lambda: _of_slow_turns(submission))
+
+
+def _wrapped(pose):
+    return np.append(pose[:2], math.remainder(pose[2], 2 * math.pi))
+
+
+def _drive_slips():
+    yield "EULER_ODOMETRY", _arc(at=0.0, chord=False)
+    yield "EULER_TURNS_FIRST", _arc(at=1.0, chord=False)
+    yield "MIDPOINT_ODOMETRY", _arc(chord=False)
+    yield "TRACK_HALVED", _arc(track=_TRACK / 2)
+    yield "TRACK_DOUBLED", _arc(track=_TRACK * 2)
+    yield "SPEEDS_ADDED", _arc(reach=2.0)
+    for at, chord in ((0.5, True), (0.0, False), (1.0, False), (0.5, False)):
+        yield "LEFT_RIGHT_SWAPPED", _arc(_RIGHT, _LEFT, at=at, chord=chord)
+
+
+def _of_slow_turns(submission):
+    """Errors of slow turns by rate; each rate is tried at a few headings, because rounding is luck."""
+    poses = [(0.0, 0.0, heading) for heading in (0.3, 1.0, 1.9, 2.6)]
+
+    def worst(rate):
+        calls = [(pose, 0.5 - rate / 2, 0.5 + rate / 2, 1.0, 1.0) for pose in poses]
+        ends = [kit.as_vector(end, 3, "pose")[:2] for end in submission.call_each("diff_drive_step", calls)]
+        truth = [
+            0.5
+            * np.sinc(rate / (2 * np.pi))
+            * np.array([math.cos(p[2] + rate / 2), math.sin(p[2] + rate / 2)])
+            for p in poses
+        ]
+        return float(np.max(np.abs(np.subtract(ends, truth))))
+
+    if not math.isfinite(worst(0.0)):
+        return named("STRAIGHT_DIVIDES_BY_ZERO")
+    if max(worst(1e-13), worst(1e-12)) > 1e-6:
+        return named("SMALL_TURN_CANCELS")
+    return named("SLOW_TURN_AS_STRAIGHT") if max(map(worst, (1e-4, 1e-3, 1e-2, 0.1))) > 1e-6 else None

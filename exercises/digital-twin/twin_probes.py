@@ -1,0 +1,141 @@
+"""Finding out which mistake ``sync`` or ``command`` of ``digital-twin`` makes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+named = kit.companion("digital-twin", "diagnosis").named
+scenes = kit.companion("digital-twin", "scenes")
+
+
+def states(values):
+    """t, position, speed, friction of each twin, shape (n, 4); a twin with other keys is a finding."""
+    return _rows(kit.as_record(value, scenes.KEYS, "the twin") for value in values)
+
+
+def path(folded):
+    """The same of a run folded with ``keep=scenes.SEEN``: all twins but the last have these keys only."""
+    *along, last = folded
+    seen = [kit.as_record(value, scenes.SEEN, "the twin") for value in along]
+    return _rows([*seen, kit.as_record(last, scenes.KEYS, "the twin")])
+
+
+def _rows(twins):
+    return np.array([[kit.as_number(twin[key], key) for key in scenes.SEEN] for twin in twins])
+
+
+def same(a, b):
+    """Whether two plain values are equal, arrays and lists alike, to rounding."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, list | tuple | np.ndarray) and isinstance(b, list | tuple | np.ndarray):
+        return len(a) == len(b) and all(map(same, a, b))
+    if isinstance(a, float | int) and isinstance(b, float | int):
+        return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= 1e-9 * (1 + abs(b))
+    return bool(np.all(a == b))
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_sync(submission, late=True):
+    """The mistake that ``sync`` makes: first in single steps, then along a run of its own.
+
+    late: whether a late measurement may have to do with it
+    """
+    warm = _warm(submission)
+    code = _in_one_step(submission, warm, late) or _learning(submission)
+    return named(code) if code else None
+
+
+def _run(submission, friction, frictions, seconds, seed=3):
+    """The twins along a run without late measurements, and the truth beside them."""
+    cart = scenes.Cart(frictions, v=1.0)
+    times = 0.1 * np.arange(1, round(10 * seconds) + 1)
+    calls, truth = scenes.measured(cart, 0.5, times, np.random.default_rng(seed))
+    twins = submission.fold("sync", scenes.new_twin(friction, 0.5, speed=1.0), calls)
+    return twins, truth
+
+
+def _warm(submission):
+    """A twin of a steady cart after five seconds."""
+    return _run(submission, 0.5, ((0.0, 0.5),), 5.0)[0][-1]
+
+
+def _in_one_step(submission, warm, late):
+    """From what one more measurement does."""
+    t, x, v, b = states([warm])[0].tolist()
+    if not math.isfinite(t + x + v):
+        return None  # what it has made of a steady cart is beyond experiments
+    b = b if 0.01 < b < 100.0 else 0.5
+    reach = -math.expm1(-b * 0.2) / b
+    expected = x + v * reach + warm["drive"] * (0.2 - reach) / b
+    pushed = {**warm, "drive": warm["drive"] + 4.0}
+    calls = [
+        (warm, expected, t + 0.2),
+        (warm, expected + 0.05, t + 0.2),
+        (warm, expected, t + 0.2),
+        (pushed, expected, t + 0.2),
+        (warm, x - 0.4 * v, t - 0.4),
+    ]
+    twins = submission.call_each("sync", calls)
+    (t0, x0, _, _), (_, ahead, _, _), _, (_, driven, v_driven, _), (t_late, x_late, _, _) = states(twins)
+    moved = (ahead - x0) / 0.05
+    tests = (
+        ("GLOBAL_MEMORY", not same(twins[0], twins[2])),
+        ("TIME_NOT_ADVANCED", t0 < t + 0.1),
+        ("TIME_RUNS_BACK", late and t_late < t - 1e-9),
+        ("SURPRISE_INVERTED", moved < -1e-6),
+        ("NO_CORRECTION", abs(moved) <= 1e-6),
+        ("BELIEVES_MEASUREMENT", abs(ahead - expected - 0.05) < 1e-9),
+        ("NO_PREDICTION", x0 - x < 0.75 * (expected - x)),
+        ("DRIVE_NOT_USED", abs(v_driven - states([twins[0]])[0][2]) < 0.05 and abs(driven - x0) < 1e-6),
+        ("LATE_USED_AS_CURRENT", late and x_late - x < -0.02 * abs(v)),
+    )
+    return next((code for code, seen in tests if seen), None)
+
+
+def _learning(submission):
+    """From how the friction is learned."""
+    twins, _ = _run(submission, 0.5, ((0.0, 0.8),), 12.0)
+    friction = states(twins)[:, 3]
+    if np.ptp(friction) < 1e-9:
+        return "FRICTION_NOT_LEARNED"
+    if friction[-1] < 0.45:
+        return "FRICTION_LEARNS_BACKWARDS"
+    if isinstance(twins[-1]["memory"], dict) and not twins[-1]["memory"]:
+        return "MEMORY_DROPPED"
+    twins, _ = _run(submission, 0.5, ((0.0, 0.5), (30.0, 0.8)), 42.0)
+    return "FORGETS_TO_DOUBT" if states(twins[-1:])[0, 3] < 0.72 else None
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_command(submission):
+    """The mistake that ``command`` makes, from what its answer depends on."""
+    base = {"friction": 0.8, "drive": 0.3, "speed": 1.5, "target": 1.5}
+    tries = [
+        base,
+        base | {"target": 0.75, "speed": 0.75},
+        base | {"friction": 0.4},
+        base | {"target": -1.5, "speed": -1.5},
+        base | {"drive": 0.5},
+        base | {"target": 3.0},
+    ]
+    calls = [
+        (scenes.new_twin(case["friction"], case["drive"], speed=case["speed"]), case["target"])
+        for case in tries
+    ]
+    values = [kit.as_number(value, "the drive") for value in submission.call_each("command", calls)]
+    first, slower, slick, back, driven, faster = values
+    tests = (
+        ("BRAKES", first < 0),
+        ("ADDS_CURRENT_DRIVE", abs(driven - first) > 1e-9),
+        ("USES_TWIN_SPEED", abs(faster - first) < 1e-9 and abs(slower - first) > 1e-9),
+        ("TARGET_IGNORED", abs(slower - first) < 1e-9),
+        ("FRICTION_IGNORED", abs(slick - first) < 1e-9),
+        ("DIVIDES_BY_FRICTION", slick > first),
+        ("BACKWARDS_NOT_DRIVEN", abs(back + first) > 1e-9),
+    )
+    return next((named(code) for code, seen in tests if seen), None)

@@ -1,0 +1,96 @@
+"""One check per key of the report, the same on public and hidden engines."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from course.grading import kit
+
+bench = kit.companion("engine-comparison", "bench")
+probes = kit.companion("engine-comparison", "probes")
+
+#: What a wrong value under each key means, without values.
+MESSAGES = {
+    "order": "The order of convergence on the spring is wrong.",
+    "symplectic": "Whether one spring step keeps area is answered wrongly.",
+    "linear_damping": "The rate at which a free body slows down is wrong.",
+    "max_stable_step": "The largest stable step on the spring is wrong.",
+    "friction_anisotropy": "The ratio of the sliding forces, diagonal to straight, is wrong.",
+    "rest_penetration": "How deep a resting body lies in the floor is wrong.",
+    "restitution": "The ratio of speeds after and before the wall is wrong.",
+    "tunnelling_speed": "The largest speed at which the wall stops every body is wrong.",
+    "deterministic": "Whether the engine repeats itself is answered wrongly.",
+}
+
+HELP = {
+    "order": "Compare the engine with itself at h, h/2 and h/4 over one fixed time.",
+    "symplectic": "Build the matrix of one spring step from two runs with n = 1; look at its determinant.",
+    "linear_damping": "A free body without a force: how does ln|v| fall as the step gets small?",
+    "max_stable_step": "Walk up from the smallest step; the eigenvalues of a step say if it is stable.",
+    "friction_anisotropy": "Let the body settle, then bisect the force along x and along the diagonal.",
+    "rest_penetration": "Put the body down, wait, and compare its height with its radius.",
+    "restitution": "Start close to the wall; compare the samples on either side of the hit.",
+    "tunnelling_speed": "For each speed it is the unluckiest start that counts.",
+    "deterministic": "Make the same run of a moving body twice.",
+}
+
+
+def expect_key(found: list[Any], key: str, spared: int) -> None:
+    """Every engine that has a report has the right value under ``key``.
+
+    Raises:
+        CheckFailed: one is wrong; the diagnosis looks at all of them together.
+    """
+    judged = bench.reported(found, spared)
+    for case in judged:
+        _expect_kind(case, key)
+    for case in judged:
+        value, truth = case.measured(key), case.truth[key]
+        words = {
+            "input": {"engine": case.name, **case.box.info()},
+            "message": MESSAGES[key],
+            "help": HELP[key],
+            "diagnose": lambda: probes.of_key(key, judged),
+        }
+        if key in probes.TOLERANCES:
+            rel, abs_, units, source = probes.TOLERANCES[key]
+            kit.expect_close(
+                value, truth, rel=rel, abs=abs_, source=source, quantity=key, units=units, **words
+            )
+        else:
+            kit.expect_equal(value, truth, **words)
+
+
+def _expect_kind(case: Any, key: str) -> None:
+    """The value is there and of its kind; it is kept as a plain number or bool."""
+    value = case.measured(key)
+    if value is None:
+        kit.fail(
+            f"`{key}` is not in the report yet.",
+            diagnose=probes.named("NOT_MEASURED"),
+            input={"engine": case.name},
+        )
+    if key in ("symplectic", "deterministic"):
+        case.report[key] = kit.as_bool(value, key)
+        return
+    number = kit.as_number(value, key)
+    if key != "order":
+        case.report[key] = number
+        return
+    if not number.is_integer():
+        kit.fail(
+            "`order` is not a whole number.",
+            diagnose=probes.named("ORDER_NOT_WHOLE"),
+            input={"engine": case.name},
+            expected=case.truth[key],
+            actual=number,
+        )
+    case.report[key] = int(number)
+
+
+def expect_complete(found: list[Any]) -> None:
+    """Every engine has a report with the nine keys and no other, each with a value."""
+    for case in bench.reported(found, 0):
+        kit.as_record(case.report, bench.KEYS, "the report")
+        for key in bench.KEYS:
+            _expect_kind(case, key)

@@ -1,0 +1,136 @@
+"""Judging the form of ``engine_facts``: what is there, where it is from, and when it held."""
+
+from __future__ import annotations
+
+import datetime
+import math
+import re
+import weakref
+from typing import Any
+
+from course.grading import kit
+
+diagnosis = kit.companion("engine-comparison", "diagnosis")
+
+TASK = "engine_facts"
+ENGINES = ("ode", "bullet", "physx", "mujoco")
+FIELDS = ("licence", "language", "default_integrator", "default_step_s", "used_by")
+KEYS = ("engine", "field", "value", "source", "as_of")
+INTEGRATORS = ("explicit_euler", "semi_implicit_euler", "velocity_verlet", "rk4", "implicit_euler")
+
+_ADDRESS = re.compile(r"https?://[A-Za-z0-9-]+(\.[A-Za-z0-9-]+)+(:\d+)?([/?#]\S*)?")
+_DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
+_NO_SOURCE = ("example.com", "example.org", "localhost")
+
+_KEPT: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
+
+
+def entries(submission: Any) -> list[dict[str, Any]]:
+    """What ``engine_facts()`` returned: a list of dicts with the five keys. It is asked once.
+
+    Raises:
+        CheckFailed: it is no such list.
+    """
+    if submission not in _KEPT:
+        _KEPT[submission] = submission.call(TASK)
+    listed = kit.as_list(_KEPT[submission], "the list of facts")
+    return [kit.as_record(entry, KEYS, "an entry") for entry in listed]
+
+
+def by_pair(listed: list[dict[str, Any]]) -> dict[tuple[str, str], dict[str, Any]]:
+    """Entries by engine and field; the first one where there are two."""
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for entry in listed:
+        found.setdefault((str(entry["engine"]), str(entry["field"])), entry)
+    return found
+
+
+def expect_complete(listed: list[dict[str, Any]]) -> None:
+    """Each pair of engine and field once, no other, each value of its kind."""
+    pairs = [(entry["engine"], entry["field"]) for entry in listed]
+    for entry in listed:
+        if entry["engine"] not in ENGINES or entry["field"] not in FIELDS:
+            kit.fail(
+                "An entry is about an engine or a field that nobody asked for.",
+                help=f"The engines are {', '.join(ENGINES)}; the fields are {', '.join(FIELDS)}.",
+                actual=[entry["engine"], entry["field"]],
+            )
+    for pair in ((engine, field) for engine in ENGINES for field in FIELDS):
+        if pairs.count(pair) != 1:
+            missing = pairs.count(pair) == 0
+            kit.fail(
+                "The list is not complete." if missing else "The list says something twice.",
+                diagnose=diagnosis.named("PAIR_MISSING" if missing else "PAIR_TWICE"),
+                expected="one entry",
+                actual={"/".join(pair): pairs.count(pair)},
+            )
+    for entry in listed:
+        _expect_kind(entry)
+
+
+def _expect_kind(entry: dict[str, Any]) -> None:
+    """The value has the type that its field asks for."""
+    field, value = entry["field"], entry["value"]
+    name = f"the {field} of {entry['engine']}"
+    if field == "used_by":
+        names = kit.as_list(value, name)
+        if not names or not all(isinstance(item, str) and item.strip() for item in names):
+            kit.fail(f"The {field} of an engine is not a list of names.", help=_USED_BY, actual=value)
+    elif field == "default_step_s":
+        if value is not None and not (kit.as_number(value, name) > 0 and math.isfinite(value)):
+            kit.fail("A default step is not a positive number of seconds.", help=_STEP, actual=value)
+    else:
+        text = kit.as_text(value, name)
+        if field == "default_integrator" and text not in INTEGRATORS:
+            kit.fail(
+                "A default integrator is none of those that the README lists.",
+                help=f"Use one of {', '.join(INTEGRATORS)}.",
+                actual=text,
+            )
+
+
+_USED_BY = "Give a list with at least one project that runs on this engine, by its own name."
+_STEP = "Give the step in seconds, or None where the engine has none of its own."
+
+
+def expect_sources(listed: list[dict[str, Any]]) -> None:
+    """Every entry names an address and a day; all twenty pairs are there."""
+    if len(by_pair(listed)) < len(ENGINES) * len(FIELDS):
+        kit.fail("The list is not complete.", diagnose=diagnosis.named("PAIR_MISSING"), actual=len(listed))
+    for entry in listed:
+        about = {"engine": entry["engine"], "field": entry["field"]}
+        source = kit.as_text(entry["source"], "a source")
+        if not _ADDRESS.fullmatch(source.strip()) or any(host in source for host in _NO_SOURCE):
+            kit.fail(
+                "A fact has no source that can be opened.",
+                diagnose=diagnosis.named("SOURCE_NOT_A_URL"),
+                input=about,
+                actual=source,
+            )
+        day = date_of(entry)
+        if day is None or day.year < 2001:
+            kit.fail(
+                "A fact does not say when it held.",
+                diagnose=diagnosis.named("NOT_A_DATE"),
+                input=about,
+                actual=entry["as_of"],
+            )
+        # A day's grace: the date line runs between a student and the grader.
+        if day > datetime.datetime.now(tz=datetime.UTC).date() + datetime.timedelta(days=1):
+            kit.fail(
+                "A fact says that it will hold some day.",
+                diagnose=diagnosis.named("DATE_AHEAD"),
+                input=about,
+                actual=entry["as_of"],
+            )
+
+
+def date_of(entry: dict[str, Any]) -> datetime.date | None:
+    """The day of an entry, or None if it is no calendar date of the form YYYY-MM-DD."""
+    text = entry["as_of"]
+    if not isinstance(text, str) or not _DATE.fullmatch(text):
+        return None
+    try:
+        return datetime.date.fromisoformat(text)
+    except ValueError:
+        return None

@@ -1,0 +1,116 @@
+"""Public checks of ``sim-to-real``: run as often as you like, and once more when you submit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+cart = kit.companion("sim-to-real", "cart")
+words = kit.companion("sim-to-real", "words")
+probes = kit.companion("sim-to-real", "probes")
+judge = kit.companion("sim-to-real", "judge")
+named = words.named
+
+
+@pytest.mark.task("plan")
+@pytest.mark.points(5)
+def test_plan_complete(submission):
+    """The plan names at least three gaps from three sources, in words that can be executed"""
+    plan = submission.call("plan")
+    gaps = words.gaps_of(plan)
+    for i, gap in enumerate(gaps):
+        judge.expect_words(i, gap)
+    judge.expect_enough(gaps)
+    sources = sorted({gap["source"] for gap in gaps})
+    kit.expect_true(
+        len(sources) >= 3,
+        "The plan looks at too few sources of the gap.",
+        diagnose=named("TOO_FEW_SOURCES"),
+        actual=sources,
+    )
+    words.budget_of(plan)
+    threshold = kit.as_number(plan["threshold"], "threshold")
+    kit.expect_true(
+        plan["metric"] == "success" and 0.90 <= threshold < 1.0,
+        "The plan does not say what would make it a success.",
+        diagnose=named("METRIC_DOES_NOT_JUDGE"),
+        actual=[plan["metric"], threshold],
+    )
+
+
+@pytest.mark.task("plan")
+@pytest.mark.points(5)
+def test_plan_box(submission):
+    """The randomisation box is as wide as the fleet, and no wider than half as much again"""
+    box = words.box_of(kit.as_record(submission.call("plan"), words.PLAN_KEYS))
+    for name in cart.NAMES:
+        for fits, expected in (
+            (words.inside(name, *box[name]) >= 0.95, "95 % of the fleet's draws inside"),
+            (words.width(name, *box[name]) <= 1.5, "at most 1.5 times the fleet's range in the logarithm"),
+        ):
+            kit.expect_true(
+                fits,
+                "The randomisation box does not match the fleet.",
+                diagnose=lambda: words.of_box(box),
+                input={"parameter": name},
+                expected=expected,
+                actual=list(box[name]),
+            )
+
+
+@pytest.mark.task("design_excitation")
+@pytest.mark.points(3)
+def test_excitation_obeys(submission):
+    """The excitation lasts as long as asked and keeps within the bench's force"""
+    cases = [(20.0, 3.0), (12.5, 3.0), (7.29, 1.7)]
+    given = [(*case, np.random.default_rng(7)) for case in cases]
+    for case, value in zip(cases, submission.call_each("design_excitation", given), strict=True):
+        probes.command_of(value, *case)
+
+
+@pytest.mark.task("design_excitation")
+@pytest.mark.points(6)
+def test_excitation_shows(submission):
+    """Twenty seconds of the excitation could measure every parameter of the public cart"""
+    value = submission.call("design_excitation", 20.0, 3.0, np.random.default_rng(8))
+    judge.expect_shows(probes.command_of(value, 20.0, 3.0), [cart.PUBLIC])
+
+
+@pytest.mark.task("identify")
+@pytest.mark.points(7)
+def test_identify_public(submission):
+    """identify finds mass, frictions and lag of the public cart from a bench recording"""
+    recordings, carts = judge.public_recordings()
+    values = probes.patient(lambda: submission.call_each("identify", recordings))
+    judge.expect_accurate([probes.estimate_of(value) for value in values], carts)
+
+
+@pytest.mark.task("identify")
+@pytest.mark.points(4)
+def test_identify_intervals(submission):
+    """Each interval holds its value, and is neither reversed nor uselessly wide"""
+    recordings, _ = judge.public_recordings()
+    values = probes.patient(lambda: submission.call_each("identify", recordings[:1]))
+    judge.expect_intervals([probes.estimate_of(value) for value in values])
+
+
+@pytest.mark.task("tune")
+@pytest.mark.points(10)
+def test_tune_public(submission):
+    """With the gains from tune, a fleet of the public type settles nearly as soon as any gains allow"""
+    estimate = cart.with_intervals(cart.PUBLIC)
+    value = probes.patient(lambda: submission.call("tune", estimate, cart.MATCHED))
+    gains = probes.gains_of(value)
+    kit.expect_bounded(
+        cart.public_success(*gains)[0],
+        low=judge.PASS,
+        source="correct solutions reach 0.97 and more (tests/benchmarks/calibration/sim-to-real.md)",
+        quantity="success: best mean settling over own",
+        message="The fleet settles later than it could.",
+        input={"kp": gains[0], "kd": gains[1], "best mean settling, s": cart.PUBLIC_BEST_S},
+        diagnose=lambda: probes.of_gains(
+            submission, estimate, cart.MATCHED, gains, lambda kp, kd: cart.public_success(kp, kd)[0]
+        ),
+    )

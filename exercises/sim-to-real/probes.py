@@ -1,0 +1,235 @@
+"""Finding out which mistake a failed check looks like, for the exercise ``sim-to-real``.
+
+A command is recognised by its shape and its spectrum, an estimate by how its values relate to the truth over
+several carts, gains by what they do when the estimate or the box is changed.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+cart = kit.companion("sim-to-real", "cart")
+named = kit.companion("sim-to-real", "diagnosis").named
+NAMES = cart.NAMES
+ALL = (*NAMES, "lag")
+
+
+# -- reading what came back -----------------------------------------------------------------------------
+
+
+def patient(call):
+    """``call()``; where time runs out, a finding that says how such code is made quick."""
+    try:
+        return call()
+    except kit.StudentFailure as failure:
+        if failure.kind != "timeout":
+            raise
+        kit.fail("It is too slow to be executed.", diagnose=named("TOO_SLOW"))
+
+
+def command_of(value, seconds, u_max):
+    """A command as an array of the right length, finite and within the bench's force.
+
+    Raises:
+        CheckFailed: it is none.
+    """
+    u = kit.as_vector(value, None, "the command")
+    given = {"budget_s": seconds, "u_max": u_max}
+    kit.expect_length(
+        u,
+        round(100 * seconds),
+        message="The excitation does not last as long as asked.",
+        diagnose=named("WRONG_LENGTH"),
+        input=given,
+    )
+    kit.expect_true(
+        bool(np.all(np.isfinite(u))),
+        "The excitation is not made of finite numbers.",
+        diagnose=named("NOT_FINITE"),
+        input=given,
+    )
+    kit.expect_bounded(
+        float(np.abs(u).max()),
+        high=u_max * (1 + 1e-9),
+        source="the bench's force, with room for rounding",
+        quantity="largest force",
+        units="N",
+        message="The excitation asks for more force than the bench gives.",
+        diagnose=named("EXCITATION_SATURATES"),
+        input=given,
+    )
+    return u
+
+
+def estimate_of(value):
+    """An estimate as {name: (value, low, high)} of finite numbers.
+
+    Raises:
+        CheckFailed: it is none.
+    """
+    record = kit.as_record(value, ALL)
+    found = {k: tuple(kit.as_vector(record[k], 3, f"the entry {k}").tolist()) for k in ALL}
+    if not all(math.isfinite(x) for entry in found.values() for x in entry):
+        kit.fail("An estimate is not a finite number.", diagnose=named("NOT_FINITE"), actual=found)
+    return found
+
+
+def gains_of(value):
+    """Gains as (kp, kd), finite and not absurd.
+
+    Raises:
+        CheckFailed: they are not.
+    """
+    record = kit.as_record(value, ("kp", "kd"))
+    kp, kd = (kit.as_number(record[k], k) for k in ("kp", "kd"))
+    if not (abs(kp) < 1e6 and abs(kd) < 1e6):  # NaN too; beyond it the rollout itself would overflow
+        kit.fail("A gain is not a finite number of ordinary size.", diagnose=named("NOT_FINITE"))
+    if kp < 0 or kd < 0:
+        kit.fail("A gain has the wrong sign.", diagnose=named("GAINS_NEGATIVE"), actual=[kp, kd])
+    return kp, kd
+
+
+# -- design_excitation ----------------------------------------------------------------------------------
+
+
+def of_command(u):
+    """Why a command does not show everything. u: shape (N,), N."""
+    u = np.asarray(u, dtype=float)
+    if np.count_nonzero(np.diff(u)) <= 2:
+        return named("EXCITATION_CONSTANT")
+    if np.abs(u).max() < 2.5 * cart.SHEET["Fc"]:
+        return named("EXCITATION_TOO_WEAK")
+    power = np.abs(np.fft.rfft(u - u.mean())) ** 2
+    frequency = np.fft.rfftfreq(len(u), cart.H)
+    if power[frequency < 0.3].sum() > 0.7 * power.sum():
+        return named("EXCITATION_TOO_SLOW")
+    if power[frequency > 4.0].sum() > 0.7 * power.sum():
+        return named("EXCITATION_TOO_FAST")
+    return named("EXCITATION_BLIND")
+
+
+# -- identify -------------------------------------------------------------------------------------------
+
+
+def of_values(estimates, truths):
+    """What the values of several estimates look like beside the true carts."""
+    got = {k: np.array([estimate[k][0] for estimate in estimates]) for k in ALL}
+    true = {k: np.array([_known(truth)[k] for truth in truths]) for k in ALL}
+    for code, looks in _LIKENESSES:
+        with np.errstate(all="ignore"):
+            if looks(got, true):
+                return named(code)
+    return None
+
+
+def _known(truth):
+    return {**truth, "lag": truth["tau"] + truth["latency"]}
+
+
+def _alike(a, b, rel):
+    return bool(np.median(np.abs(a / b - 1)) < rel)
+
+
+def _share(got, true, name):
+    return float(np.median(got[name] / true[name]))
+
+
+#: What to look for, the most telling first: code and whether (values, truths) look like it.
+_LIKENESSES = (
+    (
+        "ESTIMATE_HARD_CODED",
+        lambda got, true: len(got["m"]) > 1 and all(np.ptp(got[k]) <= 1e-9 for k in ("m", "b", "Fc", "lag")),
+    ),
+    (
+        "ESTIMATE_HARD_CODED",
+        lambda got, true: all(_alike(got[k], cart.SHEET[k], 1e-6) for k in ("m", "b", "Fc")),
+    ),
+    (
+        "MASS_INVERTED",
+        lambda got, true: _alike(got["m"] * true["m"], 1.0, 0.05) and not _right(got, true, "m"),
+    ),
+    (
+        "UNITS_NOT_SECONDS",
+        lambda got, true: (
+            _alike(got["lag"], 1000 * true["lag"], 0.2) or _alike(got["lag"], 100 * true["lag"], 0.2)
+        ),
+    ),
+    (
+        "LAG_NOT_SUM",
+        lambda got, true: not _alike(got["lag"], got["tau"] + got["latency"], 0.02),
+    ),
+    ("LATENCY_IGNORED", lambda got, true: np.median(np.abs(got["latency"])) < 0.012),
+    ("LAG_IGNORED", lambda got, true: np.median(np.abs(got["tau"])) < 0.012),
+    ("LOCAL_MINIMUM", lambda got, true: np.median(np.abs(got["lag"] / true["lag"] - 1)) > 0.25),
+    ("FRICTION_SIGN", lambda got, true: _share(got, true, "b") < -0.5 or _share(got, true, "Fc") < -0.5),
+    (
+        "COEFFICIENTS_NOT_PARAMETERS",
+        lambda got, true: (
+            _right(got, true, "m")
+            and _alike(got["b"] * true["m"], true["b"], 0.05)
+            and _alike(got["Fc"] * true["m"], true["Fc"], 0.05)
+        ),
+    ),
+    ("COULOMB_AS_VISCOUS", lambda got, true: _share(got, true, "Fc") < 0.3 and _share(got, true, "b") > 1.05),
+    ("VISCOUS_AS_COULOMB", lambda got, true: _share(got, true, "b") < 0.3 and _share(got, true, "Fc") > 1.05),
+    (
+        "NOISE_DIFFERENTIATED",
+        lambda got, true: _share(got, true, "m") > 1.03 or _share(got, true, "b") < 0.9,
+    ),
+)
+
+
+def _right(got, true, name):
+    return _alike(got[name], true[name], cart.SCORED[name])
+
+
+# -- tune -----------------------------------------------------------------------------------------------
+
+
+def of_gains(submission, estimate, box, gains, success):
+    """Why gains do badly: what becomes of them when the estimate or the box changes.
+
+    Args:
+        estimate, box: what they were asked for.
+        success: function of (kp, kd), on carts of this estimate.
+    """
+    kp, kd = gains
+    if success(kd, kp) > 1.2 * success(kp, kd):
+        return named("GAINS_SWAPPED")
+    heavy = {**estimate, "m": [1.7 * x for x in estimate["m"]], "b": [1.7 * x for x in estimate["b"]]}
+    late = {k: [1.8 * x for x in v] if k in ("latency", "lag") else v for k, v in estimate.items()}
+    one = {k: [1.0, 1.0] for k in NAMES}
+    other = kit.attempt(
+        lambda: [
+            gains_of(each)
+            for each in submission.call_each("tune", [(heavy, box), (late, box), (estimate, one)])
+        ]
+    )
+    if other is not None:
+        same = [math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in other]
+        if same[0] and same[1]:
+            return named("GAINS_HARD_CODED")
+        if same[1]:
+            prompt = {**estimate, "latency": [0.001] * 3}
+            return named("DELAY_IGNORED" if _is_best(kp, kd, prompt, box) else "SEARCH_ENDED_EARLY")
+        if same[2]:
+            return named("RANDOMIZATION_IGNORED")
+    return named("SEARCH_ENDED_EARLY")
+
+
+def _is_best(kp, kd, estimate, box):
+    """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate."""
+    share = (cart.stratified(100, np.random.default_rng(31)) + 1) / 2
+    ends = [np.log(box[k]) for k in NAMES]
+    carts = {
+        k: estimate[k][0] * np.exp(low + share[:, j] * (high - low))
+        for j, (k, (low, high)) in enumerate(zip(NAMES, ends, strict=True))
+    }
+    around = [(a, b) for a in (1.0, 0.6, 1.6) for b in (1.0, 0.6, 1.6)]  # (1, 1) first: the gains themselves
+    factors = np.array(around).T
+    mean = cart.rollout(kp * factors[0], kd * factors[1], carts, np.random.default_rng(32)).mean(axis=0)
+    return bool(mean.min() > 0.85 * mean[0])

@@ -1,0 +1,198 @@
+"""Comparisons that the public and the hidden checks of ``validation`` share.
+
+Each calls one function of the submission on the data it is given and compares the answer with the
+definition. ``expect_report`` for the verdict is in ``probes_runs.py``.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+
+from course.grading import kit
+from course.physics import systems
+
+probes = kit.companion("validation", "probes")
+runs = kit.companion("validation", "probes_runs")
+
+EXACT = "a closed formula: only rounding is allowed"
+MEAN = systems.AveragePolynomial([0.0, 1.0])
+
+
+def expect_bias_variance(submission, e):
+    """bias_variance agrees with the definition on these errors, and leaves them alone."""
+    names = ("bias", "variance")
+    e = np.asarray(e, dtype=float)
+    inspected = submission.call_inspect("bias_variance", e)
+    values = zip(kit.as_tuple(inspected.value, names), names, strict=True)
+    bias, variance = (kit.as_number(x, name) for x, name in values)
+    for actual, expected, name in ((bias, np.mean(e), "bias"), (variance, np.var(e), "variance")):
+        kit.expect_close(
+            actual,
+            float(expected),
+            rel=1e-9,
+            abs=1e-12,
+            source=EXACT,
+            quantity=name,
+            units="m" if name == "bias" else "m²",
+            input={"e": e},
+            message=f"The {name} is wrong.",
+            help="The bias is the mean; the variance is the mean square of what is left without it.",
+            diagnose=lambda: probes.of_bias(bias, variance, e),
+        )
+    expect_left_alone(inspected, [e], ["e"])
+
+
+def expect_left_alone(inspected, given, names):
+    """The arguments are as they were. To hand back the very array that came is allowed."""
+    for name, before, after in zip(names, given, inspected.args_after, strict=True):
+        kit.expect_true(
+            np.array_equal(before, np.asarray(after)),
+            f"The call changed its argument `{name}` in place.",
+            help="Make a new array.",
+            diagnose=probes.named("MUTATES_INPUT"),
+            expected={name: before},
+            actual={name: after},
+        )
+
+
+def expect_normalised(task, value, err, covariance, expected, names):
+    """A list of normalised squared errors is as expected."""
+    found = lambda: probes.of_normalised(value, err, covariance)  # noqa: E731 - needed twice
+    if isinstance(value, int | float):
+        kit.fail(
+            "The result has no row per error.",
+            help="Return one value per row.",
+            diagnose=found() or probes.named("SUMMED"),
+            expected=f"shape ({len(err)},)",
+            actual=value,
+        )
+    kit.expect_array(
+        kit.as_vector(value, len(err), "the result"),
+        expected,
+        rel=1e-8,
+        source="rounding, for covariances of condition up to 1e5",
+        quantity=task,
+        input={names[0]: err, names[1]: covariance},
+        message="The normalised squared errors are wrong.",
+        help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w.",
+        diagnose=found,
+    )
+
+
+@functools.cache
+def correlated(seed, count, n, phi):
+    """``count`` series of errors that each keep ``phi`` of the one before; variance 1, mean 0."""
+    rng = np.random.default_rng(seed)
+    e = np.empty((count, n))
+    e[:, 0] = rng.standard_normal(count)
+    kicks = math.sqrt(1 - phi**2) * rng.standard_normal((count, n))
+    for i in range(1, n):
+        e[:, i] = phi * e[:, i - 1] + kicks[:, i]
+    return e
+
+
+def interval_ends(values):
+    """What block_bootstrap_ci returned, called several times: shape (n, 2)."""
+    ends = [kit.as_vector(kit.as_tuple(value, ("lo", "hi")), 2, "(lo, hi)") for value in values]
+    return np.array(ends)
+
+
+def spread_of_mean(n, phi):
+    """Standard deviation of the mean of such a series: exact."""
+    lags = np.arange(1, n)
+    return math.sqrt((1 + 2 * np.sum((1 - lags / n) * phi**lags)) / n)
+
+
+def expect_energies(submission, q, v, energy):
+    """energy_error agrees with the definition on the energies of these samples."""
+    d = q.shape[1]
+
+    def checked(q, v):
+        if np.shape(q) != (d,) or np.shape(v) != (d,):
+            kit.fail(
+                "Your code calls energy with something other than one position and one velocity.",
+                help="Loop over the samples: energy(q[i], v[i]).",
+                diagnose=probes.named("WHOLE_ARRAYS"),
+                expected=f"energy(q_i, v_i), both of shape ({d},)",
+                actual=[f"shape {np.shape(a)}" for a in (q, v)],
+            )
+        return energy(kit.as_vector(q, d, "q"), kit.as_vector(v, d, "v"))
+
+    probe = probes.callback("energy(q_i, v_i)", checked)
+    values = probe.during(lambda: submission.call("energy_error", q, v, probe))
+    values = kit.as_vector(values, len(q), "the result")
+    energies = np.array([energy(a, b) for a, b in zip(q, v, strict=True)])
+    kit.expect_array(
+        values,
+        (energies - energies[0]) / abs(energies[0]),
+        abs=1e-9,
+        source=EXACT,
+        quantity="energy error",
+        input={"energies": energies},
+        message="The relative error of the energy is wrong.",
+        help="Compare every sample with the first, and divide by the size of the first.",
+        diagnose=lambda: probes.of_energies(values, energies),
+    )
+
+
+def pulse(t, start, length, peak):
+    x = np.clip((t - start) / length, 0, 1)
+    return peak * np.sin(np.pi * x) ** 2
+
+
+def expect_forces(submission, pairs):
+    """contact_force_error agrees with the definition on these pulses, (f_sim, f_real, dt) each."""
+    for value, (f_sim, f_real, dt) in zip(
+        submission.call_each("contact_force_error", pairs), pairs, strict=True
+    ):
+        record = kit.as_record(value, ("peak", "impulse"))
+        for key, of in (("peak", np.max), ("impulse", np.sum)):
+            number = kit.as_number(record[key], key)
+            kit.expect_close(
+                number,
+                (of(f_sim) - of(f_real)) / of(f_real),
+                abs=2e-3,
+                source="rules of integration differ by less than 0.0005 on these pulses",
+                quantity=key,
+                input={"peaks": [np.max(f_sim), np.max(f_real)], "dt": dt, "samples": len(f_sim)},
+                message=f"The relative error of the {key} is wrong.",
+                help="One number of each force, then their difference over the real one.",
+                diagnose=lambda key=key, number=number, f_sim=f_sim, f_real=f_real: probes.of_forces(
+                    key, number, f_sim, f_real
+                ),
+            )
+
+
+def expect_folds(submission, data, k):
+    """cross_validate holds out k contiguous folds and scores them as the README says."""
+    folds = runs.Folds(data)
+    scores = kit.as_vector(folds.cross_validate(submission, k), k, "the result")
+    shown = {"runs": len(data), "k": k, "samples": [len(run["y"]) for run in data]}
+    code = folds.fault(k)
+    if code is not None:
+        kit.fail(
+            "Runs are not held out as they should be.",
+            help="Each run is predicted once, by a model fitted to all runs outside its fold.",
+            diagnose=probes.named(code),
+            input=shown,
+            expected=f"{k} contiguous folds, each predicted by a model fitted to the rest",
+            actual=[
+                {"fitted to": fit, "asked about": asked}
+                for fit, asked in zip(folds.fitted, folds.asked, strict=True)
+            ],
+        )
+    residuals = folds.residuals()
+    kit.expect_array(
+        scores,
+        [math.sqrt(np.mean(np.concatenate(fold) ** 2)) for fold in residuals],
+        abs=1e-9,
+        source=EXACT,
+        quantity="RMSE of the folds",
+        input=shown,
+        message="The folds are right and their scores are not.",
+        help="Pool the errors of all runs of a fold, then take one RMSE; fold by fold, in order.",
+        diagnose=lambda: runs.of_scores(scores, residuals),
+    )

@@ -1,0 +1,14 @@
+"""The slip is taken from a's velocity alone, as if b stood still."""
+
+
+def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
+    closing = (va - vb) @ normal
+    if closing <= 0:
+        return va, vb
+    give = 1 / ma + 1 / mb
+    press = (1 + restitution) * closing / give
+    slip = (va @ normal) * normal - va
+    speed = np.linalg.norm(slip)
+    rub = min(mu * press, speed / give) * slip / speed if speed else 0.0 * slip
+    blow = press * normal - rub
+    return va - blow / ma, vb + blow / mb

@@ -1,0 +1,17 @@
+"""The balls stop at the contact until the step is over."""
+
+
+def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+    n = round(t_end / h)
+    x, v = np.array(x0, float), np.array(v0, float)
+    rows = [(x, v)]
+    for i in range(n):
+        gap, closing = x[1] - x[0] - 2 * radius, v[0] - v[1]
+        if closing > 0 and gap <= closing * h:
+            x = x + v * (gap / closing)
+            j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
+            v = v + np.array([-j / m[0], j / m[1]])
+        else:
+            x = x + v * h
+        rows.append((x, v))
+    return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])

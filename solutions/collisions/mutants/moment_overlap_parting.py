@@ -1,0 +1,7 @@
+"""Bodies that overlap and part are reported as hitting."""
+
+_right = time_of_impact
+
+
+def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+    return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)

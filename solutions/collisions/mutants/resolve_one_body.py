@@ -1,0 +1,7 @@
+"""Only b feels the blow."""
+
+_right = resolve
+
+
+def resolve(ma, mb, va, vb, normal, restitution):
+    return va, _right(ma, mb, va, vb, normal, restitution)[1]

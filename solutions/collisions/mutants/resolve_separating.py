@@ -1,0 +1,6 @@
+"""The test whether the bodies approach is left out."""
+
+
+def resolve(ma, mb, va, vb, normal, restitution):
+    blow = (1 + restitution) * ((va - vb) @ normal) / (1 / ma + 1 / mb) * normal
+    return va - blow / ma, vb + blow / mb

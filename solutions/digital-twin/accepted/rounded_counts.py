@@ -1,0 +1,6 @@
+"""The encoder rounds to the nearest count, by way of turns."""
+
+
+def encoder(theta, counts_per_rev):
+    turns = theta / (2 * np.pi)
+    return np.rint(turns * counts_per_rev).astype(np.int32)

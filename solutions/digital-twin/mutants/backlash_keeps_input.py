@@ -1,0 +1,5 @@
+"""The input is handed on as state."""
+
+
+def backlash(x, gap, state):
+    return min(max(state, x - gap / 2), x + gap / 2), x

@@ -1,0 +1,5 @@
+"""The drive holds the speed that the robot has."""
+
+
+def command(twin, target_speed):
+    return twin["friction"] * twin["speed"]

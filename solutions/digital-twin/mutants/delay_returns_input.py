@@ -1,0 +1,7 @@
+"""Without latency the caller's own array comes back."""
+
+_whole = delay_line
+
+
+def delay_line(x, dt, latency):
+    return x if latency == 0 else _whole(x, dt, latency)

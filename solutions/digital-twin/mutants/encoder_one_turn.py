@@ -1,0 +1,5 @@
+"""The count starts over at each turn."""
+
+
+def encoder(theta, counts_per_rev):
+    return np.floor(theta * counts_per_rev / (2 * math.pi)).astype(np.int64) % counts_per_rev

@@ -1,0 +1,5 @@
+"""Counts are cut off toward zero."""
+
+
+def encoder(theta, counts_per_rev):
+    return (theta * counts_per_rev / (2 * math.pi)).astype(np.int64)

@@ -1,0 +1,7 @@
+"""The walk is taken from neighbouring samples."""
+
+_whole = fit_noise
+
+
+def fit_noise(still, dt):
+    return _whole(still, dt) | {"bias_random_walk": float(np.std(np.diff(still)) / math.sqrt(dt))}

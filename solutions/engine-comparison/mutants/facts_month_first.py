@@ -1,0 +1,3 @@
+"""Wrong: a date in another form."""
+
+_AS_OF = "11/21/2026"

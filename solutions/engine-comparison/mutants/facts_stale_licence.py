@@ -1,0 +1,3 @@
+"""Wrong: MuJoCo's licence of years ago."""
+
+_FACTS["mujoco"]["licence"] = ("Proprietary", "https://www.roboti.us/license.html")

@@ -1,0 +1,3 @@
+"""Wrong: one engine is left out."""
+
+del _FACTS["mujoco"]

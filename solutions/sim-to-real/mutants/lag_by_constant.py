@@ -1,0 +1,9 @@
+"""The lag is to be seen while a constant force acts."""
+
+_sound_plan = plan
+
+
+def plan():
+    made = _sound_plan()
+    made["gaps"][3]["excitation"] = "constant"
+    return made

@@ -1,0 +1,9 @@
+"""The angle of the point that an angle points to; half a turn comes out positive."""
+
+
+def wrap_angle(e):
+    return np.arctan2(np.sin(e), np.cos(e))
+
+
+def nees(err, P):
+    return np.array([x @ np.linalg.inv(covariance) @ x for x, covariance in zip(err, P)])

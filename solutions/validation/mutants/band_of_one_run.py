@@ -1,0 +1,9 @@
+"""An average is spread as one of its terms is."""
+
+
+def consistency_band(dof, runs, alpha):
+    def quantile(p, n):
+        s = 2 / (9 * n)
+        return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+    return quantile(alpha / 2, dof), quantile(1 - alpha / 2, dof)

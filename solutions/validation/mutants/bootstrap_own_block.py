@@ -1,0 +1,10 @@
+"""The cube root of N is always the right length of a block."""
+
+
+def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):
+    n = len(e)
+    block = round(n ** (1 / 3))
+    starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+    rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+    values = [statistic(e[row]) for row in rows]
+    return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))

@@ -1,0 +1,6 @@
+"""Relative to the energy there is at that moment."""
+
+
+def energy_error(q, v, energy):
+    e = np.array([energy(a, b) for a, b in zip(q, v)])
+    return (e - e[0]) / np.abs(e)

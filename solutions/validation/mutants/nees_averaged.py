@@ -1,0 +1,5 @@
+"""In the end one average is wanted, so it may be returned at once."""
+
+
+def nees(err, P):
+    return float(np.mean(squared_distance(err, P)))

@@ -1,0 +1,5 @@
+"""Only the variances matter; the rest of the matrix is decoration."""
+
+
+def nees(err, P):
+    return np.sum(err**2 / np.einsum("nii->ni", P), axis=1)

@@ -1,0 +1,5 @@
+"""np.linalg.norm is the root mean square."""
+
+
+def rmse(e):
+    return float(np.linalg.norm(e))

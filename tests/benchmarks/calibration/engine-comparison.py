@@ -1,0 +1,119 @@
+"""How far correct solutions stay inside each tolerance of ``engine-comparison``, and wrong ones overshoot.
+
+python tests/benchmarks/calibration/engine-comparison.py [--seeds N] [--mutant-seeds N] > engine-comparison.md
+
+A report of an engine is measured once and looked at by ten checks, so unlike in other exercises all checks
+of a task run on one submission here. The second table says what the hidden engines are like: how far their
+truths lie apart is what the tolerances must keep apart.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import tomllib
+from collections import defaultdict
+from dataclasses import replace
+
+import numpy as np
+from recorder import ROOT, Recorder, Tables, local_run, report, tasks_of
+
+from course.grading import kit
+
+EXERCISE = "engine-comparison"
+
+
+def noting(checks, recorder: Recorder, shares: dict[str, float]):
+    """The checks, each noting the share of its tolerance that was used."""
+
+    def wrap(check):
+        def run(**fixtures):
+            recorder.share = 0.0
+            try:
+                check.fn(**fixtures)
+            finally:
+                shares[check.id] = recorder.share
+
+        run.__signature__ = local_run.inspect.signature(check.fn)
+        return replace(check, fn=run)
+
+    return [wrap(check) for check in checks]
+
+
+def calibrate(seeds: int, mutant_seeds: int) -> Tables:
+    """Every correct solution and every mutant, all checks of a task on one submission."""
+    recorder, shares, tables = Recorder(), {}, Tables()
+    checks = noting(local_run.load_checks(EXERCISE), recorder, shares)
+    sources = local_run.sources(EXERCISE)
+    folder = ROOT / "solutions" / EXERCISE
+    kept = {"choose_engine", "engine_facts"}
+    for name in ["solution", *(n for n in sources if n.startswith("accepted/"))]:
+        redone = kept | {"characterise"} if name == "solution" else tasks_of(folder / name, {})
+        tasks = redone & kept if redone <= kept else {"characterise"} | redone
+        tables.variants += 1
+        for seed in range(seeds):
+            for result in local_run.run(sources[name], [c for c in checks if c.task in tasks], seed):
+                tables.failures += result.status != "pass"
+                tables.used[result.check.id] = max(tables.used[result.check.id], shares[result.check.id])
+    for mutant in tomllib.loads((folder / "mutants.toml").read_text())["mutant"]:
+        tables.mutants += 1
+        for seed in range(mutant_seeds):
+            for result in local_run.run(sources["mutants/" + mutant["file"]], checks, seed):
+                _judge(tables, mutant, result, shares[result.check.id], first=seed == 0)
+    return tables
+
+
+def _judge(tables: Tables, mutant, result, share: float, *, first: bool) -> None:
+    failed = result.status != "pass"
+    tables.failed_by[result.check.id] += failed and first
+    if result.check.id == mutant["check"]:
+        tables.failures += not failed or result.finding.diagnosis != mutant["diagnosis"]
+        low = tables.caught.get(result.check.id, math.inf)
+        tables.caught[result.check.id] = min(low, share or math.inf)
+    elif failed:  # it loses its own task's points only
+        tables.failures += result.check.task != mutant["task"]
+
+
+def truths(seeds: int) -> str:
+    """What the hidden engines are like, over the seeds."""
+    lab = kit.sibling(str(ROOT / "tests/graders" / EXERCISE / "checks.py"), "lab")
+    seen = defaultdict(list)
+    for seed in range(seeds):
+        for parameters, truth in zip(lab.drawn(seed), lab.truths(seed), strict=True):
+            for key, value in truth.items():
+                seen[key].append(float(value))
+            seen["error of damping at dt"] += _error_at_dt(lab, parameters)
+    lines = ["", "The hidden engines' truths.", "", "| key | least | most | infinite | zero | n |"]
+    lines.append("|---|---|---|---|---|---|")
+    for key, values in seen.items():
+        finite = [value for value in values if math.isfinite(value)]
+        zeros = sum(value == 0 for value in values)
+        endless = len(values) - len(finite)
+        lines.append(
+            f"| {key} | {min(finite):.4g} | {max(finite):.4g} | {endless} | {zeros} | {len(values)} |"
+        )
+    return "\n".join(lines)
+
+
+def _error_at_dt(lab, parameters) -> list[float]:
+    """By what share the damping is off if it is measured at the engine's own step."""
+    rate = parameters.get("damping", 0.0)
+    if not rate:
+        return []
+    keep = lab.boxes.Box(**parameters).matrix(0.0, parameters["dt"])[4]
+    return [abs(-np.log(keep) / parameters["dt"] / rate - 1)]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--seeds", type=int, default=200)
+    parser.add_argument("--mutant-seeds", type=int, default=20)
+    options = parser.parse_args()
+    tables = calibrate(options.seeds, options.mutant_seeds)
+    text = report(EXERCISE, tables, options.seeds, options.mutant_seeds)
+    print(text.replace("engine_comparison.py", "engine-comparison.py"))
+    print(truths(options.seeds))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+"""A whole class in one run: how much of it is writing, what two graders bring, whether memory stays flat.
+
+    python tests/benchmarks/class_run.py                          all three, on the miniature course
+    python tests/benchmarks/class_run.py --only memory --submissions 10000
+    python tests/benchmarks/class_run.py --exercise integrators   on the real one
+
+Every figure is a ratio within one run of this script. ``jobs`` needs two processors that nothing else uses.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.catalog.load import Catalog
+from course.grading.run import RunOptions, Summary, grade_class
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+ROOT = Path(__file__).resolve().parents[2]
+MINI = ROOT / "tests" / "fixtures" / "mini_course"
+PAGE = os.sysconf("SC_PAGE_SIZE")
+KINDS = ("write", "jobs", "memory")
+
+
+def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
+    """A class in which every file is another one: the model solution, a third of it with a mistake."""
+    solutions = catalog.content.solutions
+    assert solutions is not None
+    module = catalog.exercise(exercise).module
+    model = (solutions / exercise / module).read_bytes()
+    mutants = [path.read_bytes() for path in sorted((solutions / exercise / "mutants").glob("*.py"))]
+    for number in range(students):
+        place = folder / f"student-{number:05}"
+        place.mkdir(parents=True)
+        wrong = b"\n\n" + mutants[number // 3 % len(mutants)] if number % 3 == 0 and mutants else b""
+        (place / module).write_bytes(model + wrong + b"\n# %d\n" % number)
+
+
+def run(folder: Path, catalog: Catalog, exercise: str, jobs: int, seen: Callable[[int], None]) -> Summary:
+    """One run into a folder of its own."""
+    count = 0
+
+    def report(*_: object) -> None:
+        nonlocal count
+        count += 1
+        seen(count)
+
+    with tempfile.TemporaryDirectory() as scratch:
+        options = RunOptions(exercises=(exercise,), graders=jobs, seed=1)
+        summary = grade_class(folder, Path(scratch) / "out", catalog, options, report)
+    assert summary.exit_code == 0, summary.troubled[:3]
+    return summary
+
+
+def write_share(folder: Path, catalog: Catalog, exercise: str) -> None:
+    summary = run(folder, catalog, exercise, 1, lambda _: None)
+    graded = summary.states["graded"]
+    print(
+        f"write: {summary.write_s / summary.elapsed_s:.2%} of the time (target: under 2 %); "
+        f"{1e3 * summary.write_s / graded:.3f} ms of {1e3 * summary.elapsed_s / graded:.1f} ms a submission"
+    )
+
+
+def jobs_ratio(folder: Path, catalog: Catalog, exercise: str) -> None:
+    """Each way three times, taking turns; the best of each, which is the least disturbed."""
+    times: dict[int, list[float]] = {1: [], 2: []}
+    for _ in range(3):
+        for jobs, seconds in times.items():
+            seconds.append(run(folder, catalog, exercise, jobs, lambda _: None).elapsed_s)
+    best = {jobs: min(seconds) for jobs, seconds in times.items()}
+    print(
+        f"jobs: -j 2 is {best[1] / best[2]:.2f} times -j 1 (target: at least 1.8), "
+        f"on {os.cpu_count()} processors"
+    )
+
+
+def memory(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
+    """Resident memory of the grader and of this process, over the first and the last tenth of the class."""
+    samples: list[tuple[int, int, int]] = []
+
+    def seen(count: int) -> None:
+        if count % 20 == 0:
+            samples.append((count, sum(map(resident, graders())), resident(os.getpid())))
+
+    run(folder, catalog, exercise, 1, seen)
+    tenth = students // 10
+    for name, column in (("grader", 1), ("coordinator", 2)):
+        # The very first hundred submissions fill caches that then stay.
+        first = statistics.median(row[column] for row in samples if 100 <= row[0] <= tenth)
+        last = statistics.median(row[column] for row in samples if row[0] > students - tenth)
+        print(
+            f"memory: {name} {first / 2**20:.1f} MB in the first {tenth}, {last / 2**20:.1f} MB in the last: "
+            f"{last / first - 1:+.1%} (target: within 5 %)"
+        )
+
+
+def graders() -> list[int]:
+    """The grader processes this one started."""
+    found = []
+    for task in Path(f"/proc/{os.getpid()}/task").iterdir():
+        children = (task / "children").read_text().split()
+        found += [int(child) for child in children if b"course.grading.grader" in command_line(child)]
+    return found
+
+
+def command_line(pid: str) -> bytes:
+    return Path(f"/proc/{pid}/cmdline").read_bytes()
+
+
+def resident(pid: int) -> int:
+    """Bytes of memory a process has in use."""
+    return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * PAGE
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="A whole class in one run.")
+    parser.add_argument("--only", choices=KINDS, action="append")
+    parser.add_argument("--exercise", default="doubling")
+    parser.add_argument("--submissions", type=int, default=1000)
+    arguments = parser.parse_args()
+    if arguments.exercise in {path.name for path in (MINI / "exercises").iterdir()}:
+        os.environ["COURSE_CONTENT"] = str(MINI)
+    catalog = Catalog()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / "class"
+        make_class(folder, catalog, arguments.exercise, arguments.submissions)
+        print(f"{arguments.submissions} submissions of {arguments.exercise}")
+        wanted = arguments.only or KINDS
+        if "write" in wanted:
+            write_share(folder, catalog, arguments.exercise)
+        if "jobs" in wanted:
+            jobs_ratio(folder, catalog, arguments.exercise)
+        if "memory" in wanted:
+            memory(folder, catalog, arguments.exercise, arguments.submissions)
+
+
+if __name__ == "__main__":
+    main()

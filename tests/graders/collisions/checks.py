@@ -1,0 +1,381 @@
+"""Hidden graders of ``collisions``. Scenes are drawn anew from the seed of each grading run.
+
+What correct solutions leave of each tolerance is in ``tests/benchmarks/calibration/collisions.md``.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+bundles = kit.companion("collisions", "bundles")
+draws = kit.sibling(__file__, "draws")
+laws = kit.sibling(__file__, "laws")
+paths, probes = bundles.paths, bundles.probes
+
+# -- detection ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(bundles.SPHERES)
+@pytest.mark.points(4)
+def test_sphere_contact_drawn(submission, rng):
+    """Spheres anywhere, in one, two and three dimensions, apart and overlapping"""
+    bundles.expect_formula(
+        submission,
+        bundles.SPHERES,
+        [draws.spheres(rng, d, share) for d in (1, 2, 3) for share in (0.4, 0.9, 1.1, 2.5)],
+        "Touching, normal or depth of two spheres is wrong.",
+        "Work with the vector from a to b and with its length; nothing else about the places matters.",
+    )
+
+
+@pytest.mark.task(bundles.SPHERES)
+@pytest.mark.points(2)
+def test_sphere_same_centre(submission, rng):
+    """Spheres with one centre touch, as deep as both radii, along some unit vector"""
+    calls = [draws.spheres(rng, d, 0.0) for d in (2, 3)]
+    values, parts = bundles.answers(submission, bundles.SPHERES, calls)
+    for args, (touching, normal, depth) in zip(calls, parts, strict=True):
+        wanted = True, normal, args[1] + args[3]
+        finding = {
+            "input": bundles.shown(bundles.SPHERES, args),
+            "message": "Where two centres coincide, the result is wrong.",
+            "help": "Any unit vector will do for the normal; the depth is the sum of the radii.",
+            "diagnose": lambda: probes.of_calls(bundles.SPHERES, calls, values),
+        }
+        length = float(np.sqrt(normal @ normal))
+        kit.expect_close(
+            length, 1.0, abs=1e-9, source=bundles.ROUNDING, quantity="length of the normal", **finding
+        )
+        bundles.expect_contact((touching, normal, depth), wanted, finding)
+
+
+@pytest.mark.task(bundles.PLANE)
+@pytest.mark.points(3)
+def test_plane_contact_drawn(submission, rng):
+    """Spheres above tilted planes anywhere"""
+    bundles.expect_formula(
+        submission,
+        bundles.PLANE,
+        [draws.plane(rng, d, height) for d in (2, 3) for height in (0.3, 0.95, 1.05, 3.0)],
+        "Touching, normal or depth of a sphere above a tilted plane is wrong.",
+        "Only the height above the plane counts: the part of x - point along the normal.",
+    )
+
+
+@pytest.mark.task(bundles.PLANE)
+@pytest.mark.points(2)
+def test_plane_below(submission, rng):
+    """A centre that is already below the plane still touches, deeper than its radius"""
+    bundles.expect_formula(
+        submission,
+        bundles.PLANE,
+        [draws.plane(rng, 3, height) for height in (-0.2, -0.9, -1.5, -6.0)],
+        "For a centre on the solid side of the plane the result is wrong.",
+        "The solid is all of the half-space: below the plane the height is negative and the depth exceeds r.",
+    )
+
+
+# -- a blow on a line -----------------------------------------------------------------------------------
+
+
+@pytest.mark.task(bundles.IMPULSE)
+@pytest.mark.points(3)
+def test_impulse_drawn(submission, rng):
+    """The impulse for any masses, speeds and restitution"""
+    bundles.expect_formula(
+        submission,
+        bundles.IMPULSE,
+        [draws.line(rng) for _ in range(8)],
+        "The impulse of two bodies on a line is wrong.",
+        "Test it yourself: momentum kept, and the speed of parting e times the speed of approach.",
+    )
+
+
+@pytest.mark.task(bundles.IMPULSE)
+@pytest.mark.points(2)
+def test_impulse_symmetries(submission, rng):
+    """The impulse is the same seen from a moving train, in a mirror, and with a and b exchanged"""
+    laws.expect_line_symmetries(submission, rng)
+
+
+@pytest.mark.task(bundles.IMPULSE)
+@pytest.mark.points(2)
+def test_impulse_wall(submission, rng):
+    """A body of infinite mass acts as a wall, on either side and also when it moves"""
+    calls = []
+    for side in (0, 1, 0, 1):
+        ma, mb, va, vb, e = draws.line(rng)
+        calls.append((math.inf, mb, va, vb, e) if side else (ma, math.inf, va, vb, e))
+    bundles.expect_formula(
+        submission,
+        bundles.IMPULSE,
+        calls,
+        "The impulse on a body that meets a wall (a body of infinite mass) is wrong.",
+        "Write the formula with inverse masses; one over infinity is zero.",
+    )
+
+
+# -- a blow in space ------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(bundles.RESOLVE)
+@pytest.mark.points(2)
+def test_resolve_momentum(submission, rng):
+    """A blow keeps the total momentum"""
+    laws.expect_momentum(submission, bundles.RESOLVE, [draws.blow(rng, d) for d in (2, 2, 3, 3, 3)])
+
+
+@pytest.mark.task(bundles.RESOLVE)
+@pytest.mark.points(2)
+def test_resolve_parting(submission, rng):
+    """Bodies part at e times the speed of approach, and slide past each other as before"""
+    laws.expect_parting(submission, [draws.blow(rng, d) for d in (1, 2, 3, 3, 3)])
+
+
+@pytest.mark.task(bundles.RESOLVE)
+@pytest.mark.points(2)
+def test_resolve_energy(submission, rng):
+    """A blow costs just the energy that e says, and none for e = 1"""
+    laws.expect_energy(submission, [draws.blow(rng, 3, e) for e in (1.0, 1.0, 0.0, None, None)])
+
+
+@pytest.mark.task(bundles.RESOLVE)
+@pytest.mark.points(2)
+def test_resolve_symmetries(submission, rng):
+    """A blow is the same seen from a moving train, turned, mirrored, and with a and b exchanged"""
+    laws.expect_symmetries(submission, bundles.RESOLVE, rng)
+
+
+@pytest.mark.task(bundles.RESOLVE)
+@pytest.mark.points(2)
+def test_resolve_wall(submission, rng):
+    """A body of infinite mass goes on as if nothing had been, and the other one rebounds from it"""
+    laws.expect_wall(submission, bundles.RESOLVE, rng)
+
+
+@pytest.mark.task(bundles.RESOLVE)
+@pytest.mark.points(2)
+def test_resolve_inputs(submission, rng):
+    """A blow leaves its arguments as they were"""
+    laws.expect_clean(submission, bundles.RESOLVE, rng)
+
+
+# -- friction -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(bundles.FRICTION)
+@pytest.mark.points(3)
+def test_friction_cone(submission, rng):
+    """Friction is limited by mu times the blow in every direction, and by what stops the slip"""
+    bundles.expect_formula(
+        submission,
+        bundles.FRICTION,
+        [draws.rub(rng, d, share) for d in (2, 3, 3) for share in (0.3, 0.8, 1.3, 4.0)],
+        "The velocities after a blow with friction are wrong.",
+        "Find the tangential part of the relative velocity as a vector; its length decides which "
+        "limit holds.",
+    )
+
+
+@pytest.mark.task(bundles.FRICTION)
+@pytest.mark.points(2)
+def test_friction_energy(submission, rng):
+    """Friction keeps the momentum, never adds energy, and slows the slip without turning it round"""
+    laws.expect_braking(submission, [draws.rub(rng, 3, share) for share in (0.4, 0.7, 2.0, 4.0)])
+
+
+@pytest.mark.task(bundles.FRICTION)
+@pytest.mark.points(2)
+def test_friction_symmetries(submission, rng):
+    """A blow with friction is the same from a moving train, turned, mirrored, and with a and b exchanged"""
+    laws.expect_symmetries(submission, bundles.FRICTION, rng)
+
+
+@pytest.mark.task(bundles.FRICTION)
+@pytest.mark.points(2)
+def test_friction_wall(submission, rng):
+    """A rough wall that moves drags a body along"""
+    laws.expect_wall(submission, bundles.FRICTION, rng)
+
+
+@pytest.mark.task(bundles.FRICTION)
+@pytest.mark.points(1)
+def test_friction_inputs(submission, rng):
+    """A blow with friction leaves its arguments as they were"""
+    laws.expect_clean(submission, bundles.FRICTION, rng)
+
+
+# -- the moment of contact ------------------------------------------------------------------------------
+
+
+@pytest.mark.task(bundles.MOMENT)
+@pytest.mark.points(3)
+def test_moment_any_speed(submission, rng):
+    """No speed is high enough to tunnel"""
+    bundles.expect_formula(
+        submission,
+        bundles.MOMENT,
+        [draws.shot(rng, 10.0**power) for power in np.linspace(0.0, 5.0, 11)],
+        "A fast body's contact is missed or comes at the wrong time.",
+        "Do not sample the step: solve the quadratic for the first moment of contact.",
+    )
+
+
+@pytest.mark.task(bundles.MOMENT)
+@pytest.mark.points(3)
+def test_moment_oblique(submission, rng):
+    """Spheres that meet off centre touch at the first root; those that pass by do not touch"""
+    bundles.expect_formula(
+        submission,
+        bundles.MOMENT,
+        [draws.passing(rng, d, share) for d in (2, 3) for share in (0.3, 0.7, 0.9, 1.1, 1.8)],
+        "Where two spheres meet off centre or pass each other, the result is wrong.",
+        "Off centre they touch later than head on; past a sum of radii from the line they do not "
+        "touch at all.",
+    )
+
+
+@pytest.mark.task(bundles.MOMENT)
+@pytest.mark.points(1)
+def test_moment_overlap(submission, rng):
+    """Overlapping spheres touch now if they approach, and never if they part"""
+    bundles.expect_formula(
+        submission,
+        bundles.MOMENT,
+        [draws.overlap(rng, approach) for approach in (True, False, True, False)],
+        "For spheres that overlap from the start the result is wrong.",
+        "Approaching means now; parting means None, for there is nothing to do.",
+    )
+
+
+@pytest.mark.task(bundles.MOMENT)
+@pytest.mark.points(1)
+def test_moment_symmetries(submission, rng):
+    """The moment of contact is the same from a moving train, from elsewhere, and with a and b exchanged"""
+    calls = [call for share in (0.4, 0.8) for call in draws.same_meeting(rng, share)]
+    bundles.expect_formula(
+        submission,
+        bundles.MOMENT,
+        calls,
+        "Seen from a moving train, from elsewhere or with a and b exchanged, spheres touch at another time.",
+        "Use only differences: of the two places and of the two velocities.",
+    )
+
+
+# -- simulations ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.task(bundles.HEAD_ON)
+@pytest.mark.points(3)
+def test_head_on_drawn(submission, rng):
+    """Balls of any masses meet at the right instant and part as they should; those that part do not meet"""
+    scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "part")]
+    h, n = rng.uniform(0.01, 0.03), 120
+    values = submission.call_each(bundles.HEAD_ON, [scene.args(n * h, h) for scene in scenes])
+    for scene, value in zip(scenes, values, strict=True):
+        bundles.expect_head_on(
+            scene,
+            value,
+            n * h,
+            h,
+            "Two balls on a line do not move as they should.",
+            "Straight lines, one blow at the instant when the surfaces touch, straight lines.",
+        )
+
+
+@pytest.mark.task(bundles.HEAD_ON)
+@pytest.mark.points(2)
+def test_head_on_large_steps(submission, rng):
+    """However fast the balls and however long the step, they do not pass through each other"""
+    cases = [draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)]
+    values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
+    for (scene, t_end, h), value in zip(cases, values, strict=True):
+        bundles.expect_head_on(
+            scene,
+            value,
+            t_end,
+            h,
+            "Fast balls, which travel far in one step, do not move as they should.",
+            "Ask for the time of contact inside the step, not whether the balls overlap at its end.",
+        )
+
+
+@pytest.mark.task(bundles.HEAD_ON)
+@pytest.mark.points(1)
+def test_head_on_samples(submission, rng):
+    """The head-on program returns N + 1 samples for awkward durations and leaves its arguments alone"""
+    scene = draws.head_on(rng, "meet")
+    n, h = draws.awkward(rng)
+    t_end = round(n * h, 3)
+    args = scene.args(t_end, h)
+    inspected = submission.call_inspect(bundles.HEAD_ON, *args)
+    bundles.expect_head_on(
+        scene,
+        inspected.value,
+        t_end,
+        h,
+        "For a duration whose quotient by h is not exact, the samples are wrong.",
+        "N is round(t_end / h); row 0 is the initial state.",
+    )
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["m", "x0", "v0", "", "", "", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("MUTATES_INPUT"),
+    )
+
+
+@pytest.mark.task(bundles.DROP)
+@pytest.mark.points(3)
+def test_drop_drawn(submission, rng):
+    """Balls dropped and thrown, on this planet and others, bounce as they should"""
+    cases = [draws.drop(rng, up) for up in (0.0, 1.0, -1.0)]
+    values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
+    for (scene, t_end, h), value in zip(cases, values, strict=True):
+        bundles.expect_drop(
+            scene,
+            value,
+            t_end,
+            h,
+            "A bouncing ball does not move as it should.",
+            "Parabolas that meet at the floor, each starting with e times the speed at which the last ended.",
+        )
+
+
+@pytest.mark.task(bundles.DROP)
+@pytest.mark.points(2)
+def test_drop_rest(submission, rng):
+    """In the end the ball lies still on the floor, and one that lies there stays"""
+    cases = [draws.settling(rng, e) for e in (rng.uniform(0.2, 0.6), 0.0)] + [draws.lying(rng)]
+    values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
+    for (scene, t_end, h), value in zip(cases, values, strict=True):
+        bundles.expect_drop(
+            scene,
+            value,
+            t_end,
+            h,
+            "A ball does not come to rest, or does not stay at rest, as it should.",
+            "Touching with a speed of at most g h it is put down: z = radius and v = 0 from then on.",
+        )
+
+
+@pytest.mark.task(bundles.DROP)
+@pytest.mark.points(1)
+def test_drop_elastic(submission, rng):
+    """With e = 1 the ball returns to its height for ever, and never higher"""
+    scene, t_end, h = draws.elastic(rng)
+    value = submission.call(bundles.DROP, *scene.args(t_end, h))
+    bundles.expect_drop(
+        scene,
+        value,
+        t_end,
+        h,
+        "A ball that loses nothing in its bounces does not come back to where it was.",
+        "Apply the bounce at the instant of contact: the speed there decides the height of the rebound.",
+    )

@@ -1,0 +1,309 @@
+"""Hidden graders of ``engine-comparison``: eight engines drawn anew from the seed of each grading run.
+
+Thresholds come from sweeps over seeds of every accepted solution; the table is in
+``tests/benchmarks/calibration/engine-comparison.md``.
+"""
+
+from __future__ import annotations
+
+import copy
+import functools
+import math
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+bench = kit.companion("engine-comparison", "bench")
+diagnosis = kit.companion("engine-comparison", "diagnosis")
+judging = kit.companion("engine-comparison", "judging")
+choosing = kit.companion("engine-comparison", "choosing")
+listing = kit.companion("engine-comparison", "listing")
+measured = kit.companion("engine-comparison", "measured")
+lab = kit.sibling(__file__, "lab")
+choices = kit.sibling(__file__, "choices")
+facts = kit.sibling(__file__, "facts")
+
+#: Of the eight engines so many may bring a measurement down without taking the others with them.
+SPARED = 2
+
+
+def unknown(submission):
+    """The hidden engines, each characterised once for all checks."""
+    return bench.cases(
+        submission,
+        "hidden",
+        lambda: [
+            bench.Case(f"hidden engine {number}", box, truth)
+            for number, (box, truth) in enumerate(
+                zip(lab.population(submission.seed), lab.truths(submission.seed), strict=True), start=1
+            )
+        ],
+    )
+
+
+# -- the report -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(5)
+def test_hidden_order(submission):
+    """The order of eight unknown engines is found"""
+    judging.expect_key(unknown(submission), "order", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(3)
+def test_hidden_symplectic(submission):
+    """Of eight unknown engines it is found which ones keep area"""
+    judging.expect_key(unknown(submission), "symplectic", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(5)
+def test_hidden_linear_damping(submission):
+    """The damping of eight unknown engines is found"""
+    judging.expect_key(unknown(submission), "linear_damping", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(6)
+def test_hidden_max_stable_step(submission):
+    """The largest stable step of eight unknown engines is found, zero and infinity among them"""
+    judging.expect_key(unknown(submission), "max_stable_step", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(5)
+def test_hidden_friction_anisotropy(submission):
+    """The kind of friction cone of eight unknown engines is found"""
+    judging.expect_key(unknown(submission), "friction_anisotropy", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(3)
+def test_hidden_rest_penetration(submission):
+    """How deep bodies sink into the floor of eight unknown engines is found"""
+    judging.expect_key(unknown(submission), "rest_penetration", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(3)
+def test_hidden_restitution(submission):
+    """The restitution of eight unknown engines is found"""
+    judging.expect_key(unknown(submission), "restitution", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(5)
+def test_hidden_tunnelling_speed(submission):
+    """At which speed bodies get through the wall of eight unknown engines is found"""
+    judging.expect_key(unknown(submission), "tunnelling_speed", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(3)
+def test_hidden_deterministic(submission):
+    """Of eight unknown engines it is found which ones never repeat themselves"""
+    judging.expect_key(unknown(submission), "deterministic", SPARED)
+
+
+@pytest.mark.task("characterise")
+@pytest.mark.points(3)
+def test_hidden_report_complete(submission):
+    """Each of eight unknown engines gets a whole report"""
+    judging.expect_complete(unknown(submission))
+
+
+# -- the choice -----------------------------------------------------------------------------------------
+
+
+@functools.lru_cache(maxsize=256)
+def _questions(seed):
+    """What is asked of ``choose_engine`` in one grading run, the same of every submission."""
+    rng, truths = np.random.default_rng([seed, 0x63686F]), lab.truths(seed)
+    reports = measured.reports()
+    real = [(reports, needs, answer) for needs, answer in choices.REAL]
+    real += [(reports, needs, answer) for needs, answer in measured.QUESTIONS.values()]
+    telling = choices.questions(rng, truths, 12, choices.telling)
+    return {
+        "plain": [*telling[:8], choices.at_the_limit(rng, truths)],
+        "gaps": [*(choices.with_gaps(rng, q) for q in telling[8:]), choices.beyond_reach(rng, truths)],
+        "renamed": [choices.renamed(rng, question) for question in real],
+    }
+
+
+@pytest.mark.task("choose_engine")
+@pytest.mark.points(4)
+def test_choose_drawn(submission):
+    """Of eight engines the cheapest that meets all of several requirements is chosen"""
+    choosing.expect_choices(submission, _questions(submission.seed)["plain"])
+
+
+@pytest.mark.task("choose_engine")
+@pytest.mark.points(3)
+@pytest.mark.requires("choose_by_report")
+def test_choose_gaps(submission):
+    """What was not measured was not met, and where nothing fits nothing is chosen"""
+    choosing.expect_choices(submission, _questions(submission.seed)["gaps"])
+
+
+@pytest.mark.task("choose_engine")
+@pytest.mark.points(3)
+@pytest.mark.requires("choose_by_report")
+def test_choose_real_again(submission):
+    """Of the four real engines as measured, the cheapest that fits is chosen for other jobs too"""
+    reports = measured.reports()
+    choosing.expect_choices(submission, [(reports, needs, answer) for needs, answer in choices.REAL])
+
+
+@pytest.mark.task("choose_engine")
+@pytest.mark.points(3)
+@pytest.mark.requires("choose_by_report")
+def test_choose_by_numbers_only(submission):
+    """Other names, another order and a second call change nothing, and the reports stay as they were"""
+    reports = measured.reports()
+    asked = _questions(submission.seed)["renamed"]
+    answers = submission.call_each(choosing.TASK, [question[:2] for question in asked])
+    for question, answer in zip(asked, answers, strict=True):
+        if answer != question[2]:
+            kit.fail(
+                "Engines under other names are chosen differently.",
+                diagnose=diagnosis.named("DEPENDS_ON_NAMES"),
+                input={"reports": question[0], "requirements": question[1]},
+                expected=question[2],
+                actual=answer,
+            )
+    given = [copy.deepcopy(reports), [measured.need("pendulum_loss", "<=", 0.09)]]
+    inspected = submission.call_inspect(choosing.TASK, *given)
+    if [*inspected.args_after] != [measured.reports(), given[1]]:
+        kit.fail(
+            "The call changed the reports or the requirements it was given.",
+            diagnose=diagnosis.named("MUTATES_INPUT"),
+            input={"reports": given[0], "requirements": given[1]},
+            actual=inspected.args_after,
+        )
+
+
+# -- the facts ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("engine_facts")
+@pytest.mark.points(2)
+def test_facts_licences(submission):
+    """The licences are those of today, named as SPDX names them, and dated after they came"""
+    entries = listing.by_pair(listing.entries(submission))
+    for engine in listing.ENGINES:
+        entry = _entry(entries, engine, "licence")
+        text = kit.as_text(entry["value"], "a licence")
+        if not facts.right_licence(engine, text):
+            kit.fail(
+                "A licence is not right.",
+                help="Read the licence file in the engine's repository of today.",
+                diagnose=lambda engine=engine, text=text: _of_licence(engine, text),
+                input={"engine": engine},
+                expected=sorted(facts.LICENCES[engine]),
+                actual=text,
+            )
+        day = listing.date_of(entry)
+        if engine in facts.SINCE and day is not None and day < facts.SINCE[engine]:
+            kit.fail(
+                "A licence is dated to a day on which the engine had another one.",
+                diagnose=diagnosis.named("DATE_BEFORE_FACT"),
+                input={"engine": engine},
+                expected=f"{facts.SINCE[engine]} or later",
+                actual=entry["as_of"],
+            )
+
+
+@pytest.mark.task("engine_facts")
+@pytest.mark.points(2)
+def test_facts_defaults(submission):
+    """Default integrators and default steps are the engines' own"""
+    entries = listing.by_pair(listing.entries(submission))
+    for engine in listing.ENGINES:
+        entry = _entry(entries, engine, "default_integrator")
+        if entry["value"] != facts.INTEGRATOR:
+            explicit = entry["value"] == "explicit_euler"
+            kit.fail(
+                "A default integrator is not right.",
+                help="Which half of the state is updated first, and what does the other half use?",
+                diagnose=diagnosis.named("INTEGRATOR_BY_NAME") if explicit else None,
+                input={"engine": engine},
+                expected=facts.INTEGRATOR,
+                actual=entry["value"],
+            )
+        entry = _entry(entries, engine, "default_step_s")
+        _expect_step(engine, entry["value"])
+
+
+@pytest.mark.task("engine_facts")
+@pytest.mark.points(2)
+def test_facts_users(submission):
+    """Languages are right, and so are the projects that are named as users"""
+    entries = listing.by_pair(listing.entries(submission))
+    for engine in listing.ENGINES:
+        language = kit.as_text(_entry(entries, engine, "language")["value"], "a language")
+        if facts.plain(language) not in facts.LANGUAGES[engine]:
+            kit.fail(
+                "A language is not the one the engine is written in.",
+                help="Look at the files of its repository, not at the language you call it from.",
+                input={"engine": engine},
+                expected=sorted(facts.LANGUAGES[engine]),
+                actual=language,
+            )
+        names = kit.as_list(_entry(entries, engine, "used_by")["value"], "the users of an engine")
+        names = [kit.as_text(name, "a user of an engine") for name in names]
+        stale = engine == "ode" and any(map(facts.is_new_gazebo, names))
+        if stale or not any(facts.right_user(engine, name) for name in names):
+            kit.fail(
+                "A project that is said to use an engine does not."
+                if stale
+                else "None of the projects named for an engine is known to use it.",
+                help="Name projects whose own documentation says that they run on it.",
+                diagnose=diagnosis.named("GAZEBO_SIM_USES_DART") if stale else None,
+                input={"engine": engine},
+                actual=names,
+            )
+
+
+def _entry(entries, engine, field):
+    """The entry of a pair; without one there is nothing to look at."""
+    if (engine, field) not in entries:
+        kit.fail(
+            "The list is not complete.",
+            diagnose=diagnosis.named("PAIR_MISSING"),
+            actual=f"{engine}/{field}",
+        )
+    return entries[engine, field]
+
+
+def _of_licence(engine, text):
+    """Outdated, or the right one by its everyday name."""
+    words = facts.plain(text)
+    if any(word in words for word in facts.STALE):
+        return diagnosis.named("STALE_LICENCE")
+    if any(word in words for word in facts.EVERYDAY[engine]):
+        return diagnosis.named("NOT_SPDX")
+    return None
+
+
+def _expect_step(engine, value):
+    """The engine's own step, or None where its caller has to choose."""
+    own = facts.STEPS[engine]
+    if value is None and None in own:
+        return
+    close = value is not None and any(
+        step is not None and math.isclose(kit.as_number(value, "a default step"), step, rel_tol=0.005)
+        for step in own
+    )
+    if not close:
+        kit.fail(
+            "A default step is not the engine's own.",
+            help="Look at the function that takes a step: has it a default for the step, or does it ask?",
+            diagnose=diagnosis.named("STEP_OF_A_HABIT") if own == (None,) else None,
+            input={"engine": engine},
+            expected=list(own),
+            actual=value,
+        )

@@ -1,0 +1,127 @@
+"""Reports and requirements drawn for ``choose_engine``, with the right answer by construction."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+from course.grading import kit
+
+bench = kit.companion("engine-comparison", "bench")
+choosing = kit.companion("engine-comparison", "choosing")
+measured = kit.companion("engine-comparison", "measured")
+
+need = measured.need
+
+
+def names(rng, count):
+    """Names that mean nothing."""
+    letters = "bcdfghklmnprstvz"
+    made = set()
+    while len(made) < count:
+        made.add("".join(rng.choice(list(letters)) + rng.choice(list("aeiou")) for _ in range(3)))
+    return [str(name) for name in rng.permutation(sorted(made))]
+
+
+def reports_of(rng, truths):
+    """The hidden boxes' right reports under new names, with costs that are all different."""
+    costs = rng.permutation([1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 13.0, 18.0])
+    called = names(rng, len(truths))
+    return {
+        name: {**truth, "cost": float(cost)} for name, truth, cost in zip(called, truths, costs, strict=False)
+    }
+
+
+def _limits(reports, key):
+    """Values between those that occur, so that rounding decides nothing."""
+    values = sorted({r[key] for r in reports.values() if math.isfinite(r[key])})
+    return [(a + b) / 2 for a, b in itertools.pairwise(values) if b - a > 1e-6 * (1 + abs(a))]
+
+
+def some_need(rng, reports):
+    """A requirement that some reports meet and others do not."""
+    key = str(rng.choice(bench.KEYS))
+    if key in ("symplectic", "deterministic"):
+        return need(key, "==", bool(rng.integers(2)))
+    if key == "order":
+        return need(key, str(rng.choice(["<=", ">=", "=="])), int(rng.choice([1, 2, 4])))
+    limits = _limits(reports, key)
+    return need(key, str(rng.choice(["<=", ">="])), float(rng.choice(limits)))
+
+
+def questions(rng, truths, wanted, fits):
+    """As many questions as are wanted, of one to three requirements, whose right answer ``fits``."""
+    found = []
+    while len(found) < wanted:
+        reports = reports_of(rng, truths)
+        needs = [some_need(rng, reports) for _ in range(int(rng.integers(1, 4)))]
+        answer = choosing.choose(reports, needs)
+        if fits(reports, needs, answer):
+            found.append((reports, needs, answer))
+    return found
+
+
+def telling(reports, needs, answer):
+    """A question in which neither the first, nor the cheapest, nor the dearest engine that fits is right
+    by accident."""
+    if answer is None:
+        return False
+    fitting = [name for name, r in reports.items() if all(choosing.meets(r, n) for n in needs)]
+    cheapest = min(reports, key=lambda name: reports[name]["cost"])
+    return answer != cheapest and len(fitting) >= 2 and fitting[0] != answer
+
+
+def with_gaps(rng, question):
+    """The same question with cheaper engines that would fit, had they been measured: one key is gone from
+    one of them, and None in the other."""
+    reports, needs, answer = question
+    key = str(rng.choice([n["key"] for n in needs]))
+    reports = {name: dict(report) for name, report in reports.items()}
+    fitting = dict(reports[answer])
+    first, second = names(rng, 2)
+    reports[first + "x"] = {**{k: v for k, v in fitting.items() if k != key}, "cost": 0.5}
+    reports[second + "y"] = {**fitting, key: None, "cost": 0.7}
+    shuffled = [str(name) for name in rng.permutation(list(reports))]
+    return {name: reports[name] for name in shuffled}, needs, answer
+
+
+def at_the_limit(rng, truths):
+    """A question whose right answer meets its limits exactly, from both sides."""
+    reports = reports_of(rng, truths)
+    finite = [n for n, r in reports.items() if 0 < r["max_stable_step"] < math.inf]
+    chosen = str(rng.choice(finite))
+    exact = reports[chosen]
+    needs = [need(key, op, exact[key]) for key in ("max_stable_step", "restitution") for op in ("<=", ">=")]
+    return reports, needs, choosing.choose(reports, needs)
+
+
+def beyond_reach(rng, truths):
+    """A question that no engine meets, though each requirement alone is met by some."""
+    reports = reports_of(rng, truths)
+    return reports, [need("order", ">=", 4), need("symplectic", "==", True)], None
+
+
+def renamed(rng, question):
+    """The same reports under other names and in another order."""
+    reports, needs, answer = question
+    other = dict(zip(reports, names(rng, len(reports)), strict=True))
+    shuffled = [str(name) for name in rng.permutation(list(reports))]
+    return (
+        {other[name]: dict(reports[name]) for name in shuffled},
+        [needs[i] for i in rng.permutation(len(needs))],
+        None if answer is None else other[answer],
+    )
+
+
+#: Further questions about the engines as measured: requirements, and the right name.
+REAL = (
+    ([need("as_it_comes", "==", True)], "physx, as it comes"),
+    ([need("pendulum_loss", "<=", 0.12), need("slope_error", "<=", 0.01)], "physx, well set"),
+    ([need("rebound_m", ">=", 0.2), need("rebound_m", "<=", 0.26), need("as_it_comes", "==", True)],
+     "physx, as it comes"),
+    ([need("graphics_card", "==", False), need("clash_error", "<=", 0.01)], "mujoco, well set"),
+    ([need("graphics_card", "==", False), need("as_it_comes", "==", True), need("slope_error", "<=", 0.001)],
+     "ode, as it comes"),
+    ([need("gazebo_classic", "==", True), need("steps_per_s", ">=", 2000.0)], None),
+    ([need("price_eur", "<=", 0.0)], None),
+)  # fmt: skip

@@ -1,0 +1,98 @@
+"""What is right to say of ODE, Bullet, PhysX and MuJoCo, with what is often said and no longer true.
+
+They are what the engines' own licence files, manuals and headers say: ODE's manual, Bullet's
+``btDynamicsWorld.h`` and PyBullet's ``setTimeStep``, PhysX's ``PxScene::simulate``, MuJoCo's XML reference.
+"""
+
+from __future__ import annotations
+
+import datetime
+
+#: Identifiers that are right, in lower case: SPDX identifiers do not depend on case.
+LICENCES = {
+    "ode": {"bsd-3-clause", "lgpl-2.1-or-later", "lgpl-2.1-only", "lgpl-2.1", "lgpl-2.1+"},
+    "bullet": {"zlib"},
+    "physx": {"bsd-3-clause"},
+    "mujoco": {"apache-2.0"},
+}
+
+#: Words of licences that these engines once had.
+STALE = ("proprietary", "commercial", "nvidia", "eula", "closed", "roboti", "licenseref", "paid", "trial")
+
+#: Words of a licence's everyday name: the right licence, not its identifier.
+EVERYDAY = {
+    "ode": ("lgpl", "gpl", "bsd"),
+    "bullet": ("zlib",),
+    "physx": ("bsd",),
+    "mujoco": ("apache",),
+}
+
+#: Since when the licence has been this one, where it was another before.
+SINCE = {
+    "physx": datetime.date(2018, 12, 1),
+    "mujoco": datetime.date(2022, 5, 23),
+}
+
+#: The language the engine is written in; ODE's and MuJoCo's interfaces are C.
+LANGUAGES = {
+    "ode": {"c++", "c/c++", "c and c++"},
+    "bullet": {"c++"},
+    "physx": {"c++"},
+    "mujoco": {"c", "c++", "c/c++", "c and c++"},
+}
+
+#: All four update the velocity first and move the position with the new one, unless told otherwise.
+INTEGRATOR = "semi_implicit_euler"
+
+#: Seconds; None where the caller has to pass the step.
+STEPS = {
+    "ode": (None,),
+    "bullet": (1 / 60, 1 / 240),  # the library's own, and that of its Python module
+    "physx": (None,),
+    "mujoco": (0.002,),
+}
+
+#: Part of a name, in lower case, that marks a project running on the engine.
+USERS = {
+    "ode": ("gazebo classic", "gazebo-classic", "gazebo 9", "gazebo 11", "gazebo9", "gazebo11", "webots",
+            "coppelia", "v-rep", "opensimulator", "panda3d", "openrave", "pyode"),
+    "bullet": ("pybullet", "blender", "coppelia", "v-rep", "gazebo", "panda3d", "godot", "maya", "houdini",
+               "cinema 4d", "drake", "openrave", "gibson", "habitat", "tesseract", "dart", "moveit"),
+    "physx": ("isaac", "omniverse", "unity", "unreal", "sapien", "maniskill", "o3de", "lumberyard", "carla",
+              "airsim", "orbit", "omnigibson"),
+    "mujoco": ("gymnasium", "gym", "dm_control", "dm control", "dm-control", "robosuite", "playground", "mjx",
+               "metaworld", "meta-world", "robohive", "myosuite", "deepmind", "newton", "openai", "libero",
+               "robocasa", "aloha"),
+}  # fmt: skip
+
+#: Names of the Gazebo that does not run on ODE.
+NEW_GAZEBO = ("gazebo sim", "gz sim", "gz-sim", "ignition", "gazebo harmonic", "gazebo fortress",
+              "gazebo garden", "gazebo ionic", "gazebo jetty")  # fmt: skip
+
+
+def spdx(text: str) -> list[str]:
+    """The identifiers of an SPDX expression that joins them with OR, in lower case."""
+    parts = text.strip().strip("()").lower().split(" or ")
+    return [part.strip().strip("()") for part in parts]
+
+
+def right_licence(engine: str, text: str) -> bool:
+    """Whether every identifier of the expression is one the engine may be used under."""
+    return all(part in LICENCES[engine] for part in spdx(text))
+
+
+def plain(text: str) -> str:
+    """A name without case and odd spaces."""
+    return " ".join(text.lower().split())
+
+
+def right_user(engine: str, name: str) -> bool:
+    """Whether a project is known to run on the engine."""
+    if engine == "ode" and plain(name) == "gazebo":
+        return False
+    return any(part in plain(name) for part in USERS[engine])
+
+
+def is_new_gazebo(name: str) -> bool:
+    """Whether it is the Gazebo that runs on DART; the bare name has meant that one since 2025."""
+    return plain(name) == "gazebo" or any(part in plain(name) for part in NEW_GAZEBO)

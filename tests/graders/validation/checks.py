@@ -1,0 +1,339 @@
+"""Hidden graders of ``validation``. Data are drawn anew from the seed of each grading run.
+
+Thresholds come from sweeps over seeds of every accepted solution; the table is in
+``tests/benchmarks/calibration/validation.md``.
+"""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+from course.physics import systems
+
+probes = kit.companion("validation", "probes")
+runs = kit.companion("validation", "probes_runs")
+shared = kit.companion("validation", "expectations")
+twins = kit.companion("validation", "twins")
+chi_square = kit.sibling(__file__, "chi_square")
+cases = kit.sibling(__file__, "cases")
+
+# -- sizes of errors ------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("rmse")
+@pytest.mark.points(2)
+def test_rmse_anything(submission, rng):
+    """rmse of errors of any number, size and mean, which it leaves as they are"""
+    e = rng.uniform(-2, 2) + rng.uniform(0.1, 3) * rng.standard_normal(rng.integers(5, 60))
+    inspected = submission.call_inspect("rmse", e)
+    kit.expect_close(
+        inspected.value,
+        math.sqrt(np.mean(e**2)),
+        rel=1e-9,
+        source=shared.EXACT,
+        quantity="rmse",
+        units="m",
+        input={"e": e},
+        message="The root mean square error is wrong.",
+        help="Square the errors, average the squares, take the root.",
+        diagnose=lambda: probes.of_rmse(kit.as_number(inspected.value), e),
+    )
+    shared.expect_left_alone(inspected, [e], ["e"])
+
+
+@pytest.mark.task("bias_variance")
+@pytest.mark.points(2)
+def test_bias_variance_scatter(submission, rng):
+    """Bias and variance of scattered errors, which are left as they are"""
+    e = rng.uniform(-2, 2) + rng.uniform(0.1, 3) * rng.standard_exponential(rng.integers(7, 40))
+    shared.expect_bias_variance(submission, e)
+
+
+@pytest.mark.task("bias_variance")
+@pytest.mark.points(2)
+def test_bias_variance_offset(submission, rng):
+    """The variance keeps its digits where the mean is ten million times the scatter"""
+    # At this size neighbouring floats are 2e-9 apart, so the errors themselves are exact enough.
+    e = rng.uniform(1e7, 2e7) + rng.uniform(0.5, 1.5) * rng.standard_normal(200)
+    value = submission.call("bias_variance", e)
+    _, variance = kit.as_tuple(value, ("bias", "variance"))
+    variance = kit.as_number(variance, "variance")
+    kit.expect_close(
+        variance,
+        float(np.var(e)),
+        rel=1e-6,
+        source="rounding of two-pass and running formulas stays below 1e-8 here; one pass loses all digits",
+        quantity="variance",
+        units="m²",
+        input={"e": e},
+        message="Where the errors are large and hardly scatter, the variance is wrong.",
+        help="Take the mean off before squaring.",
+        diagnose=lambda: probes.of_offset(submission, e, variance),
+    )
+
+
+@pytest.mark.task("wrap_angle")
+@pytest.mark.points(4)
+def test_wrap_angle_many_turns(submission, rng):
+    """Angles many turns away in both directions, and half a turn itself; the argument stays as it is"""
+    e = np.concatenate([rng.uniform(-60, 60, 40), rng.uniform(-3, 3, 10), [np.pi, -np.pi, 0.0]])
+    inspected = submission.call_inspect("wrap_angle", e)
+    values = kit.as_vector(inspected.value, len(e), "the result")
+    # Around half a turn both signs are right, so the result is compared on the circle.
+    apart = np.abs(np.angle(np.exp(1j * (values - e))))
+    kit.expect_true(
+        bool(np.all(np.abs(values) <= np.pi + 1e-9) and np.all(apart <= 1e-9)),
+        "Some angle is not wrapped, or is another angle afterwards.",
+        help="Take off whole turns until every angle lies in [-pi, pi).",
+        input={"e": e},
+        actual=values,
+        diagnose=lambda: probes.of_wrapped(values, e),
+    )
+    shared.expect_left_alone(inspected, [e], ["e"])
+
+
+# -- consistency ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("nees")
+@pytest.mark.points(3)
+def test_nees_correlated(submission, rng):
+    """NEES where errors of components of very different size go together"""
+    cases.expect_normalised(submission, "nees", rng, [(3, 30)], ("err", "P"))
+
+
+@pytest.mark.task("nees")
+@pytest.mark.points(2)
+def test_nees_shapes(submission, rng):
+    """NEES of one component, and of as many rows as there are components"""
+    cases.expect_normalised(submission, "nees", rng, [(1, 12), (4, 4)], ("err", "P"))
+
+
+@pytest.mark.task("nis")
+@pytest.mark.points(3)
+def test_nis_correlated(submission, rng):
+    """NIS where innovations of components of very different size go together"""
+    cases.expect_normalised(submission, "nis", rng, [(2, 25), (3, 3)], ("nu", "S"))
+
+
+@pytest.mark.task("consistency_band")
+@pytest.mark.points(4)
+def test_consistency_band_sweep(submission, rng):
+    """The band is right for many dimensions, numbers of runs and levels"""
+    settings = [
+        (int(dof), int(max(count, math.ceil(20 / dof))), float(alpha))
+        for dof, count, alpha in zip(
+            rng.integers(1, 8, 8), rng.integers(2, 60, 8), rng.uniform(0.01, 0.2, 8), strict=True
+        )
+    ]
+    _expect_bands(submission, settings)
+
+
+@pytest.mark.task("consistency_band")
+@pytest.mark.points(2)
+def test_consistency_band_one_run(submission, rng):
+    """The band of a single run with many degrees of freedom"""
+    _expect_bands(submission, [(int(rng.integers(20, 60)), 1, float(rng.uniform(0.02, 0.1)))])
+
+
+def _expect_bands(submission, settings):
+    names = ("lo", "hi")
+    for (dof, count, alpha), value in zip(
+        settings, submission.call_each("consistency_band", settings), strict=True
+    ):
+        ends = [kit.as_number(x, name) for x, name in zip(kit.as_tuple(value, names), names, strict=True)]
+        for actual, p, name in zip(ends, (alpha / 2, 1 - alpha / 2), names, strict=True):
+            kit.expect_close(
+                actual,
+                chi_square.quantile(dof * count, p) / count,
+                rel=0.01,
+                source="the contract's 1 %; Wilson and Hilferty's formula is off by at most 0.7 % here",
+                quantity=name,
+                input={"dof": dof, "runs": count, "alpha": alpha},
+                message="The band is not that of an average of chi-square numbers.",
+                help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
+                diagnose=lambda ends=ends, dof=dof, count=count, alpha=alpha: probes.of_band(
+                    *ends, dof, count, alpha, chi_square.quantile, NormalDist().inv_cdf
+                ),
+            )
+
+
+@pytest.mark.task("coverage")
+@pytest.mark.points(3)
+def test_coverage_edges(submission, rng):
+    """Coverage of many intervals, some of whose ends are met exactly and some of which are points"""
+    n = int(rng.integers(40, 90))
+    # Quarters are exact in floating point, so many values lie on an end on purpose.
+    y = rng.integers(-8, 9, n) / 4
+    lo = y - rng.integers(-1, 4, n) / 4
+    hi = np.maximum(lo, y + rng.integers(-1, 4, n) / 4)
+    lo[0] = hi[0] = y[0]
+    value = submission.call("coverage", y, lo, hi)
+    kit.expect_close(
+        value,
+        float(np.mean((lo <= y) & (y <= hi))),
+        abs=1e-12,
+        source=shared.EXACT,
+        quantity="coverage",
+        input={"y": y, "lo": lo, "hi": hi},
+        message="The share of covered values is wrong.",
+        help="Count the values with lo <= y <= hi, ends included, and divide by how many there are.",
+        diagnose=lambda: probes.of_coverage(value, y, lo, hi),
+    )
+
+
+# -- bootstrap ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("block_bootstrap_ci")
+@pytest.mark.points(4)
+def test_bootstrap_width_drawn(submission, rng):
+    """On new series, intervals for the mean are about as wide as they must be, and lie around it"""
+    n, phi, block = 400, 0.9, 40
+    scale, offset = float(rng.uniform(0.2, 4)), float(rng.uniform(-3, 3))
+    series = offset + scale * shared.correlated(int(rng.integers(2**31)), 30, n, phi)
+    calls = [(e, shared.MEAN, block, 70, 0.05, np.random.default_rng(rng.integers(2**31))) for e in series]
+    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", calls))
+    shown = {"series": "30, each keeps 0.9 of the sample before", "N": n, "block": block, "alpha": 0.05}
+    kit.expect_bounded(
+        float(np.mean(ends[:, 1] - ends[:, 0])) / (2 * 1.96 * scale * shared.spread_of_mean(n, phi)),
+        low=0.55,
+        high=1.05,
+        source="correct variants over 200 seeds; resampling one by one gives 0.22",
+        quantity="mean width over true width",
+        input=shown,
+        message="The intervals do not have the width that the scatter of the mean asks for.",
+        help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
+        diagnose=lambda: runs.of_interval(submission, 1),
+    )
+    cases.expect_centred(submission, ends, np.mean(series, axis=1), shown)
+
+
+@pytest.mark.task("block_bootstrap_ci")
+@pytest.mark.points(2)
+def test_bootstrap_level(submission, rng):
+    """The width follows alpha, the statistic is the given one, and all chance comes from rng"""
+    cases.expect_level(submission, rng, systems.AveragePolynomial([0.0, 0.0, float(rng.uniform(0.5, 3))]))
+
+
+@pytest.mark.task("block_bootstrap_ci")
+@pytest.mark.points(3)
+def test_bootstrap_blocks(submission, rng):
+    """The resamples are as long as the series and made of blocks of the length asked for"""
+    e, asked = runs.resamples(submission, int(rng.integers(2**31)))
+    code = runs.of_resamples(e, asked)
+    if code is not None:
+        kit.fail(
+            "The resamples that the statistic is asked about are not made of such blocks.",
+            help="Join blocks of neighbours, drawn with replacement, until there are as many as in e.",
+            diagnose=probes.named(code),
+            expected="10 resamples of 240 samples in blocks of 12",
+            actual=[samples[:8] for samples in asked[:3]],
+        )
+
+
+# -- energy and contact ---------------------------------------------------------------------------------
+
+
+@pytest.mark.task("energy_error")
+@pytest.mark.points(4)
+def test_energy_error_signs(submission, rng):
+    """Energies of either sign that rise and fall, of one body and of an orbit"""
+    q, v = rng.uniform(0.5, 1.5, (9, 2)), rng.uniform(-0.4, 0.4, (9, 2))
+    mu = rng.uniform(1, 3)
+    shared.expect_energies(submission, q, v, lambda q, v: float(0.5 * v @ v - mu / math.hypot(*q)))
+    q, v = rng.uniform(-1, 1, (7, 1)), rng.uniform(1, 2, (7, 1))
+    k = rng.uniform(1, 5)
+    shared.expect_energies(submission, q, v, lambda q, v: float(0.5 * v @ v + 0.5 * k * q @ q))
+
+
+@pytest.mark.task("contact_force_error")
+@pytest.mark.points(4)
+def test_contact_force_shifted(submission, rng):
+    """Impacts that come early or late, too hard or too soft, too long or too short"""
+    pairs = []
+    for _ in range(3):
+        dt = rng.uniform(0.0005, 0.002)
+        t = dt * np.arange(201)
+        peak = rng.uniform(50, 500)
+        real = shared.pulse(t, 70 * dt, rng.uniform(35, 55) * dt, peak)
+        late = rng.choice([-1, 1]) * rng.uniform(15, 30) * dt
+        factor = rng.choice([rng.uniform(0.7, 0.9), rng.uniform(1.1, 1.3)])
+        sim = shared.pulse(t, 70 * dt + late, rng.uniform(35, 55) * dt, factor * peak)
+        pairs.append((sim, real, dt))
+    shared.expect_forces(submission, pairs)
+
+
+# -- cross-validation -----------------------------------------------------------------------------------
+
+
+@pytest.mark.task("cross_validate")
+@pytest.mark.points(3)
+def test_cross_validate_leak(submission, rng):
+    """The model that is asked about a run has never seen it, fold by fold"""
+    count = int(rng.integers(4, 7))
+    shared.expect_folds(submission, cases.pushed_runs(rng, [25] * count), count)
+
+
+@pytest.mark.task("cross_validate")
+@pytest.mark.points(3)
+def test_cross_validate_uneven(submission, rng):
+    """Folds of different size, of runs of different length, are scored by their samples"""
+    lengths = rng.permutation([8, 12, 20, 30, 45, 60, 80])
+    shared.expect_folds(submission, cases.pushed_runs(rng, lengths), int(rng.choice([3, 4])))
+
+
+# -- the verdict ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.task("validate")
+@pytest.mark.points(2)
+def test_validate_good(submission, rng):
+    """A good simulation of runs of different length and step is accepted"""
+    recordings = cases.recordings(rng)
+    cases.expect_verdict(submission, rng, recordings, twins.simulated(recordings), 0.0, [])
+
+
+@pytest.mark.task("validate")
+@pytest.mark.points(2)
+def test_validate_wrong_mass(submission, rng):
+    """A simulation with the wrong mass, or one that is always off to one side, is refused"""
+    recordings = cases.recordings(rng)
+    mass = twins.MASS * float(rng.choice([rng.uniform(0.6, 0.75), rng.uniform(1.35, 1.7)]))
+    cases.expect_refused(submission, rng, recordings, twins.simulated(recordings, mass=mass))
+    offset = float(-rng.uniform(0.15, 0.25))
+    sim = twins.simulated(recordings, offset=offset)
+    cases.expect_verdict(submission, rng, recordings, sim, 0.0, ["bias", "coverage", "rmse"])
+
+
+@pytest.mark.task("validate")
+@pytest.mark.points(3)
+def test_validate_lag(submission, rng):
+    """A simulation that is late, or early, is refused, and the lag found to a fraction of a sample"""
+    recordings = cases.recordings(rng, dt=0.02)
+    for sign in (1, -1):
+        late = sign * 0.02 * (int(rng.integers(2, 4)) + float(rng.uniform(0.35, 0.65)))
+        # A sigma that covers everything leaves the lag alone to be found.
+        sim = twins.simulated(recordings, late=late, sigma_factor=30.0)
+        cases.expect_verdict(submission, rng, recordings, sim, late, ["lag", "rmse"])
+
+
+@pytest.mark.task("validate")
+@pytest.mark.points(3)
+def test_validate_calibration(submission, rng):
+    """A simulation is judged by runs that it was not calibrated on, or not at all"""
+    recordings = cases.recordings(rng, count=5)
+    good, bad = twins.simulated(recordings), twins.simulated(recordings, mass=1.5 * twins.MASS, offset=0.2)
+    fitted = {recordings[i].id for i in (0, 2)}
+    # Perfect on what it was calibrated on, wrong on the rest.
+    mixed = [g if g["id"] in fitted else b for g, b in zip(good["runs"], bad["runs"], strict=True)]
+    sim = {"calibrated_on": sorted(fitted), "runs": mixed}
+    cases.expect_refused(submission, rng, recordings, sim)
+    everything = {"calibrated_on": [run.id for run in recordings], "runs": good["runs"]}
+    shown = {"runs": len(recordings), "calibrated_on": "all of them", "spec": cases.SPEC}
+    runs.expect_nothing_left(submission, everything, twins.measured(recordings), cases.SPEC, shown)

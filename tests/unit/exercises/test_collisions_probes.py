@@ -1,0 +1,270 @@
+"""The diagnosis of ``collisions``: each wrong formula is recognised as itself, and its references hold."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+from course.grading.plugin import MARKERS
+from course.physics.body import Body
+from course.physics.contact import Surface
+from course.physics.simulator import Simulator
+from course.physics.state import RigidBodyState
+
+ROOT = Path(__file__).parents[3]
+HERE = ROOT / "exercises" / "collisions"
+bundles = kit.companion("collisions", "bundles")
+probes, paths, engine = bundles.probes, bundles.paths, bundles.engine
+formulas = kit.companion("collisions", "formulas")
+report = kit.companion("collisions", "report")
+words = kit.companion("collisions", "diagnosis").WORDS
+GRADERS = ROOT / "tests" / "graders" / "collisions" / "checks.py"
+draws = kit.sibling(str(GRADERS), "draws")
+
+
+def module(path):
+    spec = importlib.util.spec_from_file_location(f"collisions_{path.parent.name}_{path.stem}", path)
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+SOLUTION = module(ROOT / "solutions" / "collisions" / "collisions.py")
+
+
+@pytest.fixture(scope="module")
+def checks(request):
+    """Every check of the exercise, public ones first."""
+    for marker in MARKERS:
+        request.config.addinivalue_line("markers", marker)
+    files = [module(HERE / "checks.py"), module(GRADERS)]
+    return {name: check for file in files for name, check in vars(file).items() if name.startswith("test_")}
+
+
+class Fake:
+    """A submission that consists of the functions of a module, or of any others."""
+
+    def __init__(self, functions):
+        self._functions = functions
+
+    def call(self, name, *args):
+        return self._functions[name](*args)
+
+    def call_each(self, name, calls):
+        return [self.call(name, *args) for args in calls]
+
+    def call_inspect(self, name, *args):
+        return kit.Inspected(self.call(name, *args), list(args), shared=False)
+
+
+def scenes(task, seed=0):
+    """Arguments of many kinds for a task, none of them degenerate."""
+    rng = np.random.default_rng(seed)
+    make = {
+        "detect_sphere_sphere": lambda s: draws.spheres(rng, 3, s),
+        "detect_sphere_plane": lambda s: draws.plane(rng, 3, s - 1.0),
+        "impulse_1d": lambda s: draws.line(rng),
+        "resolve": lambda s: draws.blow(rng, 3),
+        "resolve_with_friction": lambda s: draws.rub(rng, 3, s),
+    }
+    if task == "time_of_impact":
+        some = [draws.passing(rng, 3, share) for share in (0.3, 0.7, 0.9, 1.2, 1.8)]
+        some += [draws.shot(rng, 1e3), draws.overlap(rng, True), draws.overlap(rng, False)]
+        far = draws.passing(rng, 3, 0.5)
+        near = draws.passing(rng, 3, 0.05)
+        xa, va, ra, xb, vb, *rest = near
+        some.append(bundles.call(task, [-5, 0, 0], [2, 0, 0], 0.5, [5, 0, 0], [-2, 0, 0], 0.4, 4.0))
+        return [*some, (*far[:6], 0.1 * far[6]), near, (xa, vb, ra, xb, va, *rest)]  # the last one parts
+    calls = [make[task](share) for share in (0.3, 0.8, 1.3, 2.0, 4.0)]
+    if task in ("impulse_1d", "resolve", "resolve_with_friction"):
+        ma, mb, va, vb, *rest = calls[0]
+        calls.append((ma, mb, vb, va, *rest))  # one that separates
+    return calls
+
+
+WRONG = [(task, code, formula) for task, wrong in formulas.WRONG.items() for code, formula in wrong]
+
+
+@pytest.mark.parametrize(("task", "code", "formula"), WRONG, ids=lambda v: v if isinstance(v, str) else "")
+def test_each_wrong_formula_is_given_its_own_code(task, code, formula):
+    for seed in range(5):
+        calls = scenes(task, seed)
+        assert probes.of_calls(task, calls, [formula(*call) for call in calls]).code == code
+
+
+@pytest.mark.parametrize("task", formulas.RIGHT)
+def test_the_right_formula_is_given_no_code(task):
+    calls = scenes(task)
+    assert probes.of_calls(task, calls, [formulas.RIGHT[task](*call) for call in calls]) is None
+
+
+def test_every_code_has_words_and_every_word_is_used():
+    sources = [*HERE.glob("*.py"), *GRADERS.parent.glob("*.py")]
+    text = "".join(path.read_text() for path in sources if path.name != "diagnosis.py")
+    used = set(re.findall(r'"([A-Z]{2,}(?:_[A-Z0-9]+)+|TUNNELS)"', text))
+    assert used == set(words)
+
+
+@pytest.mark.parametrize("e", [1.0, 0.6, 0.0])
+def test_the_head_on_path_is_that_of_the_course_s_own_simulator(e):
+    scene = paths.HeadOn((1.0, 2.5), (-3.0, 2.0), (2.0, -1.0), 0.4, e)
+    balls = [
+        Body.sphere(m, scene.radius, RigidBodyState.of([x, 0, 0], [v, 0, 0]))
+        for m, x, v in zip(scene.m, scene.x0, scene.v0, strict=True)
+    ]
+    run = Simulator(balls, h=0.01, gravity=0.0, ground=None, surface=Surface(restitution=e)).run(3.0)
+    x, _ = scene.at(run.t)
+    assert run.position[:, :, 0] == pytest.approx(x, abs=1e-9)
+
+
+def test_each_hop_of_the_drop_keeps_e_squared_of_the_height_and_the_last_one_ends():
+    scene = paths.Drop(1.0, 0.0, 0.1, 0.7)
+    _, speeds = scene.contacts(10.0, 0.1)
+    assert speeds[:-1] ** 2 / (2 * 9.81) == pytest.approx(0.9 * 0.49 ** np.arange(1, len(speeds)))
+    assert speeds[-2] > 0.1
+    assert speeds[-1] == 0.0
+    z, v = scene.at([9.0, 10.0], 0.1)
+    assert z == pytest.approx(0.1)
+    assert not v.any()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_pymunk_is_as_far_off_as_is_said_and_no_further(seed):
+    rng = np.random.default_rng(seed)
+    h, n = float(rng.uniform(0.003, 0.01)), 200
+    scene = draws.head_on(rng, "meet")
+    x, _ = scene.at(h * np.arange(n + 1))
+    off = np.abs(engine.head_on(scene, n * h, h) - x)
+    assert np.all(off <= engine.head_on_error(scene, h))
+    late = math.ceil(scene.contact / h) * h - scene.contact
+    change = np.abs(np.subtract(scene.after(), scene.v0))
+    assert off[-1] == pytest.approx(change * late, abs=engine.ROUNDING)
+    scene = paths.Drop(
+        float(rng.uniform(0.5, 2.0)), float(rng.uniform(-1, 1)), 0.1, float(rng.uniform(0.3, 1.0))
+    )
+    times, speeds = scene.contacts(100.0, 1e-3)
+    n = int((times[0] + 1.9 * speeds[0] / scene.g) / h)  # until shortly before the second contact
+    z, _ = scene.at(h * np.arange(n + 1), scene.g * h)
+    assert np.max(np.abs(engine.drop(scene, n * h, h)[:, 0] - z)) <= engine.drop_error(scene, h)
+
+
+def test_a_pair_that_parts_and_is_struck_all_the_same_is_recognised():
+    scene = paths.HeadOn((1.0, 2.0), (-1.0, 1.0), (-1.0, 1.0), 0.5, 0.5)
+    t = 0.1 * np.arange(11)
+    x, v = scene.at(t, contact=0.55)
+    assert probes.of_head_on(scene, t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
+
+
+def test_a_pair_that_is_struck_again_and_again_is_recognised():
+    scene = paths.HeadOn((1.0, 2.0), (-1.0, 1.0), (1.0, -1.0), 0.5, 0.5)
+    t = 0.1 * np.arange(21)
+    x, v = (array.copy() for array in scene.at(t))
+    v[12:] = v[12:, ::-1] / 3
+    v[15:] = v[15:, ::-1] / 2
+    assert probes.of_head_on(scene, t, x + 0.01, v, 0.1).code == "INITIAL_STATE_MISSING"
+    x[12:] += 0.1
+    assert probes.of_head_on(scene, t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
+
+
+GARBAGE = [
+    None,
+    "two",
+    3.5,
+    math.nan,
+    10**400,
+    [],
+    [[], [], []],
+    [True, None],
+    {"a": 1},
+    [math.nan, [math.nan] * 3, math.inf],
+    [np.full(3, np.nan), np.full(3, np.inf)],
+    [np.full(3, 1e308), np.full(3, -1e308)],
+    [[1.0, [2.0]], [3.0]],
+    np.zeros((2, 2, 2)),
+    [True, np.zeros(3), 0.0],
+    [np.array([]), np.array([]), np.array([])],
+]
+
+
+@pytest.mark.parametrize("value", GARBAGE, ids=repr)
+def test_whatever_a_submission_returns_each_check_ends_in_a_finding(checks, value):
+    submission = Fake(dict.fromkeys(formulas.RIGHT | dict.fromkeys((bundles.HEAD_ON, bundles.DROP)), None))
+    submission.call = lambda name, *args: value
+    assert len(checks) == 42
+    for check in checks.values():
+        with pytest.raises(kit.CheckFailed):
+            run(check, submission)
+
+
+def run(check, submission):
+    """One check, with a generator if it draws its scenes."""
+    draws_scenes = "rng" in inspect.signature(check).parameters
+    check(submission, *([np.random.default_rng(1)] if draws_scenes else []))
+
+
+@pytest.mark.parametrize("spoil", [math.nan, math.inf, 1e308, -1e308])
+def test_simulations_that_blow_up_end_in_a_finding(checks, spoil):
+    functions = {name: getattr(SOLUTION, name) for name in (bundles.HEAD_ON, bundles.DROP)}
+
+    def blown(name, *args):
+        t, x, v = functions[name](*args)
+        x[len(t) // 2 :], v[len(t) // 2 :] = spoil, spoil
+        return t, x, v
+
+    submission = Fake(functions)
+    submission.call = blown
+    for name, check in checks.items():
+        if name.startswith(("test_head_on", "test_drop")):
+            with pytest.raises(kit.CheckFailed):
+                run(check, submission)
+
+
+def test_the_report_predicts_pymunk_s_difference_to_the_digit():
+    shown = report.report(Fake(vars(SOLUTION)))
+    assert len(shown.sections) == 4
+    assert all(section.plot for section in shown.sections)
+    for row in shown.sections[2].rows:
+        assert row[2] == row[3]
+
+
+def test_the_report_draws_the_program_that_is_still_to_be_mended():
+    stub = module(HERE / "collisions.py")
+
+    def missing(name, *args):
+        if name != bundles.HEAD_ON:
+            raise kit.StudentFailure("error", type="NotImplementedError", message="")
+        return stub.simulate_head_on(*args)
+
+    submission = Fake({})
+    submission.call = missing
+    first, second, *_ = report.report(submission).sections
+    assert first.rows[0][1] == "5.000000 m"  # the left ball ends where the right one began
+    assert "not written yet" in second.text
+
+
+def test_of_two_mistakes_in_one_answer_the_first_is_named():
+    calls = scenes("detect_sphere_sphere")
+    values = []
+    for xa, ra, xb, rb in calls:
+        values.append((True, xb - xa, ra + rb - float(np.linalg.norm(xb - xa))))
+    assert probes.of_calls("detect_sphere_sphere", calls, values).code == "NORMAL_NOT_UNIT"
+
+
+def test_a_constant_none_is_told_from_tunnelling():
+    calls = scenes("time_of_impact")
+    assert probes.of_calls("time_of_impact", calls, [None] * len(calls)).code == "NEVER_FINDS_A_CONTACT"
+
+
+def test_a_search_in_small_steps_is_told_from_a_missed_contact():
+    calls = [draws.passing(np.random.default_rng(seed), 3, 0.3) for seed in range(4)]
+    truth = [formulas.RIGHT["time_of_impact"](*call) for call in calls]
+    rough = [t + 1e-3 for t in truth]
+    assert probes.of_calls("time_of_impact", calls, rough).code == "MOMENT_TOO_COARSE"
+    assert probes.of_calls("time_of_impact", calls, [None, *rough[1:]]).code == "TUNNELS"

@@ -1,0 +1,296 @@
+"""The diagnosis of ``digital-twin``: what a mutant shows, and the mistakes that no mutant makes."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+ROOT = Path(__file__).resolve().parents[3]
+SOLUTION = ROOT / "solutions" / "digital-twin"
+spec = importlib.util.spec_from_file_location("digital_twin_solution", SOLUTION / "digital_twin.py")
+right = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(right)
+
+words = kit.companion("digital-twin", "diagnosis").WORDS
+sensors = kit.companion("digital-twin", "sensor_probes")
+actuators = kit.companion("digital-twin", "actuator_probes")
+twins = kit.companion("digital-twin", "twin_probes")
+bundles = kit.companion("digital-twin", "bundles")
+scenes = kit.companion("digital-twin", "scenes")
+
+
+class Fake:
+    """The model solution with one function replaced."""
+
+    def __init__(self, name="", function=None):
+        self._name, self._function = name, function
+
+    def call(self, name, *args):
+        with np.errstate(all="ignore"):
+            return (self._function if name == self._name else getattr(right, name))(*args)
+
+    def call_each(self, name, calls):
+        return [self.call(name, *args) for args in calls]
+
+    def fold(self, name, state, calls):
+        states = [state]
+        for args in calls:
+            states.append(self.call(name, states[-1], *args))
+        return states
+
+
+def imu(white=1.0, step=1.0, power=-0.5, step_power=0.5, add=1.0, seed=None):
+    """An imu with its factors, powers of dt and sign as given."""
+
+    def wrong(true, dt, density, walk, bias0, rng):
+        rng = rng if seed is None else np.random.default_rng(seed)
+        n = len(true)
+        steps = step * walk * dt**step_power * rng.standard_normal(n - 1)
+        bias = bias0 + np.concatenate(([0.0], np.cumsum(steps)))
+        return true + add * bias + white * density * dt**power * rng.standard_normal(n), bias
+
+    return wrong
+
+
+def accumulating(true, dt, density, walk, bias0, rng):
+    measured, bias = right.imu(true, dt, density, walk, bias0, rng)
+    return true + bias + np.cumsum(measured - true - bias), bias
+
+
+def out_of_step(true, dt, density, walk, bias0, rng):
+    measured, bias = right.imu(true, dt, density, walk, bias0, rng)
+    return measured, np.append(bias[0], bias[:-1])
+
+
+IMU = [
+    ("WHITE_NOISE_MISSING", imu(white=0.0)),
+    ("WHITE_NOISE_OVER_DT", imu(power=-1.0)),
+    ("WHITE_NOISE_FACTOR", imu(white=1.41)),
+    ("WHITE_NOISE_ACCUMULATES", accumulating),
+    ("BIAS_CONSTANT", imu(step=0.0)),
+    ("BIAS_NOT_SCALED_BY_SQRT_DT", imu(step_power=0.0)),
+    ("BIAS_OVER_SQRT_DT", imu(step_power=-0.5)),
+    ("BIAS_FACTOR", imu(step=0.7)),
+    ("BIAS_NOT_ADDED", imu(add=0.0)),
+    ("BIAS_SUBTRACTED", imu(add=-1.0)),
+    ("BIAS_OUT_OF_STEP", out_of_step),
+    ("GENERATOR_IGNORED", imu(seed=1)),
+    ("RETURNS_SWAPPED", lambda *args: right.imu(*args)[::-1]),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), IMU, ids=[code for code, _ in IMU])
+def test_a_gyroscope_that_errs_is_told_its_mistake(code, wrong):
+    assert sensors.of_imu(Fake("imu", wrong)).code == code
+
+
+def moved(pose, segments, angles, r_max, sigma, rng):
+    return right.lidar((0.0, 0.0, pose[2]), segments, angles, r_max, sigma, rng)
+
+
+def parallel(pose, segments, angles, r_max, sigma, rng):
+    ranges = right.lidar(pose, segments, angles, r_max, sigma, rng)
+    across = [w for w in np.asarray(segments) if w[0][1] == w[1][1]]  # walls along x stop beams along x
+    return np.where((np.abs(angles) < 1e-9) & bool(across), 1.0, ranges)
+
+
+LIDAR = [
+    ("POSITION_IGNORED", moved),
+    ("PARALLEL_WALLS", parallel),
+    ("BEYOND_RANGE", lambda p, s, a, r, sig, rng: right.lidar(p, s, a, r + 2 * (len(s) == 1), sig, rng)),
+    ("NO_HIT_NOT_MAX", lambda *args: np.where(right.lidar(*args) == args[3], np.inf, right.lidar(*args))),
+    ("NO_HIT_NOT_MAX", lambda *args: np.where(right.lidar(*args) == args[3], 0.0, right.lidar(*args))),
+    ("LIDAR_NOISE_MISSING", lambda p, s, a, r, _sigma, rng: right.lidar(p, s, a, r, 0.0, rng)),
+    ("LIDAR_SIGMA_WRONG", lambda p, s, a, r, sigma, rng: right.lidar(p, s, a, r, sigma**2, rng)),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), LIDAR[1:], ids=[f"{i}-{c}" for i, (c, _) in enumerate(LIDAR[1:])])
+def test_a_scanner_that_errs_is_told_its_mistake(code, wrong):
+    if code == "BEYOND_RANGE":  # without a hit it still says r_max
+        reach = wrong
+        wrong = lambda *args: np.where(reach(*args) > 6.5, args[3], reach(*args))  # noqa: E731
+    assert sensors.of_lidar(Fake("lidar", wrong)).code == code
+
+
+def test_a_scanner_that_never_moves_is_told_so():
+    assert sensors.of_lidar(Fake("lidar", moved)).code == "POSITION_IGNORED"
+
+
+def test_the_room_of_the_checks_reads_as_the_model_solution_sees_it():
+    rng, angles = np.random.default_rng(3), np.linspace(-3.1, 3.1, 90)
+    for _ in range(20):
+        pose = rng.uniform((0.3, 0.3, -3.0), (5.7, 3.7, 3.0))
+        ranges = right.lidar(pose, scenes.ROOM, angles, 4.0, 0.0, rng)
+        np.testing.assert_allclose(ranges, scenes.room_ranges(pose, angles, 4.0), atol=1e-9)
+
+
+ENCODER = [
+    ("ROUNDS_UP", lambda exact, theta, n: np.ceil(exact)),
+    ("NOT_QUANTISED", lambda exact, theta, n: exact),
+    ("RADIANS_AS_TURNS", lambda exact, theta, n: np.floor(theta * n)),
+    ("DEGREES_FOR_RADIANS", lambda exact, theta, n: np.rint(theta * n / 360)),
+    ("RETURNS_ANGLE", lambda exact, theta, n: np.floor(exact) * 2 * math.pi / n),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), ENCODER, ids=[code for code, _ in ENCODER])
+def test_an_encoder_that_errs_is_told_its_mistake(code, wrong):
+    theta, n = np.linspace(-9.0, 9.0, 401) + 0.001, 64
+    assert sensors.of_encoder(wrong(theta * n / (2 * math.pi), theta, n), theta, n).code == code
+
+
+def test_a_density_without_its_root_of_two_is_told_so():
+    still = scenes.recording(np.random.default_rng(1), 8000, 0.01, 0.002, 0.001, 0.0)
+    found = float(np.std(np.diff(still)) * math.sqrt(0.01))
+    assert sensors.of_density(found, still, 0.01, 0.002).code == "DENSITY_FROM_DIFFERENCES"
+
+
+DRIVE = [
+    ("EULER_TURNS_FIRST", actuators._arc(at=1.0, chord=False)),
+    ("TRACK_HALVED", actuators._arc(track=actuators._TRACK / 2)),
+    ("TRACK_DOUBLED", actuators._arc(track=actuators._TRACK * 2)),
+    ("SPEEDS_ADDED", actuators._arc(reach=2.0)),
+]
+
+
+@pytest.mark.parametrize(("code", "value"), DRIVE, ids=[code for code, _ in DRIVE])
+def test_odometry_that_errs_is_told_its_mistake(code, value):
+    assert actuators.of_drive(Fake("diff_drive_step", lambda *_args: value)).code == code
+
+
+def test_odometry_that_divides_by_the_turn_rate_is_told_so():
+    def wrong(pose, v_left, v_right, track, dt):
+        rate = np.float64(v_right - v_left) / track
+        radius, end = (v_left + v_right) / 2 / rate, pose[2] + rate * dt
+        x = pose[0] + radius * (np.sin(end) - np.sin(pose[2]))
+        return np.array([x, pose[1] - radius * (np.cos(end) - np.cos(pose[2])), end])
+
+    assert actuators.of_drive(Fake("diff_drive_step", wrong)).code == "STRAIGHT_DIVIDES_BY_ZERO"
+
+
+@pytest.mark.parametrize("task", ["motor", "play"])
+def test_every_wrong_actuator_is_told_apart_from_the_right_one_and_from_every_other(task):
+    name, probe, slips = {
+        "motor": ("motor_step", actuators.of_motor, list(actuators._motor_slips())),
+        "play": ("backlash", actuators.of_backlash, list(actuators._play_slips())),
+    }[task]
+    for code, values in slips:
+        answers = iter(values)
+
+        def wrong(*_args, answers=answers):
+            value = next(answers)
+            return value if name == "motor_step" else (value, value)
+
+        assert probe(Fake(name, wrong)).code == code
+    assert probe(Fake()) is None
+
+
+DELAY = [
+    ("DELAY_WRAPS", lambda x, dt, lag: np.roll(x, round(lag / dt))),
+    ("DELAY_IN_SAMPLES", lambda x, dt, lag: right.delay_line(x, dt, lag * dt)),
+    ("DELAY_RAMPS_IN", lambda x, dt, lag: right.delay_line(np.append(0.0, x), dt, lag)[1:]),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), DELAY, ids=[code for code, _ in DELAY])
+def test_a_delay_that_errs_is_told_its_mistake(code, wrong):
+    x, dt, latency = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 2.0]), 0.1, 0.225
+    assert actuators.of_delay(wrong(x, dt, latency), x, dt, latency).code == code
+
+
+def standing(twin, z, t):
+    return {**twin, "t": max(t, twin["t"])}
+
+
+def unmoved(twin, z, t):
+    if t < twin["t"]:
+        return dict(twin)
+    return {**twin, "t": t, "position": twin["position"] + 0.3 * (z - twin["position"])}
+
+
+def pushed(twin, z, t):
+    if t < twin["t"]:
+        return dict(twin)
+    x = twin["position"] + twin["speed"] * (t - twin["t"])
+    return {**twin, "t": t, "position": x - 0.3 * (z - x)}
+
+
+SYNC = [
+    ("NO_CORRECTION", standing),
+    ("NO_PREDICTION", unmoved),
+    ("SURPRISE_INVERTED", pushed),
+    ("TIME_NOT_ADVANCED", lambda twin, z, t: {**right.sync(twin, z, t), "t": twin["t"]}),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), SYNC, ids=[code for code, _ in SYNC])
+def test_a_twin_that_errs_is_told_its_mistake(code, wrong):
+    assert twins.of_sync(Fake("sync", wrong)).code == code
+
+
+def test_a_right_twin_is_told_no_mistake():
+    assert twins.of_sync(Fake()) is None
+    assert twins.of_command(Fake()) is None
+    assert sensors.of_imu(Fake()) is None
+    assert sensors.of_lidar(Fake()) is None
+    assert actuators.of_drive(Fake()) is None
+
+
+COMMAND = [
+    ("BRAKES", lambda twin, target: -twin["friction"] * target),
+    ("ADDS_CURRENT_DRIVE", lambda twin, target: twin["drive"] + twin["friction"] * target),
+    ("TARGET_IGNORED", lambda twin, target: twin["friction"]),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), COMMAND, ids=[code for code, _ in COMMAND])
+def test_a_command_that_errs_is_told_its_mistake(code, wrong):
+    assert twins.of_command(Fake("command", wrong)).code == code
+
+
+def test_every_mistake_that_has_words_is_made_by_a_mutant_or_a_test():
+    mutants = tomllib.loads((SOLUTION / "mutants.toml").read_text())["mutant"]
+    made = {mutant["diagnosis"] for mutant in mutants}
+    for cases in (IMU, LIDAR, ENCODER, DRIVE, DELAY, SYNC, COMMAND):
+        made |= {code for code, _ in cases}
+    made |= {code for code, _ in actuators._motor_slips()} | {code for code, _ in actuators._play_slips()}
+    made |= {"DENSITY_FROM_DIFFERENCES", "STRAIGHT_DIVIDES_BY_ZERO"}
+    assert set(words) - made == set()
+
+
+def test_the_cart_rolls_through_a_jump_of_its_friction_as_small_steps_do():
+    cart = scenes.Cart(((0.0, 0.5), (1.0, 0.9)), v=1.2)
+    cart.roll(0.4, 2.5)
+    x, v, h = 0.0, 1.2, 1e-4
+    for i in range(25000):
+        a = 0.4 - (0.5 if i * h < 1.0 - 1e-9 else 0.9) * v
+        x, v = x + h * v + h * h / 2 * a, v + h * a
+    assert (cart.x, cart.v) == pytest.approx((x, v), abs=1e-4)
+
+
+def test_late_measurements_arrive_out_of_order_and_the_truth_is_that_of_the_newest():
+    cart = scenes.Cart(((0.0, 0.5),), v=1.0)
+    calls, truth = scenes.measured(cart, 0.5, 0.1 * np.arange(1, 101), np.random.default_rng(2), late=0.3)
+    times = np.array([t for _, t in calls])
+    assert np.sum(np.diff(times) < 0) > 10
+    np.testing.assert_allclose(truth[:, 0], np.maximum.accumulate(times))
+    np.testing.assert_allclose(truth[:, 1], truth[:, 0])  # at 1 m/s throughout
+
+
+def test_the_drive_of_the_report_makes_streams_that_a_bag_can_hold():
+    from course.simulations import streams
+
+    found = kit.companion("digital-twin", "drive").streams(Fake())
+    assert [type(stream).__name__ for stream in streams.streams_from(found)] == [
+        "ImuStream",
+        "ScanStream",
+        "OdometryStream",
+    ]

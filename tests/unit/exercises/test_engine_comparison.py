@@ -1,0 +1,296 @@
+"""The engines of ``engine-comparison``, the truths about them, and how their reports are judged."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+ROOT = Path(__file__).resolve().parents[3]
+HIDDEN = str(ROOT / "tests/graders/engine-comparison/checks.py")
+bench = kit.companion("engine-comparison", "bench")
+boxes = kit.companion("engine-comparison", "boxes")
+choosing = kit.companion("engine-comparison", "choosing")
+diagnosis = kit.companion("engine-comparison", "diagnosis")
+judging = kit.companion("engine-comparison", "judging")
+listing = kit.companion("engine-comparison", "listing")
+measured = kit.companion("engine-comparison", "measured")
+probes = kit.companion("engine-comparison", "probes")
+lab = kit.sibling(HIDDEN, "lab")
+instrument = kit.sibling(HIDDEN, "instrument")
+choices = kit.sibling(HIDDEN, "choices")
+facts = kit.sibling(HIDDEN, "facts")
+
+THREE = {"anvil": boxes.ANVIL, "balsa": boxes.BALSA, "cork": boxes.CORK}
+
+
+class Fake:
+    """A submission whose ``characterise`` is the given function."""
+
+    def __init__(self, characterise):
+        self._characterise = characterise
+        self.calls = 0
+
+    def call(self, _, engine):
+        self.calls += 1
+        return self._characterise(engine["$methods"])
+
+
+def cases_of(report):
+    """The three known engines with what ``report(truth)`` makes of their right reports."""
+    return [
+        bench.Case(name, box, boxes.TRUTH[name], report=report(dict(boxes.TRUTH[name])))
+        for name, box in THREE.items()
+    ]
+
+
+# -- the engines ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", THREE)
+def test_what_a_student_is_told_of_an_engine_is_what_the_instrument_finds(name):
+    found = instrument.truth(dataclasses.replace(THREE[name], jitter=0.0))
+    for key, told in boxes.TRUTH[name].items():
+        if key != "deterministic":
+            assert found[key] == pytest.approx(told, rel=1e-3, abs=1e-6), key
+    assert boxes.TRUTH[name]["deterministic"] == (THREE[name].jitter == 0)
+
+
+def test_an_engine_without_jitter_repeats_itself_and_one_with_jitter_does_not():
+    for box in THREE.values():
+        first, second = (box.run("spring", [1.0], [0.5], box.dt, 20, [0.0]) for _ in range(2))
+        assert np.array_equal(first, second) == (box.jitter == 0)
+
+
+def test_the_hidden_engines_are_the_same_for_every_submission_of_a_run_noise_included():
+    for first, second in zip(lab.population(3), lab.population(3), strict=True):
+        runs = [box.run("wall", [-1.0], [3.0], box.dt, 50, [0.0]) for box in (first, second)]
+        assert np.array_equal(*runs)
+
+
+def test_the_stability_limits_are_those_of_the_textbooks():
+    limits = {
+        "velocity_verlet": 2,
+        "semi_implicit_euler": 2,
+        "rk4": 2 * math.sqrt(2),
+        "implicit_euler": math.inf,
+    }
+    for step in (boxes.velocity_verlet, boxes.semi_implicit_euler, boxes.rk4, lab.implicit_euler):
+        box = dataclasses.replace(boxes.ANVIL, step=step, omega=2.0)
+        assert instrument.max_stable_step(box) * 2.0 == pytest.approx(limits[step.__name__], rel=1e-4)
+
+
+def test_stability_is_lost_for_long_enough_to_be_seen_and_found_again():
+    for seed in range(20):
+        box = lab.population(seed)[-1]
+        lost = [z for z in np.arange(0.05, 10, 0.01) if instrument.radius_at(box, z) > 1 + 1e-8]
+        gaps = [(a, b) for a, b in itertools.pairwise(lost) if b - a > 0.05]
+        assert len(gaps) == 1
+        assert gaps[0][0] - lost[0] > 1.0  # the width the README promises, in units of 1/omega
+
+
+@pytest.mark.parametrize("number", [0, 3, 7])
+def test_the_tunnelling_speed_is_where_brute_force_first_gets_through(number):
+    box, truth = lab.population(5)[number], lab.truths(5)[number]["tunnelling_speed"]
+
+    def through(speed):
+        n = math.ceil(4 / (speed * box.dt)) + 2
+        starts = np.linspace(-1 - speed * box.dt, -1, 400)
+        return any(box.run("wall", [s], [speed], box.dt, n, [0.0])[0][-1, 0] > 0 for s in starts)
+
+    assert through(1.01 * truth)
+    assert not through(0.99 * truth)
+
+
+def test_the_friction_cones_are_round_square_and_diamond():
+    for cone, ratio in (
+        (boxes.round_cone, 1),
+        (boxes.square_pyramid, 2**0.5),
+        (boxes.diamond_pyramid, 0.5**0.5),
+    ):
+        box = dataclasses.replace(boxes.ANVIL, cone=cone)
+        forces = [instrument.least_force(box, angle) for angle in (math.pi / 4, 0.0)]
+        assert forces[0] / forces[1] == pytest.approx(ratio, rel=0.005)
+        assert forces[1] == pytest.approx(box.mu * box.mass * box.g, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        ("spin", [0.0], [0.0], 0.1, 1, [0.0]),
+        ("spring", [0.0, 0.0], [0.0], 0.1, 1, [0.0]),
+        ("spring", [0.0], [0.0], -0.1, 1, [0.0]),
+        ("spring", [0.0], [0.0], 0.1, 10**6, [0.0]),
+        ("spring", [0.0], [0.0], 0.1, 1.5, [0.0]),
+        ("spring", [0.0], [0.0], 0.1, 1),
+        ("spring", None, [0.0], 0.1, 1, [0.0]),
+    ],
+)
+def test_a_run_with_senseless_arguments_is_a_finding_that_says_how_to_call_it(wrong):
+    case = bench.Case("anvil", boxes.ANVIL, {})
+    with pytest.raises(kit.CheckFailed) as failed:
+        bench.engine(case)["$methods"]["run"](*wrong)
+    assert failed.value.finding.diagnosis == "ENGINE_MISUSED"
+
+
+# -- judging ----------------------------------------------------------------------------------------------
+
+
+def test_each_engine_is_handed_out_once_however_many_checks_look_at_it():
+    fake = Fake(lambda methods: dict(boxes.TRUTH["anvil"]))
+    for _ in range(3):
+        bench.cases(fake, "x", lambda: [bench.Case("anvil", boxes.ANVIL, boxes.TRUTH["anvil"])])
+    assert fake.calls == 1
+
+
+def test_an_engine_that_brings_the_measurement_down_does_not_take_the_others_with_it():
+    def characterise(methods):
+        omega = methods["info"]()["omega"]
+        if omega == boxes.BALSA.omega:
+            raise kit.StudentFailure("error", type="ZeroDivisionError")
+        return dict(boxes.TRUTH["anvil" if omega == boxes.ANVIL.omega else "cork"])
+
+    fake = Fake(characterise)
+    found = bench.cases(fake, "x", lambda: [bench.Case(n, b, boxes.TRUTH[n]) for n, b in THREE.items()])
+    judging.expect_key(found, "order", 1)
+    with pytest.raises(kit.StudentFailure):
+        judging.expect_key(found, "order", 0)
+    with pytest.raises(kit.StudentFailure):
+        judging.expect_complete(found)
+
+
+def test_a_measurement_that_never_ends_leaves_time_for_the_other_functions():
+    def characterise(methods):
+        raise kit.StudentFailure("timeout", message="it ran out of time")
+
+    fake = Fake(characterise)
+
+    def judge(group):
+        found = bench.cases(fake, group, lambda: [bench.Case(n, b, {}) for n, b in THREE.items()])
+        bench.reported(found, 1)
+
+    for group in ("public", "hidden") * 4:
+        with pytest.raises(kit.StudentFailure):
+            judge(group)
+    assert fake.calls == bench.PATIENCE
+
+
+@pytest.mark.parametrize("bad", [None, "two", [2], {"p": 2}, math.nan, 1.5])
+def test_a_value_of_the_wrong_kind_is_a_finding_and_costs_its_own_key_only(bad):
+    found = cases_of(lambda truth: {**truth, "order": bad})
+    with pytest.raises(kit.CheckFailed):
+        judging.expect_key(found, "order", 0)
+    judging.expect_key(found, "linear_damping", 0)
+
+
+@pytest.mark.parametrize("key", list(probes.TOLERANCES))
+def test_a_number_that_is_nan_or_off_is_not_accepted(key):
+    for wrong in (math.nan, -1.0, 1e9):
+        with pytest.raises(kit.CheckFailed):
+            judging.expect_key(cases_of(lambda truth, wrong=wrong: {**truth, key: wrong}), key, 0)
+
+
+@pytest.mark.parametrize(
+    ("key", "slip", "code"),
+    [
+        ("order", lambda t: t["order"] + 1, "ORDER_LOCAL"),
+        ("order", lambda t: 2, "ORDER_ASSUMED"),
+        ("order", lambda t: 0 if t["linear_damping"] else t["order"], "ORDER_AGAINST_UNDAMPED"),
+        ("linear_damping", lambda t: -t["linear_damping"], "DAMPING_SIGN"),
+        ("linear_damping", lambda t: 1.622 if t["linear_damping"] else 0.0, "DAMPING_AT_DT"),
+        ("friction_anisotropy", lambda t: 1 / t["friction_anisotropy"], "ANISOTROPY_INVERTED"),
+        ("rest_penetration", lambda t: -t["rest_penetration"] or 0.0, "PENETRATION_SIGN"),
+        ("restitution", lambda t: t["restitution"] ** 2, "RESTITUTION_SQUARED"),
+        ("tunnelling_speed", lambda t: min(t["tunnelling_speed"], 200.0), "TUNNEL_NO_INFINITY"),
+        ("deterministic", lambda t: True, "DETERMINISM_ONE_RUN"),
+        ("deterministic", lambda t: not t["deterministic"], "DETERMINISM_INVERTED"),
+        ("symplectic", lambda t: not t["symplectic"], "SYMPLECTIC_INVERTED"),
+    ],
+)
+def test_a_slip_is_called_by_its_name(key, slip, code):
+    with pytest.raises(kit.CheckFailed) as failed:
+        judging.expect_key(cases_of(lambda truth: {**truth, key: slip(truth)}), key, 0)
+    if key == "rest_penetration":  # of the three only the soft one tells: the other two are right at 0
+        assert failed.value.finding.diagnosis in {code, None}
+    else:
+        assert failed.value.finding.diagnosis == code
+
+
+def test_every_code_has_words_and_every_word_is_used():
+    files = [*(ROOT / "exercises/engine-comparison").glob("*.py"), Path(HIDDEN)]
+    named = {
+        code
+        for path in files
+        if path.name != "diagnosis.py"
+        for code in re.findall(r'"([A-Z]+(?:_[A-Z]+)+)"', path.read_text(encoding="utf-8"))
+    }
+    assert set(diagnosis.WORDS) <= named
+    assert named - set(diagnosis.WORDS) <= {"ENGINE_MISUSED"}
+
+
+# -- choosing ---------------------------------------------------------------------------------------------
+
+
+def test_every_question_about_real_engines_has_one_cheapest_answer():
+    reports = measured.reports()
+    for needs, answer in [*measured.QUESTIONS.values(), *choices.REAL]:
+        fitting = [n for n, report in reports.items() if all(choosing.meets(report, need) for need in needs)]
+        costs = sorted(reports[name]["cost"] for name in fitting)
+        assert choosing.choose(reports, needs) == answer
+        assert len(costs) < 2 or costs[0] < costs[1]
+
+
+def test_the_reports_of_real_engines_are_those_of_the_lesson():
+    import tomllib
+
+    table = tomllib.loads((ROOT / "course/lessons/data/engines.toml").read_text(encoding="utf-8"))
+    lesson = {entry["name"]: entry for entry in table["engine"]}
+    names = {"ode": "ODE", "bullet": "Bullet 2.84", "physx": "PhysX", "mujoco": "MuJoCo"}
+    for name, report in measured.reports().items():
+        engine, settings = name.split(", ")
+        entry = lesson[names[engine]]
+        seen = entry["default" if settings == "as it comes" else "tuned"]
+        assert report["rebound_m"] == seen["rebound"]
+        for mine, theirs in (("fall", "fall"), ("slope", "slope"), ("clash", "clash")):
+            assert report[f"{mine}_error"] == pytest.approx(abs(seen[theirs]), abs=1e-9)
+        assert report["pendulum_loss"] == pytest.approx(abs(seen["pendulum"]))
+        low, high = entry["rate"]
+        assert low <= report["steps_per_s"] <= high + 100
+
+
+# -- facts ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("engine", "text", "right"),
+    [
+        ("ode", "BSD-3-Clause", True),
+        ("ode", "(LGPL-2.1-or-later OR BSD-3-Clause)", True),
+        ("ode", "BSD-3-Clause OR GPL-3.0-only", False),
+        ("bullet", "zlib", True),
+        ("mujoco", "Apache 2.0", False),
+        ("physx", "Proprietary", False),
+    ],
+)
+def test_a_licence_is_right_if_every_choice_it_offers_is(engine, text, right):
+    assert facts.right_licence(engine, text) is right
+
+
+def test_gazebo_counts_for_ode_only_by_its_old_name():
+    assert facts.right_user("ode", "Gazebo Classic")
+    assert not facts.right_user("ode", "Gazebo")
+    assert facts.is_new_gazebo("Gazebo")
+    assert facts.is_new_gazebo("Gazebo Sim")
+    assert not facts.is_new_gazebo("Gazebo Classic")
+
+
+@pytest.mark.parametrize("text", ["2026-02-30", "11/21/2026", "2026", "", None, 20260101])
+def test_what_is_no_calendar_date_is_none(text):
+    assert listing.date_of({"as_of": text}) is None

@@ -1,0 +1,143 @@
+"""The trusted side of ``sim-to-real``: its cart, what it recognises, and that the stub's cart is the same."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+ROOT = Path(__file__).resolve().parents[3]
+cart = kit.companion("sim-to-real", "cart")
+words = kit.companion("sim-to-real", "words")
+probes = kit.companion("sim-to-real", "probes")
+judge = kit.companion("sim-to-real", "judge")
+WORDS = kit.companion("sim-to-real", "diagnosis").WORDS
+reference = kit.sibling(str(ROOT / "tests/graders/sim-to-real/checks.py"), "reference")
+
+
+def _function(path, name):
+    tree = ast.parse((ROOT / path).read_text())
+    return next(ast.dump(node) for node in tree.body if getattr(node, "name", "") == name)
+
+
+@pytest.mark.parametrize("name", ["rollout", "record"])
+def test_stub_and_solution_have_the_cart_that_the_checks_have(name):
+    own = _function("exercises/sim-to-real/cart.py", name)
+    assert own == _function("exercises/sim-to-real/sim_to_real.py", name)
+    assert own == _function("solutions/sim-to-real/sim_to_real.py", name)
+
+
+def test_every_diagnosis_is_given_somewhere():
+    folders = ROOT / "exercises/sim-to-real", ROOT / "tests/graders/sim-to-real"
+    text = "".join(
+        p.read_text() for folder in folders for p in folder.glob("*.py") if p.name != "diagnosis.py"
+    )
+    assert [code for code in WORDS if f'"{code}"' not in text] == []
+    said = set(re.findall(r'named\(\s*"([A-Z_]+)"', text))
+    assert said <= set(WORDS)
+
+
+def test_the_least_settling_of_the_public_fleet_is_what_a_search_finds():
+    carts = cart.fleet(cart.PUBLIC, 300, np.random.default_rng(11))
+    assert reference.search(carts, 12, first=100)[2] == pytest.approx(cart.PUBLIC_BEST_S, rel=0.01)
+
+
+def test_gains_that_are_no_numbers_never_settle():
+    settling = cart.rollout(math.nan, 1.0, cart.SHEET, np.random.default_rng(1))
+    assert settling.tolist() == [[3.0]]
+
+
+def test_paths_and_settling_times_are_of_the_same_cart():
+    carts = cart.fleet(cart.PUBLIC, 30, np.random.default_rng(2))
+    x = cart.positions(9.5, 4.7, carts, np.random.default_rng(3))
+    off = np.abs(x - 1) > 0.05
+    last = np.where(off.any(axis=0), 300 - off[::-1].argmax(axis=0), 0) * cart.H
+    expected = np.where(x.max(axis=0) > 1.10, 3.0, last)
+    settling = cart.rollout(9.5, 4.7, carts, np.random.default_rng(3))[:, 0]
+    assert settling == pytest.approx(expected)
+
+
+def test_a_recording_follows_the_equations_of_the_cart():
+    slow = {"m": 2.0, "b": 0.5, "Fc": 0.0, "tau": 0.05, "latency": 0.1}
+    t, y = cart.record(slow, np.full(1000, 2.0), np.random.default_rng(4))
+    late = t - 0.1
+    decay, lag = np.exp(-late / 4.0), np.exp(-late / 0.05)  # time constants m/b and tau
+    exact = np.where(late > 0, 4.0 * (1 - (4.0 * decay - 0.05 * lag) / 3.95), 0.0)
+    assert np.abs(y - exact).max() < 5 * cart.NOISE_SPEED
+    assert abs(float(np.mean(y - exact))) < 0.002
+
+
+def test_what_is_attainable_is_what_many_fits_scatter_by():
+    widths = cart.attainable(cart.prbs(2000, 3.0, np.random.default_rng(5)), [cart.SHEET])[0]
+    assert 0.0005 < widths[0] < 0.003  # the model solution's m scatters by 0.15 % (1 sigma)
+    constant = cart.attainable(np.full(2000, 3.0), [cart.SHEET])[0]
+    assert constant[5] > 0.3  # a steady force does not show the lag
+
+
+@pytest.mark.parametrize(
+    ("code", "make"),
+    [
+        ("BOX_TOO_WIDE", lambda w: (math.exp(-3 * w), math.exp(3 * w))),
+        ("BOX_TOO_NARROW", lambda w: (1.0, 1.0)),
+        ("BOX_IS_LINEAR", lambda w: (1 - w, 1 + w)),
+    ],
+)
+def test_a_wrong_box_is_given_its_own_code(code, make):
+    assert words.of_box({k: make(w) for k, w in cart.FLEET.items()}).code == code
+
+
+def test_the_fleets_own_box_holds_the_fleet():
+    for name in cart.NAMES:
+        assert words.inside(name, *cart.MATCHED[name]) == pytest.approx(1.0)
+        assert words.width(name, *cart.MATCHED[name]) == pytest.approx(1.0)
+
+
+def _with(**changes):
+    def wrong(truth):
+        known = {**truth, "lag": truth["tau"] + truth["latency"]}
+        known |= {k: change(known) for k, change in changes.items()}
+        return {k: (v, v - 0.01 * abs(v), v + 0.01 * abs(v)) for k, v in known.items()}
+
+    return wrong
+
+
+@pytest.mark.parametrize(
+    ("code", "wrong"),
+    [
+        ("MASS_INVERTED", _with(m=lambda p: 1 / p["m"])),
+        ("COEFFICIENTS_NOT_PARAMETERS", _with(b=lambda p: p["b"] / p["m"], Fc=lambda p: p["Fc"] / p["m"])),
+        ("FRICTION_SIGN", _with(b=lambda p: -p["b"], Fc=lambda p: -p["Fc"])),
+        ("COULOMB_AS_VISCOUS", _with(b=lambda p: 1.5 * p["b"], Fc=lambda p: 0.0)),
+        ("VISCOUS_AS_COULOMB", _with(b=lambda p: 0.0, Fc=lambda p: 1.5 * p["Fc"])),
+        ("LATENCY_IGNORED", _with(latency=lambda p: 0.0, tau=lambda p: p["lag"])),
+        ("LAG_IGNORED", _with(tau=lambda p: 0.001, lag=lambda p: p["latency"] + 0.001)),
+        ("LAG_NOT_SUM", _with(lag=lambda p: p["tau"])),
+        ("UNITS_NOT_SECONDS", _with(lag=lambda p: 1000 * p["lag"])),
+        ("LOCAL_MINIMUM", _with(latency=lambda p: p["latency"] + 0.5, lag=lambda p: p["lag"] + 0.5)),
+        ("NOISE_DIFFERENTIATED", _with(m=lambda p: 1.2 * p["m"])),
+        ("ESTIMATE_HARD_CODED", lambda truth: _with()(cart.SHEET)),
+    ],
+)
+def test_a_wrong_estimate_is_given_its_own_code(code, wrong):
+    truths = [cart.PUBLIC, {**cart.SHEET, "m": 1.9, "latency": 0.1}]
+    assert probes.of_values([wrong(truth) for truth in truths], truths).code == code
+
+
+def test_a_right_estimate_is_given_no_code():
+    truths = [cart.PUBLIC, cart.SHEET]
+    estimates = [_with()(truth) for truth in truths]
+    assert probes.of_values(estimates, truths) is None
+    assert judge.misses(estimates, truths) == (0, 8)
+
+
+def test_a_bench_run_is_known_to_show_nothing_of_what_does_not_move():
+    assert reference.reach(0, "rest", "noise", 20.0) < 0.05
+    assert reference.reach(0, "prbs", "noise", 20.0) == math.inf
+    assert reference.reach(0, "rest", "m", 20.0) > 1.0
+    assert reference.reach(0, "prbs", "lag", 20.0) < 0.02

@@ -1,0 +1,220 @@
+"""The diagnosis of ``validation``: wrong values are recognised for what they are, right ones for nothing.
+
+That every mutant gets its code is proven by ``course author mutants``; here are the pieces that it cannot
+reach, and the references that the hidden checks stand on.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+ROOT = Path(__file__).resolve().parents[3]
+GRADERS = ROOT / "tests" / "graders" / "validation" / "checks.py"
+
+probes = kit.companion("validation", "probes")
+runs = kit.companion("validation", "probes_runs")
+shared = kit.companion("validation", "expectations")
+twins = kit.companion("validation", "twins")
+dataset = kit.companion("validation", "dataset")
+words = kit.companion("validation", "diagnosis").WORDS
+chi_square = kit.sibling(str(GRADERS), "chi_square")
+
+E = np.array([0.4, -0.3, 1.7, 0.2, 0.9])
+
+
+def code(diagnosis):
+    return diagnosis and diagnosis.code
+
+
+def test_every_code_that_is_named_has_words_and_every_word_is_used():
+    folder = ROOT / "exercises" / "validation"
+    sources = [*folder.glob("*.py"), *GRADERS.parent.glob("*.py")]
+    text = "".join(path.read_text() for path in sources if path.name != "diagnosis.py")
+    spoken = set(re.findall(r'"([A-Z][A-Z_]{3,})"', text))
+    others = {
+        "NOT_A_MODEL",
+        "NOT_A_RUN",
+        "CALLED_WRONGLY",
+        "NEES",
+    }  # findings that say what they are; an axis
+    assert spoken - others == set(words)
+
+
+def test_right_values_are_given_no_code():
+    assert probes.of_rmse(math.sqrt(np.mean(E**2)), E) is None
+    assert probes.of_bias(np.mean(E), np.var(E), E) is None
+    angles = np.array([3.0, -9.0, 40.0, 4.0])
+    assert probes.of_wrapped((angles + np.pi) % (2 * np.pi) - np.pi, angles) is None
+    assert probes.of_energies((E[0] - E) / abs(E[0]), -E) is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "expected"),
+    [
+        (np.mean(E**2), "ROOT_MISSING"),
+        (np.std(E, ddof=1), "MEAN_REMOVED"),
+        (math.sqrt(np.sum(E**2) / 4), "DDOF_ONE"),
+        (abs(np.mean(E)), "BIAS_FOR_RMSE"),
+        (12.3, None),
+        (math.nan, None),
+    ],
+)
+def test_a_wrong_rmse_is_recognised(wrong, expected):
+    assert code(probes.of_rmse(wrong, E)) == expected
+
+
+def test_a_bias_that_is_wrong_is_named_before_a_variance_that_follows_from_it():
+    assert code(probes.of_bias(np.median(E), np.mean(E**2), E)) == "MEDIAN_FOR_MEAN"
+    assert code(probes.of_bias(np.var(E), np.mean(E), E)) == "RETURNS_SWAPPED"
+
+
+def test_an_impulse_by_another_rule_is_no_mistake_and_the_integral_of_the_difference_is():
+    t = 0.001 * np.arange(100)
+    real, sim = shared.pulse(t, 0.02, 0.03, 100.0), shared.pulse(t, 0.04, 0.03, 100.0)
+    assert code(probes.of_forces("impulse", np.sum(np.abs(sim - real)) / np.sum(real), sim, real)) == (
+        "IMPULSE_OF_ABSOLUTE"
+    )
+    assert code(probes.of_forces("peak", np.max(sim - real) / np.max(real), sim, real)) == "PEAK_OF_ERROR"
+
+
+@pytest.mark.parametrize(
+    ("dof", "p", "printed"),
+    [(1, 0.95, 3.841), (2, 0.025, 0.0506), (20, 0.025, 9.591), (40, 0.975, 59.342), (100, 0.05, 77.929)],
+)
+def test_quantiles_of_the_chi_square_distribution_are_those_of_printed_tables(dof, p, printed):
+    assert chi_square.quantile(dof, p) == pytest.approx(printed, abs=5.1e-4)
+
+
+def test_the_spread_of_the_mean_is_that_of_many_series():
+    means = shared.correlated(5, 4000, 60, 0.8).mean(axis=1)
+    assert np.std(means) == pytest.approx(shared.spread_of_mean(60, 0.8), rel=0.05)
+
+
+def blocks(length):
+    """Ten resamples of 240 positions in blocks that start anywhere."""
+    rng = np.random.default_rng(0)
+    starts = rng.integers(0, 240 - length + 1, (10, -(-240 // length)))
+    return list((starts[:, :, None] + np.arange(length)).reshape(10, -1)[:, :240].astype(float))
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        (blocks(12), None),
+        (blocks(1), "IID_BOOTSTRAP"),
+        (blocks(4), "BLOCK_IGNORED"),
+        (blocks(60), "BLOCK_IGNORED"),
+        ([row[:12] for row in blocks(12)], "RESAMPLE_SIZE"),
+        ([np.arange(240.0)] * 10, "NOT_RESAMPLED"),
+        (blocks(12)[:1], "STATISTIC_IGNORED"),
+        ([np.arange(240.0), *blocks(12)], None),
+    ],
+    ids=["right", "single", "short", "long", "one block", "itself", "asked once", "basic interval"],
+)
+def test_resamples_are_recognised(asked, expected):
+    assert runs.of_resamples(np.arange(240.0), asked) == expected
+
+
+def folds(fitted, asked):
+    rng = np.random.default_rng(1)
+    data = [{"id": str(i), "u": rng.standard_normal(5), "y": rng.standard_normal(5)} for i in range(4)]
+    seen = runs.Folds(data)
+    for training, questions in zip(fitted, asked, strict=True):
+        model = seen.fit([data[i] for i in training])
+        for i in questions:
+            seen.predict(model, {"u": data[i]["u"]})
+    return seen
+
+
+@pytest.mark.parametrize(
+    ("fitted", "asked", "expected"),
+    [
+        ([[2, 3], [0, 1]], [[0, 1], [2, 3]], None),
+        ([[0, 1], [2, 3], [0, 1, 2, 3]], [[3, 2], [1, 0], []], None),
+        ([[0, 1, 2, 3]], [[0, 1, 2, 3]], "FITS_ONCE"),
+        ([[1, 2, 3], [0, 1]], [[0, 1], [2, 3]], "LEAKS_HELD_OUT"),
+        ([[0, 1], [2, 3]], [[0, 1], [2, 3]], "SCORES_TRAINING"),
+        ([[1, 3], [0, 2]], [[0, 2], [1, 3]], "NOT_CONTIGUOUS"),
+        ([[1, 2, 3], [0]], [[0], [1, 2, 3]], "FOLDS_UNEVEN"),
+        ([[2, 3], [0, 1]], [[0, 1], [2]], "FOLDS_UNEVEN"),
+        ([[2], [0, 1]], [[0, 1], [2, 3]], "TRAINS_ON_TOO_LITTLE"),
+        ([], [], "FOLDS_UNEVEN"),
+    ],
+)
+def test_folds_are_recognised_by_who_was_fitted_to_what(fitted, asked, expected):
+    assert folds(fitted, asked).fault(2) == expected
+
+
+def test_predict_and_fit_refuse_what_they_cannot_use():
+    seen = folds([], [])
+    with pytest.raises(kit.CheckFailed) as refused:
+        seen.predict({"model": 0}, seen.runs[0])
+    assert refused.value.finding.diagnosis == "NOT_A_MODEL"
+    with pytest.raises(kit.CheckFailed) as refused:
+        seen.fit([{"u": np.zeros(5)}])
+    assert refused.value.finding.diagnosis == "NOT_A_RUN"
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [(-0.05, "LAG_SIGN"), (0.04, "LAG_WHOLE_SAMPLES"), (2.5, "LAG_IN_SAMPLES"), (0.123, None)],
+)
+def test_a_wrong_lag_is_recognised(value, expected):
+    assert code(runs.of_lag(value, 0.05, 0.02)) == expected
+
+
+@pytest.mark.parametrize(
+    ("reasons", "expected"),
+    [
+        (["rmse", "lag"], "NOT_SORTED"),
+        (["rmse"], "SIGN_OF_LIMIT_IGNORED"),
+        (["lag"], "REASON_MISSING"),
+        (["bias", "lag", "rmse"], "REASON_TOO_MANY"),
+    ],
+)
+def test_wrong_reasons_are_recognised(reasons, expected):
+    numbers = {"bias": 0.0, "lag_s": -0.05}
+    assert code(runs.of_reasons(reasons, ["lag", "rmse"], numbers)) == expected
+
+
+def test_the_speed_of_the_cart_obeys_its_equation_of_motion():
+    run = twins.record(np.random.default_rng(3), "a", 8.0, 0.01, 0.0)
+    drive, t = run.drive, np.linspace(1.0, 2.0, 50)
+    force = np.sum(drive.amplitude * np.sin(np.multiply.outer(t, drive.omega) + drive.phase), axis=-1)
+    slope = (drive.speed(t + 1e-5) - drive.speed(t - 1e-5)) / 2e-5
+    assert np.allclose(twins.MASS * slope, force - twins.FRICTION * drive.speed(t), atol=1e-6)
+
+
+def test_the_filter_of_the_report_is_honest_only_with_the_right_noise():
+    def average(factor):
+        track = dataset.track(factor * dataset.NOISE, runs=200, seed=1)
+        return np.mean(np.einsum("rni,nij,rnj->rn", track.err, np.linalg.inv(track.P), track.err))
+
+    assert average(1.0) == pytest.approx(2.0, abs=0.1)
+    assert average(0.5) > 4.5
+    assert average(2.0) < 1.4
+
+
+def test_every_hidden_check_hides_its_numbers_in_fields():
+    """Messages and advice are literal text: nothing is formatted into them but names of arguments."""
+    allowed = {"key", "name", "task", "function", "signature"}
+    for path in [*(ROOT / "exercises" / "validation").glob("*.py"), *GRADERS.parent.glob("*.py")]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.keyword) and node.arg in ("message", "help"):
+                names = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
+                assert all(re.fullmatch("|".join([*allowed, "names"]), name) for name in names), (path, names)
+
+
+@pytest.mark.parametrize("call", [lambda f: f(1), lambda f: f(1, 2, 3), lambda f: f(1, v=2)])
+def test_a_callback_refuses_any_other_number_of_arguments(call):
+    with pytest.raises(kit.CheckFailed) as refused:
+        call(probes.callback("energy(q_i, v_i)", lambda q, v: 0.0))
+    assert refused.value.finding.diagnosis == "CALLED_WRONGLY"

@@ -1,0 +1,275 @@
+"""ROS 2 bags: what is written is what another reader finds, and what cannot be written or read says why."""
+
+from __future__ import annotations
+
+import math
+import sqlite3
+import struct
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.simulations import bags, streams
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+needs_rosbags = pytest.mark.skipif(not bags.available(), reason="the extra ros is not installed")
+
+T = np.array([0.0, 0.1, 0.25])
+IMU = streams.ImuStream(T, np.array([0.1, -0.2, 0.3]), variance=0.04)
+SCAN = streams.ScanStream(T[:2], np.array([[1.0, 2.5, 5.0], [1.5, 5.0, 0.0]]), -0.5, 0.5, 5.0, "laser")
+ODOMETRY = streams.OdometryStream(
+    T, [0.0, 1.0, 2.0], [0.0, -1.0, 0.5], [0.0, 2.0, -3.0], [0.5, 0.6, 0.7], [0.0, 0.1, 0.2]
+)
+ALL = (IMU, SCAN, ODOMETRY)
+
+
+class Cdr:
+    """Little-endian CDR, read field by field as the specification lays it out."""
+
+    def __init__(self, data: bytes) -> None:
+        assert data[:4] == b"\x00\x01\x00\x00"
+        self.data, self.at = data[4:], 0
+
+    def take(self, code: str, count: int = 1):
+        size = struct.calcsize(code)
+        self.at += -self.at % size
+        values = struct.unpack_from(f"<{count}{code}", self.data, self.at)
+        self.at += size * count
+        return values if count > 1 else values[0]
+
+    def text(self) -> str:
+        length = self.take("I")
+        raw = self.data[self.at : self.at + length]
+        self.at += length
+        return raw[:-1].decode()
+
+    def header(self) -> tuple[int, int, str]:
+        return self.take("i"), self.take("I"), self.text()
+
+
+def sqlite_messages(bag: Path) -> list[tuple[str, str, int, bytes]]:
+    with sqlite3.connect(bag / f"{bag.name}.db3") as connection:
+        rows = connection.execute(
+            "SELECT topics.name, topics.type, messages.timestamp, messages.data FROM messages"
+            " JOIN topics ON topics.id = messages.topic_id ORDER BY messages.id"
+        ).fetchall()
+    connection.close()
+    return rows
+
+
+def mcap_messages(path: Path) -> list[tuple[int, bytes]]:
+    """Log time and data of each message of an uncompressed MCAP file, by its specification."""
+    raw, found = path.read_bytes(), []
+    assert raw[:8] == raw[-8:] == b"\x89MCAP0\r\n"
+
+    def walk(data: bytes) -> None:
+        at = 0
+        while at < len(data):
+            code, length = data[at], struct.unpack_from("<Q", data, at + 1)[0]
+            body = data[at + 9 : at + 9 + length]
+            if code == 0x06:  # a chunk: start, end, size, checksum, compression, records
+                name = struct.unpack_from("<I", body, 28)[0]
+                assert name == 0, "compressed"
+                walk(body[40:])
+            elif code == 0x05:  # a message: channel, sequence, log time, publish time, data
+                found.append((struct.unpack_from("<Q", body, 6)[0], body[22:]))
+            at += 9 + length
+
+    walk(raw[8:-8])
+    return found
+
+
+@needs_rosbags
+def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_says(tmp_path):
+    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [IMU], storage="sqlite3"))
+    assert [(name, kind, stamp) for name, kind, stamp, _ in rows] == [
+        ("/imu/data_raw", "sensor_msgs/msg/Imu", stamp) for stamp in (0, 100_000_000, 250_000_000)
+    ]
+    cdr = Cdr(rows[2][3])
+    assert cdr.header() == (0, 250_000_000, "base_link")
+    assert cdr.take("d", 4) == (0.0, 0.0, 0.0, 1.0)
+    assert cdr.take("d", 9)[0] == -1.0
+    assert cdr.take("d", 3) == (0.0, 0.0, 0.3)
+    assert cdr.take("d", 9)[::4] == (bags.UNMEASURED, bags.UNMEASURED, 0.04)
+    assert cdr.take("d", 3) == (0.0, 0.0, 0.0)
+    assert cdr.take("d", 9)[0] == -1.0
+    assert cdr.at == len(cdr.data)
+
+
+@needs_rosbags
+def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(tmp_path):
+    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [SCAN], storage="sqlite3"))
+    cdr = Cdr(rows[0][3])
+    assert cdr.header() == (0, 0, "laser")
+    assert cdr.take("f", 7) == pytest.approx((-0.5, 0.5, 0.5, 0.0, 0.1, 0.0, 5.0))
+    assert cdr.take("f", cdr.take("I")) == (1.0, 2.5, math.inf)
+    assert cdr.take("I") == 0
+
+
+@needs_rosbags
+def test_an_odometry_message_holds_pose_and_twist_in_their_frames(tmp_path):
+    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [ODOMETRY], storage="sqlite3"))
+    cdr = Cdr(rows[1][3])
+    assert cdr.header() == (0, 100_000_000, "odom")
+    assert cdr.text() == "base_link"
+    assert cdr.take("d", 3) == (1.0, -1.0, 0.0)
+    assert cdr.take("d", 4) == pytest.approx((0.0, 0.0, math.sin(1.0), math.cos(1.0)))
+    assert cdr.take("d", 36)[14] == bags.PLANAR
+    assert cdr.take("d", 6) == (0.6, 0.0, 0.0, 0.0, 0.0, 0.1)
+
+
+@needs_rosbags
+def test_an_mcap_bag_holds_the_same_messages_in_order_of_time(tmp_path):
+    lite = sqlite_messages(bags.write_bag(tmp_path / "lite", ALL, storage="sqlite3"))
+    mcap = mcap_messages(bags.write_bag(tmp_path / "drive", ALL) / "drive.mcap")
+    assert mcap == [(stamp, data) for _, _, stamp, data in lite]
+    assert [stamp for stamp, _ in mcap] == sorted(stamp for stamp, _ in mcap)
+    assert len(mcap) == 8
+
+
+@needs_rosbags
+@pytest.mark.parametrize("storage", bags.STORAGES)
+def test_streams_come_back_as_they_were(tmp_path, storage):
+    imu, scan, odometry = bags.read_bag(bags.write_bag(tmp_path / "drive", ALL, storage=storage))
+    np.testing.assert_allclose(imu.t, T, atol=1e-9)
+    np.testing.assert_array_equal(imu.angular_velocity_z, IMU.angular_velocity_z)
+    assert imu.variance == 0.04
+    np.testing.assert_array_equal(scan.ranges, SCAN.ranges)
+    assert (scan.angle_min, scan.angle_increment, scan.range_max, scan.frame) == (-0.5, 0.5, 5.0, "laser")
+    for name in ("x", "y", "heading", "speed", "turn_rate"):
+        np.testing.assert_allclose(getattr(odometry, name), getattr(ODOMETRY, name), atol=1e-12)
+
+
+@needs_rosbags
+def test_headings_beyond_a_turn_come_back_within_one(tmp_path):
+    stream = streams.OdometryStream([0.0], [0.0], [0.0], [7.0], [0.0], [0.0])
+    (back,) = bags.read_bag(bags.write_bag(tmp_path / "drive", [stream]))
+    assert back.heading[0] == pytest.approx(7.0 - 2 * math.pi)
+
+
+@needs_rosbags
+@pytest.mark.parametrize("storage", bags.STORAGES)
+def test_the_same_streams_under_the_same_name_are_the_same_bytes(tmp_path, storage):
+    first = bags.write_bag(tmp_path / "a" / "drive", ALL, storage=storage)
+    second = bags.write_bag(tmp_path / "b" / "drive", reversed(ALL), storage=storage)
+    names = sorted(file.name for file in first.iterdir())
+    assert names == sorted(file.name for file in second.iterdir())
+    for name in names:
+        assert (first / name).read_bytes() == (second / name).read_bytes(), name
+
+
+@needs_rosbags
+def test_a_bag_is_never_written_over_another(tmp_path):
+    bags.write_bag(tmp_path / "drive", [IMU])
+    before = (tmp_path / "drive" / "drive.mcap").read_bytes()
+    with pytest.raises(UsageError, match="exists already"):
+        bags.write_bag(tmp_path / "drive", [SCAN])
+    assert (tmp_path / "drive" / "drive.mcap").read_bytes() == before
+
+
+@needs_rosbags
+def test_a_write_that_fails_leaves_nothing_behind(tmp_path):
+    wordy = streams.ImuStream([0.0], [0.0], frame=None)  # a frame that no message can hold
+    with pytest.raises(AttributeError):
+        bags.write_bag(tmp_path / "drive", [wordy])
+    assert list(tmp_path.iterdir()) == []
+
+
+@needs_rosbags
+@pytest.mark.parametrize("given", [[], [IMU, IMU]])
+def test_a_bag_takes_one_stream_of_each_kind(tmp_path, given):
+    with pytest.raises(UsageError, match="one stream of each kind"):
+        bags.write_bag(tmp_path / "drive", given)
+
+
+@needs_rosbags
+def test_a_storage_that_does_not_exist_is_named(tmp_path):
+    with pytest.raises(UsageError, match="'tape'"):
+        bags.write_bag(tmp_path / "drive", [IMU], storage="tape")
+
+
+@needs_rosbags
+def test_a_folder_that_is_no_bag_is_not_found(tmp_path):
+    with pytest.raises(NotFoundError, match=r"metadata\.yaml"):
+        bags.read_bag(tmp_path)
+
+
+@needs_rosbags
+@pytest.mark.parametrize("storage", bags.STORAGES)
+@pytest.mark.parametrize("keep", [0, 20, 400])
+def test_a_damaged_bag_says_so(tmp_path, storage, keep):
+    bag = bags.write_bag(tmp_path / "drive", ALL, storage=storage)
+    (file,) = (file for file in bag.iterdir() if file.suffix != ".yaml")
+    file.write_bytes(file.read_bytes()[:keep])
+    with pytest.raises(IntegrityError, match="cannot be read as a bag"):
+        bags.read_bag(bag)
+
+
+@needs_rosbags
+def test_a_bag_of_other_topics_is_refused(tmp_path):
+    from rosbags.rosbag2 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(tmp_path / "other", version=9) as writer:
+        connection = writer.add_connection("/chatter", "std_msgs/msg/String", typestore=store)
+        message = store.types["std_msgs/msg/String"]("hello")
+        writer.write(connection, 0, store.serialize_cdr(message, "std_msgs/msg/String"))
+    with pytest.raises(UsageError, match="none of the topics"):
+        bags.read_bag(tmp_path / "other")
+
+
+def test_without_rosbags_the_error_gives_the_command_that_installs_it(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rosbags", None)
+    for call in (lambda: bags.write_bag(tmp_path / "drive", [IMU]), lambda: bags.read_bag(tmp_path)):
+        with pytest.raises(MissingCapabilityError) as caught:
+            call()
+        assert 'pip install "physics-sim-course[ros]"' in caught.value.help
+
+
+def test_importing_bags_does_not_import_rosbags():
+    code = "import sys, course.simulations.bags; sys.exit('rosbags' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_plain_data_become_streams_with_float_arrays():
+    plain = {
+        "scan": {
+            "t": [0, 1],
+            "ranges": [[1, 2], [3, 4]],
+            "angle_min": -1,
+            "angle_increment": 2,
+            "range_max": 5,
+        },
+        "imu": {"t": [0, 1], "angular_velocity_z": [1, 2]},
+    }
+    scan, imu = streams.streams_from(plain)
+    assert isinstance(scan, streams.ScanStream)
+    assert isinstance(imu, streams.ImuStream)
+    assert scan.ranges.dtype == imu.t.dtype == float
+    assert isinstance(scan.range_max, float)
+
+
+@pytest.mark.parametrize(
+    ("plain", "words"),
+    [
+        ({"sonar": {}}, "no stream of kind 'sonar'"),
+        ({"imu": {"t": [0.0], "angular_velocity_z": [0.0], "colour": 1}}, "has no colour"),
+        ({"imu": {"t": [0.0]}}, "angular_velocity_z"),
+        ({"imu": {"t": [0.0, 1.0], "angular_velocity_z": [0.0]}}, "2 times and 1 of"),
+        ({"imu": {"t": [1.0, 0.0], "angular_velocity_z": [0.0, 0.0]}}, "ordered"),
+        ({"imu": {"t": [-1.0], "angular_velocity_z": [0.0]}}, "from 0 on"),
+        ({"imu": {"t": [1e10], "angular_velocity_z": [0.0]}}, "from 0 on"),
+        ({"imu": {"t": [math.nan], "angular_velocity_z": [0.0]}}, "not finite"),
+        ({"imu": {"t": [0.0], "angular_velocity_z": [[0.0]]}}, "2 dimensions, not 1"),
+    ],
+)
+def test_plain_data_that_are_no_stream_say_why(plain, words):
+    with pytest.raises(UsageError, match=words):
+        streams.streams_from(plain)

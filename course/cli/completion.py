@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-__all__ = ["exercise_ids", "lesson_ids", "simulation_ids"]
+__all__ = [
+    "engine_ids",
+    "exercise_ids",
+    "lesson_ids",
+    "notebook_ids",
+    "scenario_ids",
+    "scene_ids",
+    "simulation_ids",
+]
 
 
 def exercise_ids(incomplete: str) -> list[str]:
@@ -35,3 +43,31 @@ def simulation_ids(incomplete: str) -> list[str]:
     from course.simulations.registry import SIMULATIONS
 
     return sorted(name for name in SIMULATIONS if name.startswith(incomplete))
+
+
+def engine_ids(incomplete: str) -> list[str]:
+    """Physics engines whose id begins with what was typed."""
+    from course.engines.registry import ENGINES
+
+    return sorted(name for name in ENGINES if name.startswith(incomplete))
+
+
+def scenario_ids(incomplete: str) -> list[str]:
+    """Scenarios of the engine comparison whose id begins with what was typed."""
+    from course.engines.scenarios import SCENARIOS
+
+    return sorted(name for name in SCENARIOS if name.startswith(incomplete))
+
+
+def scene_ids(incomplete: str) -> list[str]:
+    """Scenes of the sandbox whose id begins with what was typed; lists a folder."""
+    from pathlib import Path
+
+    folder = Path(__file__).parents[1] / "sandbox" / "scenes"
+    return sorted(path.stem for path in folder.glob("*.toml") if path.stem.startswith(incomplete))
+
+
+def notebook_ids(incomplete: str) -> list[str]:
+    """Everything there is a notebook of whose id begins with what was typed."""
+    extra = [name for name in ("quiz", "sandbox") if name.startswith(incomplete)]
+    return sorted({*exercise_ids(incomplete), *lesson_ids(incomplete), *extra})

@@ -109,7 +109,7 @@ def packages(root: Path) -> Iterable[Package]:
             continue
         extra = _EXTRA.search(parsed["marker"] or "")
         group = extra["name"] if extra else ""
-        if group in _NOT_FOR_USERS:
+        if group in _NOT_FOR_USERS or not _applies(parsed["marker"] or ""):
             continue
         name, wanted = parsed["name"], parsed["range"].strip(" ()")
         try:
@@ -123,6 +123,22 @@ def packages(root: Path) -> Iterable[Package]:
             ok=installed is not None and _satisfies(installed, wanted),
             group=group,
         )
+
+
+def _applies(marker: str) -> bool:
+    """False if a requirement is not meant for this Python or this machine: no command installs it here."""
+    rest = _EXTRA.sub("", marker)
+    rest = re.sub(r"^\s*and\s+|\s+and\s*$", "", rest.strip(" ;")).strip()
+    if not rest:
+        return True
+    try:
+        from packaging.markers import InvalidMarker, Marker
+    except ImportError:
+        return True
+    try:
+        return Marker(rest).evaluate()
+    except InvalidMarker:
+        return True
 
 
 def _requirements(root: Path) -> list[str]:

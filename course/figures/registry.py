@@ -46,6 +46,8 @@ FIGURES: dict[str, tuple[str, str]] = {
     "how-an-engine-works-rotation": ("how_an_engine_works", "turning_over"),
     "why-simulate-standing": ("why_simulate", "standing"),
     "engines-settings": ("engines", "settings"),
+    "engines-speed": ("engine_comparison", "speed"),
+    "engines-steps": ("engine_comparison", "steps"),
     "twins-following": ("twins", "following"),
     "gap-settling": ("sim_to_real", "settling"),
     "summary-two-questions": ("summary", "two_questions"),

@@ -1,0 +1,89 @@
+"""Remembers measurements, so that asking again is quick.
+
+A measurement is kept under everything it depends on: the engine's version, the code that measured, the
+machine, the scenario and how it was run. What failed is not kept: it may go better next time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import hashlib
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from course.engines.results import Row
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.engines.machine import Machine
+
+__all__ = ["Cache", "cache_folder", "code_digest"]
+
+
+def cache_folder() -> Path:
+    """Where this system keeps what can be made again; COURSE_CACHE names another folder."""
+    if own := os.environ.get("COURSE_CACHE"):
+        return Path(own) / "engines"
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "physics-sim-course" / "engines"
+
+
+@functools.cache
+def code_digest() -> str:
+    """A fingerprint of the code that builds and measures: a change of it makes old numbers strangers."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+class Cache:
+    """Rows in files of their own, so that two runs at once cannot damage each other's.
+
+    Args:
+        folder: made when it is needed.
+        machine: part of every key.
+    """
+
+    def __init__(self, folder: Path, machine: Machine) -> None:
+        self._folder = folder
+        self._machine = machine
+
+    def get(self, key: Mapping[str, Any]) -> Row | None:
+        """What is kept under a key; None if nothing is, or it cannot be read."""
+        try:
+            row = msgspec.json.decode(self._path(key).read_bytes(), type=Row)
+        except (OSError, msgspec.DecodeError):
+            return None
+        return msgspec.structs.replace(row, origin="cached")
+
+    def put(self, key: Mapping[str, Any], row: Row) -> None:
+        """Keep a row, if it has a value; where nothing can be written nothing is kept."""
+        if not row.ok:
+            return
+        path = self._path(key)
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile("wb", dir=path.parent, delete=False) as file:
+                file.write(msgspec.json.encode(row))
+            Path(file.name).replace(path)
+
+    def _path(self, key: Mapping[str, Any]) -> Path:
+        whole = {**key, "code": code_digest(), "machine": str(self._machine)}
+        name = hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()[:32]
+        return self._folder / f"{name}.json"

@@ -1,0 +1,60 @@
+"""One measurement that ships with the course, for those who lack an engine; always shown as what it is."""
+
+from __future__ import annotations
+
+import functools
+from importlib.resources import files
+
+import msgspec
+
+from course.engines.results import Comparison, Reference
+
+__all__ = ["FORMAT_VERSION", "load", "made_of"]
+
+FORMAT_VERSION = 1
+_RATES = ("steps_per_second", "slowest", "fastest", "pymunk_steps_per_second")
+
+
+@functools.cache
+def load() -> Reference:
+    """The reference; without rows where it is missing or from another version of the course."""
+    from course.engines.machine import Machine
+
+    path = files("course").joinpath("engines", "reference.json")
+    try:
+        found = msgspec.json.decode(path.read_bytes(), type=Reference)
+    except (OSError, msgspec.DecodeError):
+        return Reference(format_version=FORMAT_VERSION, measured="", machine=Machine("", "", 0, ""), rows=())
+    return found
+
+
+def made_of(comparison: Comparison, measured: str) -> bytes:
+    """A comparison as the file that ``load`` reads: values only, and neither repeated words nor failures.
+
+    Rates of another machine on another day say nothing here, so of speed only the ratio to pymunk is kept.
+
+    Args:
+        measured: the day, YYYY-MM-DD.
+    """
+    rows = tuple(
+        msgspec.structs.replace(row, origin="reference", why=(), details=_rounded(row.details))
+        for row in comparison.rows
+        if row.ok and row.origin != "reference"
+    )
+    reference = Reference(
+        format_version=FORMAT_VERSION, measured=measured, machine=comparison.machine, rows=rows
+    )
+    return msgspec.json.format(msgspec.json.encode(reference), indent=1) + b"\n"
+
+
+def _rounded(details: dict[str, object]) -> dict[str, object]:
+    """Details with numbers of nine digits: enough to tell two algorithms apart."""
+    return {name: _round(value) for name, value in details.items() if name not in _RATES}
+
+
+def _round(value: object) -> object:
+    if isinstance(value, float):
+        return float(f"{value:.9g}")
+    if isinstance(value, list | tuple):
+        return [_round(item) for item in value]
+    return value

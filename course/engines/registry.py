@@ -1,0 +1,155 @@
+"""Which engines there are, and which of them this machine has."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from course.engines.extras import Requirement, requirement_of
+from course.errors import NotFoundError
+
+if TYPE_CHECKING:
+    from course.engines.base import Adapter
+
+__all__ = ["ENGINES", "Availability", "EngineInfo", "availability", "get", "load"]
+
+
+@dataclass(frozen=True, slots=True)
+class EngineInfo:
+    """One engine.
+
+    Attributes:
+        id: what ``--engine`` takes; the adapter is the module of this name in ``course.engines``.
+        name: on the screen.
+        package: what is installed to have it.
+        extra: the course's extra that brings it; empty for what the course needs anyway.
+        licence: of the engine itself, an SPDX expression.
+        about: what kind of engine it is, in half a line.
+        planar: it knows two dimensions only.
+        single: it computes in single precision, so its errors stop shrinking at about 1e-6.
+    """
+
+    id: str
+    name: str
+    package: str
+    extra: str
+    licence: str
+    about: str
+    planar: bool = False
+    single: bool = False
+
+
+ENGINES: dict[str, EngineInfo] = {
+    one.id: one
+    for one in (
+        EngineInfo(
+            "pymunk", "pymunk (2-D)", "pymunk", "", "MIT", "Chipmunk: games in the plane", planar=True
+        ),
+        EngineInfo(
+            "mujoco", "MuJoCo", "mujoco", "engines", "Apache-2.0", "joint coordinates, soft contacts: control"
+        ),
+        EngineInfo(
+            "ode",
+            "ODE",
+            "panda3d",
+            "engines",
+            "LGPL-2.1-or-later OR BSD-3-Clause",
+            "joints as constraints: vehicles, creatures",
+            single=True,
+        ),
+        EngineInfo(
+            "bullet",
+            "Bullet 2.84",
+            "panda3d",
+            "engines",
+            "Zlib",
+            "joints as constraints: games",
+            single=True,
+        ),
+        EngineInfo(
+            "rapier",
+            "Rapier",
+            "rapier3d",
+            "engines",
+            "Apache-2.0",
+            "joints as constraints, substeps: games",
+            single=True,
+        ),
+        EngineInfo(
+            "physx",
+            "PhysX",
+            "sapien",
+            "physx",
+            "BSD-3-Clause",
+            "joint coordinates for robots: games, Isaac",
+            single=True,
+        ),
+        EngineInfo(
+            "pybullet", "Bullet 3", "pybullet", "bullet", "Zlib", "joint coordinates for robots: learning"
+        ),
+        EngineInfo(
+            "dart", "DART", "dartpy", "dart", "BSD-2-Clause", "joint coordinates, exact contacts: Gazebo Sim"
+        ),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Availability:
+    """What this machine has of one engine.
+
+    Attributes:
+        version: of the package; None if it is not installed.
+        missing: why not; empty if it is.
+        command: what installs it; empty where nothing does, or nothing is missing.
+    """
+
+    version: str | None
+    missing: str = ""
+    command: str = ""
+
+    @property
+    def installed(self) -> bool:
+        """True if there is something to try."""
+        return self.version is not None
+
+
+def availability(info: EngineInfo) -> Availability:
+    """Whether an engine's package is installed, without importing it."""
+    try:
+        return Availability(importlib.metadata.version(info.package))
+    except importlib.metadata.PackageNotFoundError:
+        pass
+    wanted: Requirement = requirement_of(info.package)
+    if not wanted.applies:
+        where = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
+        return Availability(None, f"{info.package} has no wheel for {where}")
+    return Availability(None, "not installed", wanted.command)
+
+
+def get(engine_id: str) -> EngineInfo:
+    """The engine of this id.
+
+    Raises:
+        NotFoundError: there is none.
+    """
+    if engine_id in ENGINES:
+        return ENGINES[engine_id]
+    raise NotFoundError(
+        f"There is no engine {engine_id!r}.",
+        help=f"The engines are {', '.join(ENGINES)}.",
+        code="engine_not_found",
+    )
+
+
+def load(engine_id: str) -> Adapter:
+    """Import an engine: only in a process that may die of it.
+
+    Raises:
+        ImportError: it is not installed, or a library that it needs is not.
+    """
+    from importlib import import_module
+
+    return cast("Adapter", import_module(f"course.engines.{get(engine_id).id}").ADAPTER)

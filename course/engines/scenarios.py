@@ -1,0 +1,254 @@
+"""Small tests whose right answer is known, the same for every engine.
+
+Each one builds its scenes, runs them and boils the outcome down to one number beside its truth. A scene names
+the friction and the restitution that are to act; what an engine has to be told is the adapter's matter.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+from course.engines import scenarios_contact as contact
+from course.engines import scenarios_motion as motion
+from course.errors import NotFoundError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from course.engines.base import Scene, World
+
+    Build = Callable[[Scene], World]
+
+__all__ = ["BOXES", "DT", "SCENARIOS", "Outcome", "Scenario", "get"]
+
+#: The step that comparisons use unless told otherwise, s.
+DT = 1.0 / 240.0
+#: The scenario that measures speed; everything else measures accuracy.
+BOXES = "boxes"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one run gave: the number that is compared, and what else was seen on the way."""
+
+    value: float
+    details: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """One test.
+
+    Attributes:
+        id, title: what it is called.
+        question: to be answered before the numbers are seen.
+        quantity: what ``value`` is.
+        unit: of ``value`` and ``truth``; "%" and "mm" are meant for reading.
+        truth: the right value; None where there is none (a speed), inf for "whatever comes".
+        source: where the truth comes from.
+        digits: decimals worth showing.
+        measure: given how to build a scene, the step (s) and whether it should be quick, gives an Outcome.
+        planar: an engine in the plane can do it.
+        converges: its error against the step is worth a curve, because nothing but the integrator is in it.
+        better: the value nearer the truth is better, or the larger one.
+    """
+
+    id: str
+    title: str
+    question: str
+    quantity: str
+    unit: str
+    truth: float | None
+    source: str
+    digits: int
+    measure: Callable[[Build, float, bool], tuple[float, dict[str, Any]]]
+    planar: bool = True
+    converges: bool = False
+    better: Literal["near", "large"] = "near"
+
+    def run(self, build: Build, dt: float, quick: bool = False) -> Outcome:
+        """Measure once.
+
+        Raises:
+            EngineDivergedError: the engine gave something that is not a number.
+            NotApplicableError: the engine has no word for what the scene asks.
+        """
+        return Outcome(*self.measure(build, dt, quick))
+
+    def error(self, value: float) -> float | None:
+        """How far a value is from the truth, in the scenario's unit; None where nothing is known."""
+        if self.truth is None or not math.isfinite(self.truth):
+            return None
+        return value - self.truth
+
+
+SCENARIOS: dict[str, Scenario] = {
+    one.id: one
+    for one in (
+        Scenario(
+            "free-fall",
+            "A free fall",
+            "Gravity alone, nothing to touch. Which engines fall too far, which too short, and by how much?",
+            "distance, too far by",
+            "%",
+            0.0,
+            "g t² / 2",
+            3,
+            motion.free_fall,
+            converges=True,
+        ),
+        Scenario(
+            "pendulum",
+            "A pendulum on a hinge",
+            "One ball on a rod swings from the horizontal for two seconds. How far does it stray?",
+            "largest distance from the true path, in per cent of the rod",
+            "%",
+            0.0,
+            "the pendulum's equation, solved with RK4 at a step of at most 1 ms",
+            4,
+            motion.pendulum,
+            converges=True,
+        ),
+        Scenario(
+            "double-pendulum",
+            "A double pendulum's energy",
+            "Two hinges, no friction, ten seconds. How much of the energy is left?",
+            "largest change of energy within 10 s, median over the starts",
+            "%",
+            0.0,
+            "conservation of energy",
+            3,
+            motion.double_pendulum,
+        ),
+        Scenario(
+            "clash",
+            "An elastic collision of masses 1 and 3",
+            "The light ball meets the resting heavy one at 1 m/s. Is the energy still there afterwards?",
+            "change of kinetic energy",
+            "%",
+            0.0,
+            "restitution 1 conserves kinetic energy",
+            3,
+            contact.clash,
+        ),
+        Scenario(
+            "bounce",
+            "A bounce",
+            "A ball falls from 1 m on a floor; restitution 0.5. How high does it come back?",
+            "height of the rebound",
+            "m",
+            0.25,
+            "e² h",
+            4,
+            contact.bounce,
+        ),
+        Scenario(
+            "small-drop",
+            "A bounce from 2 cm",
+            "The same ball, dropped from two centimetres. Does it still bounce?",
+            "height of the rebound",
+            "mm",
+            5.0,
+            "e² h",
+            2,
+            contact.small_drop,
+        ),
+        Scenario(
+            "slide",
+            "A box slides down a slope",
+            "30 degrees, friction 0.3. Is the acceleration right?",
+            "acceleration, too large by",
+            "%",
+            0.0,
+            "g (sin a - mu cos a)",
+            3,
+            contact.slide,
+        ),
+        Scenario(
+            "stick",
+            "A box sticks to a slope",
+            "20 degrees, friction 0.5: it must stay. Does it creep?",
+            "way down the slope in 2 s",
+            "mm",
+            0.0,
+            "tan a < mu",
+            3,
+            contact.stick,
+        ),
+        Scenario(
+            "diagonal",
+            "Friction along the diagonal",
+            "A box is pushed until it slips, along an edge and along the diagonal. Cone or pyramid?",
+            "slip force along the diagonal over that along an edge",
+            "1",
+            1.0,
+            "Coulomb's cone has no preferred direction",
+            3,
+            contact.diagonal,
+            planar=False,
+        ),
+        Scenario(
+            "stack",
+            "A stack of ten boxes",
+            "Nothing should move. What does?",
+            "largest movement of any box",
+            "mm",
+            0.0,
+            "it stands in equilibrium",
+            2,
+            contact.stack,
+        ),
+        Scenario(
+            "mass-ratio",
+            "A tonne on a kilogram",
+            "A cube of 1000 kg on one of 1 kg. Does the small one hold?",
+            "largest movement of either",
+            "mm",
+            0.0,
+            "it stands in equilibrium",
+            2,
+            contact.mass_ratio,
+        ),
+        Scenario(
+            "thin-wall",
+            "A thin wall and a fast ball",
+            "A ball of 10 cm flies at a wall of 2 cm, faster each time. When does it get through?",
+            "fastest ball that was stopped; every slower one was as well",
+            "m/s",
+            math.inf,
+            "solid bodies do not pass through each other",
+            0,
+            contact.thin_wall,
+            better="large",
+        ),
+        Scenario(
+            BOXES,
+            "A hundred boxes, for speed",
+            "Columns of boxes in contact. How many steps a second, and how many times pymunk's rate is that?",
+            "rate, as a multiple of pymunk's in the same run",
+            "x",
+            None,
+            "",
+            2,
+            contact.boxes,
+            better="large",
+        ),
+    )
+}
+
+
+def get(scenario_id: str) -> Scenario:
+    """The scenario of this name.
+
+    Raises:
+        NotFoundError: there is none.
+    """
+    if scenario_id in SCENARIOS:
+        return SCENARIOS[scenario_id]
+    raise NotFoundError(
+        f"There is no scenario {scenario_id!r}.",
+        help=f"The scenarios are {', '.join(SCENARIOS)}.",
+        code="scenario_not_found",
+    )

@@ -1,0 +1,109 @@
+"""The process that one engine runs in: ``python -P -m course.engines.worker ENGINE``.
+
+It answers each line of JSON on its standard input with one on its standard output. What an engine itself
+prints goes to standard error, where the parent finds the last words of one that died.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from course.engines.base import AS_IT_COMES, EngineDivergedError, NotApplicableError
+from course.errors import InternalError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.engines.base import Adapter, Scene, World
+
+__all__ = ["Desk", "main"]
+
+
+class Desk:
+    """Does what it is asked with one engine."""
+
+    def __init__(self, adapter: Adapter) -> None:
+        self._adapter = adapter
+        self._boxes: World | None = None
+
+    def answer(self, job: Mapping[str, Any]) -> dict[str, Any]:
+        """The reply to one job; a failure is a reply too."""
+        try:
+            return self._do(job)
+        except EngineDivergedError as error:
+            return {"status": "diverged", "message": error.message}
+        except NotApplicableError as error:
+            return {"status": "not_applicable", "message": error.message}
+        except Exception as error:  # noqa: BLE001 - whatever an engine raises becomes a row that says so
+            return {"status": "failed", "message": f"{type(error).__name__}: {error}"}
+
+    def _do(self, job: Mapping[str, Any]) -> dict[str, Any]:
+        from course.engines.scenarios import get
+
+        if job["do"] == "chunk":
+            return self._chunk(job["steps"])
+        scenario = get(job["scenario"])
+        tuning = self._adapter.tuning(scenario.id) if job["setting"] == "tuned" else AS_IT_COMES
+        known = {"options": dict(tuning.options), "why": list(tuning.why)}
+        if job["do"] == "options":
+            return {"status": "ok", **known}
+
+        def build(scene: Scene) -> World:
+            return self._adapter.build(scene, tuning.options)
+
+        if job["do"] == "boxes":
+            from course.engines.scenarios_contact import boxes_scene
+
+            self._boxes = build(boxes_scene(job["dt"]))
+            self._boxes.step(round(0.25 / job["dt"]))
+            return {"status": "ok", "contacts": self._boxes.contacts()[0], **known}
+        outcome = scenario.run(build, job["dt"], job["quick"])
+        return {"status": "ok", "value": float(outcome.value), "details": outcome.details, **known}
+
+    def _chunk(self, steps: int) -> dict[str, Any]:
+        if self._boxes is None:
+            raise InternalError("A stretch of the boxes was asked for before the boxes.")
+        # The processor's time, not the clock's: what one core would take that had nothing else to do.
+        started = time.process_time()
+        self._boxes.step(steps)
+        seconds = max(time.process_time() - started, 1e-6)
+        self._boxes.motion().checked()
+        return {"status": "ok", "seconds": seconds}
+
+
+def main(arguments: list[str]) -> int:
+    """Serve until standard input ends."""
+    replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+
+    def say(reply: Mapping[str, Any]) -> None:
+        replies.write(json.dumps(reply) + "\n")
+        replies.flush()
+
+    try:
+        from course.engines.registry import load
+
+        desk = Desk(load(arguments[0]))
+    except Exception as error:  # noqa: BLE001 - an extension module may raise anything when it cannot load
+        say({"status": "unavailable", "message": f"{type(error).__name__}: {error}"})
+        return 0
+    say({"status": "ok"})
+    for line in sys.stdin:
+        job = json.loads(line)
+        if hasattr(signal, "alarm"):
+            # Nobody may be left to end this process: the parent can be gone by the time an engine hangs.
+            signal.alarm(int(job["seconds"]) + 5)
+        say(desk.answer(job))
+    return 0
+
+
+if __name__ == "__main__":
+    code = main(sys.argv[1:])
+    # Engines that crash while they are torn down have already said everything.
+    sys.stderr.flush()
+    os._exit(code)

@@ -1,0 +1,243 @@
+"""``course engines``: what is here, what is missing, and a comparison that says where each number is from."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+
+import pytest
+
+from course.engines import compare as comparing
+from course.engines import reference
+from course.engines.registry import ENGINES, Availability
+from course.engines.scenarios import SCENARIOS
+
+MISSING = "pip install 'mujoco>=4.0'"
+
+
+@pytest.fixture
+def bare(course, monkeypatch, tmp_path):
+    """The command line on a machine without any extra: pymunk is there, and nothing else."""
+    monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
+
+    def available(info):
+        if info.id == "pymunk":
+            return Availability("7.3.1")
+        if info.id == "pybullet":
+            return Availability(None, "pybullet has no wheel for Python 3.13 on Linux x86_64")
+        return Availability(None, "not installed", MISSING)
+
+    monkeypatch.setattr(comparing, "availability", available)
+    return course
+
+
+def test_list_names_engines_with_licence_and_the_command_that_installs_them(bare):
+    ran = bare("engines", "list", "--plain")
+    assert ran.code == 0
+    assert "pymunk: pymunk (2-D); pymunk 7.3.1; MIT; " in ran.out
+    assert "mujoco: MuJoCo; not installed; Apache-2.0; " in ran.out
+    assert f"not installed: {MISSING}" in ran.out
+    assert "pybullet has no wheel for Python 3.13 on Linux x86_64." in ran.out
+    for name in SCENARIOS:
+        assert re.search(rf"^\s+{name}: ", ran.out, re.MULTILINE)
+
+
+def test_list_as_json_is_typed(bare):
+    body = bare("engines", "list", "--json").json
+    assert body["schema"] == "course.engines-list/1"
+    engines = {engine["id"]: engine for engine in body["engines"]}
+    assert list(engines) == list(ENGINES)
+    assert engines["pymunk"]["usable"]
+    assert (engines["mujoco"]["version"], engines["mujoco"]["command"]) == (None, MISSING)
+    wall = next(scenario for scenario in body["scenarios"] if scenario["id"] == "thin-wall")
+    assert wall["truth"] == "inf"
+
+
+def test_without_extras_pymunk_is_measured_and_the_rest_is_labelled_reference(bare):
+    ran = bare("engines", "compare", "--scenario", "bounce", "--plain")
+    assert ran.code == 0
+    assert re.search(r"Truth: 0.25 m; Engine: pymunk \(2-D\); As it comes: 0.2505 m", ran.out)
+    assert re.search(r"Engine: MuJoCo, reference; As it comes: 0.0000 m; Well set: 0.2\d+ m", ran.out)
+    assert f"MuJoCo: not installed: {MISSING}" in ran.out
+    assert f"Rows marked reference were not measured here: {reference.load().label}." in ran.out
+    assert not re.search(r"reference; .*best", ran.out)
+
+
+def test_the_rows_of_a_scenario_say_the_best_in_words(bare, monkeypatch):
+    monkeypatch.setattr(comparing, "availability", lambda info: Availability("1"))
+    replies = {"pymunk": -0.5, "mujoco": 0.25, "ode": 3.0}
+
+    class Stand:
+        def __init__(self, engine):
+            self.engine = engine
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def ask(self, job, seconds):
+            if self.engine == "dart":
+                return {"status": "crash", "message": "It was ended by SIGABRT."}
+            tuned = job["setting"] == "tuned"
+            value = replies.get(self.engine, 5.0) + (0.1 if tuned else 0.0)
+            return {
+                "status": "ok",
+                "value": value,
+                "details": {},
+                "options": {"a": 1} if tuned else {},
+                "why": ["b"] if tuned else [],
+            }
+
+    monkeypatch.setattr(comparing, "EngineProcess", Stand)
+    ran = bare("engines", "compare", "--scenario", "clash", "--plain")
+    assert ran.code == 0
+    assert "Engine: MuJoCo; As it comes: +0.250 % best; Well set: +0.350 % best\n" in ran.out
+    assert "Engine: pymunk (2-D); As it comes: -0.500 %; Well set: -0.400 %\n" in ran.out
+    assert "Engine: DART; As it comes: crashed" in ran.out
+    assert "DART crashed in clash (default): It was ended by SIGABRT." in ran.out
+
+
+def test_nothing_that_can_run_is_exit_code_4_with_the_reference_shown(bare):
+    ran = bare("engines", "compare", "--engine", "mujoco", "--scenario", "bounce", "--plain")
+    assert ran.code == 4
+    assert "MuJoCo, reference" in ran.out
+    assert "No engine could be run on this machine." in ran.out
+    body = bare("engines", "compare", "--engine", "mujoco", "--scenario", "bounce", "--json").json
+    assert (body["schema"], body["ok"], body["exit_code"]) == ("course.engines/1", False, 4)
+
+
+def test_compare_as_json_holds_every_number_and_where_it_is_from(bare):
+    words = (
+        "engines",
+        "compare",
+        "--scenario",
+        "bounce",
+        "--engine",
+        "pymunk",
+        "--engine",
+        "mujoco",
+        "--json",
+    )
+    body = bare(*words).json
+    rows = body["rows"]
+    assert [(row["engine"], row["origin"], row["status"]) for row in rows] == [
+        ("pymunk", "measured", "ok"),
+        ("pymunk", "measured", "ok"),
+        ("mujoco", "measured", "not_installed"),
+        ("mujoco", "measured", "not_installed"),
+        ("mujoco", "reference", "ok"),
+        ("mujoco", "reference", "ok"),
+    ]
+    assert rows[0]["truth"] == 0.25
+    assert rows[0]["error"] == pytest.approx(rows[0]["value"] - 0.25)
+    assert rows[1]["options"] == {"collision_slop": 1e-4}
+    assert len(rows[1]["why"]) == 1
+    assert body["reference"]["measured"] == reference.load().measured
+    assert bare(*words).json["rows"][0]["origin"] == "cached"
+    assert bare(*words, "--fresh").json["rows"][0]["origin"] == "measured"
+
+
+def test_steps_are_taken_as_numbers_or_fractions(bare):
+    words = ("engines", "compare", "--engine", "pymunk", "--scenario", "free-fall")
+    body = bare(*words, "--dt", "1/100", "--dt", "0.005", "--json").json
+    assert sorted({row["dt"] for row in body["rows"]}) == [0.005, 0.01]
+    assert "Step: 1/200 s" in bare(*words, "--dt", "1/100", "--dt", "0.005", "--plain").out
+
+
+@pytest.mark.parametrize("step", ["0", "-1", "1/0", "nan", "tea", "1/10", "1e-9", "1/2/3"])
+def test_a_step_that_is_none_is_a_usage_error(bare, step):
+    ran = bare("engines", "compare", f"--dt={step}", "--json")
+    assert ran.code == 2
+    assert ran.json["error"]["code"] == "bad_step"
+
+
+@pytest.mark.parametrize(
+    ("option", "word", "code"),
+    [("--engine", "newton", "engine_not_found"), ("--scenario", "tea", "scenario_not_found")],
+)
+def test_unknown_names_exit_with_5(bare, option, word, code):
+    ran = bare("engines", "compare", option, word, "--json")
+    assert ran.code == 5
+    assert ran.json["error"]["code"] == code
+
+
+def test_csv_has_a_line_for_every_row_and_every_digit(bare, tmp_path):
+    words = ("engines", "compare", "--engine", "pymunk", "--scenario", "thin-wall", "--scenario", "bounce")
+    ran = bare(*words, "--csv", "all.csv", "--json")
+    with (tmp_path / "all.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(ran.json["rows"]) == 4
+    assert float(rows[0]["value"]) == ran.json["rows"][0]["value"]
+    assert {row["truth"] for row in rows} == {"0.25", "inf"}
+
+
+def test_plot_writes_what_the_rows_suffice_for_and_says_what_they_do_not(bare, tmp_path):
+    words = ("engines", "compare", "--engine", "pymunk", "--quick")
+    ran = bare(*words, "--scenario", "free-fall", "--plot", "f.svg", "--json")
+    assert [plot["path"] for plot in ran.json["plots"]] == [str(tmp_path / "f-steps.svg")]
+    assert (tmp_path / "f-steps.svg").read_bytes().startswith(b"<?xml")
+    ran = bare(*words, "--scenario", "bounce", "--plot", "g.png", "--plain")
+    assert ran.code == 0
+    assert "No figure: " in ran.out
+    assert not list(tmp_path.glob("g*"))
+
+
+def test_a_file_of_the_wrong_kind_is_refused_before_anything_is_measured(bare, monkeypatch):
+    monkeypatch.setattr(comparing, "compare", lambda *_: pytest.fail("measured"))
+    assert bare("engines", "compare", "--plot", "f.gif").code == 2
+    assert bare("engines", "compare", "--csv", "f.txt").code == 2
+
+
+def test_repetitions_show_their_spread_only_where_there_is_one(bare):
+    ran = bare("engines", "compare", "--engine", "pymunk", "--scenario", "bounce", "--repeat", "2", "--plain")
+    assert "±" not in ran.out
+    assert bare("engines", "compare", "--repeat", "0").code == 2
+
+
+@pytest.mark.parametrize("columns", [60, 80, 120])
+def test_no_line_is_wider_than_the_window(bare, monkeypatch, columns):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+    out = bare("engines", "compare", "--scenario", "bounce", "--scenario", "mass-ratio").out
+    lines = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in out.splitlines()]
+    assert max(map(len, lines)) <= columns
+    assert "Bullet 2.84, reference" in " ".join(lines)
+
+
+def test_help_has_every_option_of_the_contract(bare):
+    words = bare("engines", "compare", "--help").out
+    for option in ("--engine", "--scenario", "--dt", "--repeat", "--quick", "--fresh", "--plot", "--csv"):
+        assert option in words
+    assert "Example: course engines compare" in words
+
+
+def test_json_is_one_object_and_words_go_to_the_other_stream(bare):
+    ran = bare("engines", "compare", "--engine", "pymunk", "--scenario", "bounce", "--json")
+    json.loads(ran.out)
+    assert "A bounce" in ran.err
+
+
+def test_the_reference_is_never_the_best_and_ties_all_are():
+    from course.cli.engines_screen import best_rows
+    from course.engines.results import Row
+
+    def row(engine, value, origin="measured", setting="default"):
+        return Row(
+            engine=engine,
+            scenario="bounce",
+            setting=setting,
+            dt=1 / 240,
+            status="ok",
+            value=value,
+            origin=origin,
+        )
+
+    rows = [row("pymunk", 0.26), row("ode", 0.24), row("dart", 0.3), row("physx", 0.25, "reference")]
+    best = best_rows(rows)
+    assert [id(one) in best for one in rows] == [True, True, False, False]
+    # Alone in its column nobody is the best of anything.
+    assert not best_rows([row("pymunk", 0.25), row("ode", 0.25, "reference")])

@@ -1,0 +1,126 @@
+"""An engine's process may do anything; its parent always gets a reply, and soon."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+from course.engines import process as module
+from course.engines.process import EngineProcess
+
+READY = 'import sys, os, time; print(\'{"status": "ok"}\', flush=True); '
+JOB = {"do": "measure"}
+
+
+def engine(after_start, before_start=""):
+    """A process that says it is ready, waits for a job and then does something."""
+    code = before_start or READY + "sys.stdin.readline(); " + after_start
+    return EngineProcess("pymunk", [sys.executable, "-c", code])
+
+
+def test_a_reply_comes_back_as_it_is():
+    with engine('print(\'{"status": "ok", "value": NaN}\', flush=True)') as process:
+        reply = process.ask(JOB, 10)
+    assert reply["status"] == "ok"
+    assert reply["value"] != reply["value"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="names of signals")
+def test_an_abort_is_a_crash_with_the_signal_and_the_last_words():
+    with engine("sys.stderr.write('so long\\nODE INTERNAL ERROR 1: assertion\\n'); os.abort()") as process:
+        reply = process.ask(JOB, 10)
+    assert reply["status"] == "crash"
+    assert reply["message"] == "It was ended by SIGABRT. Its last words: ODE INTERNAL ERROR 1: assertion"
+
+
+def test_an_end_without_an_answer_is_a_crash_with_its_exit_code():
+    with engine("os._exit(7)") as process:
+        assert process.ask(JOB, 10) == {"status": "crash", "message": "It ended with exit code 7."}
+
+
+def test_a_hang_ends_at_the_deadline_and_so_does_the_process():
+    with engine("time.sleep(600)") as process:
+        started = time.monotonic()
+        reply = process.ask(JOB, 0.3)
+        assert reply["status"] == "deadline"
+        assert "0.3 s" in reply["message"]
+        assert time.monotonic() - started < 60
+        assert process.pid is None
+
+
+def test_an_answer_that_is_none_is_a_crash():
+    with engine("print('Segmentation fault (just kidding)', flush=True)") as process:
+        assert process.ask(JOB, 10)["status"] == "crash"
+
+
+def test_an_engine_that_cannot_load_is_unavailable_with_the_reason():
+    refusal = 'print(\'{"status": "unavailable", "message": "ImportError: libvulkan.so.1"}\', flush=True)'
+    with engine("", refusal) as process:
+        reply = process.ask(JOB, 10)
+    assert reply == {"status": "unavailable", "message": "ImportError: libvulkan.so.1"}
+
+
+def test_an_engine_that_dies_while_it_loads_is_unavailable_not_crashed():
+    with engine("", "import sys, os; sys.stderr.write('Illegal instruction\\n'); os._exit(132)") as process:
+        reply = process.ask(JOB, 10)
+    assert reply["status"] == "unavailable"
+    assert "Illegal instruction" in reply["message"]
+
+
+def test_an_engine_that_loads_for_ever_is_ended(monkeypatch):
+    monkeypatch.setattr(module, "START_S", 0.3)
+    with engine("", "import time; time.sleep(600)") as process:
+        assert process.ask(JOB, 10)["status"] == "deadline"
+
+
+def test_a_program_that_is_not_there_is_unavailable():
+    with EngineProcess("pymunk", ["/no/such/program"]) as process:
+        assert process.ask(JOB, 10)["status"] == "unavailable"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills by signal")
+def test_a_process_killed_from_outside_is_a_crash_and_the_next_question_starts_another():
+    with EngineProcess("pymunk") as process:
+        question = {"do": "options", "scenario": "stack", "setting": "tuned"}
+        assert process.ask(question, 30)["status"] == "ok"
+        first = process.pid
+        os.kill(first, signal.SIGKILL)
+        reply = process.ask(question, 30)
+        assert (reply["status"], reply["message"]) == ("crash", "It was ended by SIGKILL.")
+        assert process.ask(question, 30)["status"] == "ok"
+        assert process.pid not in (None, first)
+
+
+def test_what_an_engine_prints_does_not_get_between_the_replies(tmp_path, monkeypatch):
+    (tmp_path / "loud.py").write_text(
+        "import os, sys\nprint('build time: today')\nos.write(1, b'from C\\n')\n"
+        "from course.engines.pymunk import ADAPTER\n"
+    )
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    command = [
+        sys.executable,
+        "-P",
+        "-c",
+        "import sys, course.engines.registry as r\n"
+        "from importlib import import_module\n"
+        "r.load = lambda name: import_module('loud').ADAPTER\n"
+        "from course.engines.worker import main\nmain(['pymunk'])",
+    ]
+    with EngineProcess("pymunk", command) as process:
+        reply = process.ask(
+            {"do": "measure", "scenario": "free-fall", "setting": "default", "dt": 1 / 240, "quick": True}, 30
+        )
+    assert reply["status"] == "ok"
+    assert reply["value"] == pytest.approx(-0.5)
+
+
+def test_a_file_in_the_folder_one_stands_in_does_not_shadow_an_engine(tmp_path, monkeypatch):
+    (tmp_path / "pymunk.py").write_text("raise SystemExit('wrong pymunk')\n")
+    (tmp_path / "numpy.py").write_text("raise SystemExit('wrong numpy')\n")
+    monkeypatch.chdir(tmp_path)
+    with EngineProcess("pymunk") as process:
+        assert process.ask({"do": "options", "scenario": "stack", "setting": "tuned"}, 30)["status"] == "ok"

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from course.authoring.variants import instructors
 from course.errors import UsageError
-from course.ids import ExerciseId, LessonId, QuestionId
+from course.ids import ExerciseId, LessonId, QuestionId, SceneId
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
 
-__all__ = ["new_exercise", "new_lesson", "new_question"]
+__all__ = ["new_exercise", "new_lesson", "new_question", "new_scene"]
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
@@ -91,6 +91,21 @@ def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
         "order": str(1 + len(list(catalog.content.quiz.glob("*.toml")))),
     }
     return _write({catalog.content.quiz / f"{name}.toml": _TEMPLATES / "question.toml.tmpl"}, words)
+
+
+def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
+    """Write the file of a new sandbox scene, last in the list; it runs as it is.
+
+    Raises:
+        UsageError: the id is no id, or the file exists.
+        MissingCapabilityError: this is a student's installation.
+    """
+    from course.sandbox.loading import FOLDER, scene_ids
+
+    instructors(catalog)
+    name = SceneId(scene_id)
+    words = {"id": name, "order": str(1 + len(scene_ids()))}
+    return _write({FOLDER / f"{name}.toml": _TEMPLATES / "scene.toml.tmpl"}, words)
 
 
 def _module(function: str) -> str:

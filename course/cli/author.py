@@ -19,7 +19,17 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.cli.author_schemas import MutantRow
 
-__all__ = ["app", "check", "coverage", "mutants", "new_exercise", "new_lesson", "new_question", "pack"]
+__all__ = [
+    "app",
+    "check",
+    "coverage",
+    "mutants",
+    "new_exercise",
+    "new_lesson",
+    "new_question",
+    "new_scene",
+    "pack",
+]
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 
@@ -87,6 +97,21 @@ def new_question(
     return _report_new(catalog, "question", name, scaffold.new_question(catalog, name))
 
 
+@_new.command("scene", epilog="Example: course author new scene bouncing-ball")
+def new_scene(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+) -> int:
+    """Write a sandbox scene that runs, with blanks to fill in.
+
+    Nothing is overwritten. Play it with `course sandbox play ID`.
+    """
+    from course.authoring import scaffold
+    from course.cli.here import load_catalog
+
+    catalog = load_catalog()
+    return _report_new(catalog, "scene", name, scaffold.new_scene(catalog, name))
+
+
 def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...]) -> int:
     from course.cli.author_schemas import AuthorNew
 
@@ -97,7 +122,8 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, where it is to be read.")
-    console.note(f"Fill in what is marked, then run: course author check {name}")
+    then = "sandbox play" if kind == "scene" else "author check"
+    console.note(f"Fill in what is marked, then run: course {then} {name}")
     console.emit(AuthorNew(kind=kind, id=name, files=shown))
     return 0
 

@@ -54,6 +54,27 @@ COMMANDS: dict[str, Entry] = {
     "sim": Entry(
         "sim", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"
     ),
+    "sandbox": Entry(
+        "sandbox",
+        "app",
+        LEARN,
+        "Play with collisions, and see where the energy goes.",
+        "course sandbox play newtons-cradle",
+    ),
+    "engines": Entry(
+        "engines",
+        "app",
+        LEARN,
+        "Compare real physics engines on this machine.",
+        "course engines compare --quick",
+    ),
+    "notebook": Entry(
+        "notebook",
+        "app",
+        LEARN,
+        "Get lessons and exercises as Jupyter notebooks.",
+        "course notebook build integrators",
+    ),
     "start": Entry(
         "starting", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
     ),

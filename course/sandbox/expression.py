@@ -1,0 +1,159 @@
+"""Arithmetic in a scene's text: ``sqrt(2 * g * drop)``.
+
+A scene is data, and a student's own scene may come from anywhere, so a formula in it is read as a syntax tree
+of numbers, names, ``+ - * / **`` and a handful of functions, and never handed to ``eval``.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import warnings
+from typing import TYPE_CHECKING
+
+from course.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+__all__ = ["evaluate", "names"]
+
+_MAX_LENGTH = 300
+#: Longest chain of operations; a deeper tree is no formula that somebody wrote.
+_MAX_DEPTH = 40
+
+#: Largest n of a binomial coefficient: beyond about a thousand it is no float any more.
+_MOST = 1000
+
+
+def _comb(n: float, k: float) -> float:
+    """How many ways to choose k of n."""
+    if not 0 <= k <= n <= _MOST:
+        raise ValueError(f"comb needs 0 <= k <= n <= {_MOST}")
+    return float(math.comb(round(n), round(k)))
+
+
+_BINARY: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: math.pow,
+}
+_FUNCTIONS: dict[str, Callable[..., float]] = {
+    "abs": abs,
+    "atan": math.atan,
+    "atan2": math.atan2,
+    "comb": _comb,
+    "cos": math.cos,
+    "degrees": math.degrees,
+    "exp": math.exp,
+    "log": math.log,
+    "max": max,
+    "min": min,
+    "radians": math.radians,
+    "sin": math.sin,
+    "sqrt": math.sqrt,
+    "tan": math.tan,
+}
+_CONSTANTS = {"pi": math.pi}
+
+
+def evaluate(text: str, values: Mapping[str, float]) -> float:
+    """The number that a formula gives.
+
+    Args:
+        text: the formula. ``name.field`` is looked up as one name, hyphens in it written as underscores.
+        values: what each name stands for.
+
+    Raises:
+        UsageError: it is no formula, names something unknown, or has no value (a division by zero, say).
+    """
+    try:
+        return _value(_tree(text), values)
+    except (ArithmeticError, ValueError, OverflowError, TypeError) as error:
+        raise _refused(text, f"has no value ({error})") from error
+
+
+def names(text: str) -> frozenset[str]:
+    """The names a formula uses, functions and constants left out.
+
+    Raises:
+        UsageError: it is no formula.
+    """
+    found: set[str] = set()
+    _collect(_tree(text), text, found)
+    return frozenset(found - _CONSTANTS.keys())
+
+
+def _tree(text: str) -> ast.expr:
+    if len(text) > _MAX_LENGTH:
+        raise _refused(text[:40] + "...", f"is longer than {_MAX_LENGTH} letters")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about odd escapes in what will be refused anyway
+            tree = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise _refused(text, "is no formula") from None
+    if _depth(tree) > _MAX_DEPTH:
+        raise _refused(text, "is nested too deeply")
+    return tree
+
+
+def _depth(tree: ast.AST) -> int:
+    level, deepest = [tree], 0
+    while level and deepest <= _MAX_DEPTH:
+        level = [child for node in level for child in ast.iter_child_nodes(node)]
+        deepest += 1
+    return deepest
+
+
+def _collect(node: ast.expr, text: str, found: set[str]) -> None:
+    """Walk the tree, refuse what is no arithmetic, and note the names."""
+    match node:
+        case ast.Constant(value=bool()):
+            raise _refused(text, "may hold numbers, not True or False")
+        case ast.Constant(value=int() | float()):
+            pass
+        case ast.Name(id=name):
+            found.add(name)
+        case ast.Attribute(value=ast.Name(id=name), attr=field):
+            found.add(f"{name}.{field}")
+        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=inner):
+            _collect(inner, text, found)
+        case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _BINARY:
+            _collect(left, text, found)
+            _collect(right, text, found)
+        case ast.Call(func=ast.Name(id=name), args=inner_nodes, keywords=[]) if name in _FUNCTIONS:
+            for inner in inner_nodes:
+                _collect(inner, text, found)
+        case _:
+            raise _refused(text, f"may use + - * / **, numbers, names and {', '.join(sorted(_FUNCTIONS))}")
+
+
+def _value(node: ast.expr, values: Mapping[str, float]) -> float:
+    match node:
+        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+            return float(number)
+        case ast.Name() | ast.Attribute(value=ast.Name()):
+            return _look_up(ast.unparse(node), values)
+        case ast.UnaryOp(op=sign, operand=inner) if isinstance(sign, ast.USub | ast.UAdd):
+            return _value(inner, values) * (-1 if isinstance(sign, ast.USub) else 1)
+        case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _BINARY:
+            return float(_BINARY[type(sign)](_value(left, values), _value(right, values)))
+        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
+            return float(_FUNCTIONS[name](*(_value(argument, values) for argument in arguments)))
+    raise _refused(ast.unparse(node), "is not arithmetic")
+
+
+def _look_up(name: str, values: Mapping[str, float]) -> float:
+    if name in values:
+        return float(values[name])
+    if name in _CONSTANTS:
+        return _CONSTANTS[name]
+    raise _refused(name, "is no name this scene knows", help=f"Known: {', '.join(sorted(values))}.")
+
+
+def _refused(text: str, why: str, help: str = "Write plain arithmetic: sqrt(2 * g * drop).") -> UsageError:  # noqa: A002
+    return UsageError(f"The formula {text!r} {why}.", help=help, code="bad_formula")

@@ -1,0 +1,1 @@
+"""Ways to look at one world. Each view is imported when it is asked for."""

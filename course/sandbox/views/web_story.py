@@ -1,0 +1,168 @@
+"""What a page is told in words: events as they happen, and how the prediction came out."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from course.sandbox.describe import sentence
+from course.sandbox.loading import values_of
+from course.sandbox.predicting import compare
+from course.sandbox.probes import Probes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from course.sandbox.events import Event
+    from course.sandbox.loading import Chosen
+    from course.sandbox.predicting import Comparison
+    from course.sandbox.world import World
+
+__all__ = ["Experiment", "Teller"]
+
+#: Sentences that a page opened later still gets.
+_KEPT = 60
+#: A pair that touches again within this long, in s, is not told about again.
+_PATIENCE = 0.05
+#: Sentences for one frame; more than that nobody reads.
+_AT_ONCE = 12
+#: Events kept for the probes of one run.
+_MOST = 50_000
+
+
+class Teller:
+    """Turns events into lines of a list: what was said, and where it happened."""
+
+    def __init__(self) -> None:
+        self._last: dict[tuple[str, str], float] = {}
+        self._told: deque[dict[str, Any]] = deque(maxlen=_KEPT)
+
+    def told(self) -> list[dict[str, Any]]:
+        """The latest lines, oldest first."""
+        return list(self._told)
+
+    def tell(self, events: Sequence[Event]) -> list[dict[str, Any]]:
+        """Lines for those of the events that are worth one."""
+        lines: list[dict[str, Any]] = []
+        left = 0
+        for event in events:
+            if event.kind == "contact":
+                pair = (event.a, event.b)
+                since = event.t - self._last.get(pair, -1.0)
+                self._last[pair] = event.t
+                # Time that runs backwards is a world that was reset.
+                if event.minor or 0.0 <= since < _PATIENCE:
+                    continue
+            if len(lines) >= _AT_ONCE:
+                left += 1
+                continue
+            lines.append(_line(event))
+        if left:
+            lines.append({"text": f"{left} more in the same moment.", "kind": "more"})
+        self._told.extend(lines)
+        return lines
+
+
+def _line(event: Event) -> dict[str, Any]:
+    line: dict[str, Any] = {"text": sentence(event), "kind": event.kind}
+    if event.kind == "contact":
+        line |= {"x": event.x, "y": event.y, "speed": event.approach}
+    return line
+
+
+class Experiment:
+    """A guess before the run, and theory, guess and simulation side by side after it.
+
+    What is compared is the run that was watched, as long as nobody laid hands on it: a theory says
+    nothing about a ball that somebody threw. Settings may be changed before the first step; theory takes them
+    into account.
+
+    Args:
+        world: before its first step.
+        chosen: its scene.
+        guess: given before; None to ask for one.
+        keep: called with each comparison that has a guess.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        chosen: Chosen,
+        guess: float | None,
+        keep: Callable[[Comparison], None] | None,
+    ) -> None:
+        self._world, self._chosen, self._keep = world, chosen, keep
+        self._listeners = tuple(world.on_block)
+        self._probes: Probes | None = None
+        self._events: list[Event] = []
+        self._comparison: dict[str, Any] | None = None
+        self.guess = guess
+        self._answered = guess is not None
+        #: "none" (nothing is asked), "ask", "run", "touched" (not comparable any more) or "done".
+        self.stage = "none"
+        if chosen.scene.prediction is not None:
+            self._begin()
+
+    def _begin(self) -> None:
+        self.stage = "run" if self._answered else "ask"
+        self._events = []
+        self._comparison = None
+        self._world.on_block[:] = self._listeners
+        self._probes = Probes(self._world)
+
+    def answer(self, guess: float | None) -> None:
+        """The guess, or that there is none; it counts for the runs from here on."""
+        if self.stage == "ask":
+            self.guess, self._answered = guess, True
+            self.stage = "run"
+
+    def again(self) -> None:
+        """The world was reset."""
+        if self.stage != "none":
+            self._begin()
+
+    def touch(self) -> None:
+        """Somebody laid hands on a body."""
+        if self.stage in {"ask", "run"}:
+            self.stage = "touched"
+
+    def changed(self) -> None:
+        """A setting was changed."""
+        if self._world.steps > 0:
+            self.touch()
+
+    def take(self, events: Sequence[Event]) -> None:
+        """What happened, for the probes."""
+        if self.stage in {"ask", "run"} and len(self._events) < _MOST:
+            self._events += [event for event in events if event.kind == "contact"]
+
+    def left(self) -> float | None:
+        """Simulated time until the comparison, in s; None if there is none to come."""
+        if self.stage not in {"ask", "run"}:
+            return None
+        return max(0.0, self._chosen.scene.duration - self._world.t)
+
+    def passed(self) -> None:
+        """Time passed, and ``take`` has the events: compare if the end of the run was reached."""
+        asked, probes, left = self._chosen.scene.prediction, self._probes, self.left()
+        if asked is None or probes is None or left is None or left > 1e-9:
+            return
+        answer = probes.read(self._events)[asked.probe]
+        now = msgspec.structs.replace(self._chosen, settings=dict(self._world.settings))
+        comparison = compare(asked, answer, values_of(now), self.guess)
+        self._comparison = msgspec.to_builtins(comparison)
+        self.stage = "done"
+        self._events = []
+        self._world.on_block[:] = self._listeners
+        if self._keep is not None and self.guess is not None:
+            self._keep(comparison)
+
+    def report(self) -> dict[str, Any]:
+        """For pages."""
+        return {
+            "stage": self.stage,
+            "guess": self.guess,
+            "comparison": self._comparison,
+        }

@@ -1,0 +1,158 @@
+"""``course sandbox`` from the outside: piped, without a terminal, without extras."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import course
+
+ROOT = Path(course.__file__).parents[1]
+
+
+def sandbox(*arguments: str, cwd: Path, code: int = 0) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
+    done = subprocess.run(
+        [sys.executable, "-m", "course", "sandbox", *arguments],
+        cwd=cwd,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == code, done.stderr + done.stdout
+    return done
+
+
+@pytest.mark.parametrize("arguments", [[], ["--list"], ["list"]])
+def test_the_list_comes_out_of_a_pipe(tmp_path: Path, arguments: list[str]) -> None:
+    out = sandbox(*arguments, cwd=tmp_path).stdout
+    assert "newtons-cradle" in out
+    assert len(out.splitlines()) >= 13
+
+
+def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) -> None:
+    data = json.loads(sandbox("list", "incline", "--json", cwd=tmp_path).stdout)
+    assert data["schema"] == "course.sandbox-list/1"
+    (scene,) = data["scenes"]
+    assert scene["question"]
+    assert {"angle", "gravity", "step"} <= {p["name"] for p in scene["parameters"]}
+
+
+def test_a_piped_play_runs_unseen_and_compares(tmp_path: Path) -> None:
+    out = sandbox("play", "head-on", "--guess", "1.5", cwd=tmp_path).stdout
+    assert "your guess: 1.5 m/s" in out
+    assert "simulation: 2 m/s" in out
+    assert "25 % too low" in out
+
+
+def test_describe_tells_the_run(tmp_path: Path) -> None:
+    out = sandbox("play", "restitution-row", "--describe", cwd=tmp_path).stdout
+    assert "0.45 s: ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in out
+
+
+def test_json_is_one_object_with_everything(tmp_path: Path) -> None:
+    done = sandbox("play", "unequal-masses", "--set", "ratio=1", "--headless", "--json", cwd=tmp_path)
+    data = json.loads(done.stdout)
+    assert data["schema"] == "course.sandbox/1"
+    assert data["settings"]["ratio"] == 1
+    assert data["prediction"]["simulation"] == pytest.approx(1.0)
+    assert data["momentum"]["before"] == pytest.approx(data["momentum"]["after"])
+    parts = data["receipt"]
+    whole = sum(parts[k] for k in ("kinetic", "potential", "contacts", "friction", "residual"))
+    assert whole == pytest.approx(parts["start"] + parts["given"])
+    assert [event["kind"] for event in data["events"]] == ["contact", "rest"]
+
+
+def test_csv_holds_a_row_for_each_body_and_time(tmp_path: Path) -> None:
+    sandbox("play", "head-on", "--csv", "run.csv", "--every", "0.5", cwd=tmp_path)
+    rows = list(csv.reader((tmp_path / "run.csv").read_text().splitlines()))
+    assert rows[0][:3] == ["t [s]", "body", "x [m]"]
+    assert [row[0] for row in rows[1:]] == [f"{t}" for t in (0.0, 0.5, 1.0, 1.5, 2.0) for _ in range(2)]
+
+
+def test_files_are_written_and_what_was_there_is_kept(tmp_path: Path) -> None:
+    (tmp_path / "a.gif").write_bytes(b"old")
+    files = ["--gif", "a.gif", "--png", "a.png", "--at", "0.51", "--record", "a.jsonl"]
+    out = sandbox("play", "head-on", "--duration", "1", *files, cwd=tmp_path).stdout
+    assert "is kept at" in out
+    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    from PIL import Image
+
+    with Image.open(tmp_path / "a.gif") as film:
+        assert film.n_frames == 26
+    data = json.loads(sandbox("replay", "a.jsonl", "--json", cwd=tmp_path).stdout)
+    assert (data["schema"], data["same"], data["steps"]) == ("course.sandbox-replay/1", True, 240)
+
+
+def test_a_replay_that_differs_says_where_and_exits_with_one(tmp_path: Path) -> None:
+    sandbox("play", "billiards-break", "--duration", "0.5", "--record", "a.jsonl", cwd=tmp_path)
+    path = tmp_path / "a.jsonl"
+    path.write_text(path.read_text().replace('"velocity":[6.0,', '"velocity":[6.1,'))
+    out = sandbox("replay", "a.jsonl", cwd=tmp_path, code=1).stdout
+    assert "differs at step 240" in out
+
+
+@pytest.mark.parametrize("kind", ["sdf", "mjcf"])
+def test_an_export_goes_to_the_screen_or_a_file(tmp_path: Path, kind: str) -> None:
+    out = sandbox("export", "head-on", "--format", kind, cwd=tmp_path).stdout
+    assert out.startswith("<?xml")
+    sandbox("export", "head-on", "--format", kind, "-o", "world.xml", cwd=tmp_path)
+    assert (tmp_path / "world.xml").read_text() == out
+
+
+def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_path: Path) -> None:
+    source = (ROOT / "course" / "sandbox" / "scenes" / "head-on.toml").read_text()
+    (tmp_path / "mine.toml").write_text(source)
+    assert "simulation: 2 m/s" in sandbox("play", "mine.toml", cwd=tmp_path).stdout
+    (tmp_path / "mine.toml").write_text(source.replace("radius = 0.2", "radius = 0", 1))
+    assert "mine.toml:" in sandbox("play", "mine.toml", cwd=tmp_path, code=2).stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["play", "nothing"], 5),
+        (["play", "nothing.toml"], 5),
+        (["replay", "nothing.jsonl"], 5),
+        (["play", "head-on", "--set", "wind=1"], 2),
+        (["play", "head-on", "--set", "gravity"], 2),
+        (["play", "head-on", "--set", "gravity=much"], 2),
+        (["play", "head-on", "--set", "gravity=nan"], 2),
+        (["play", "head-on", "--duration", "-1"], 2),
+        (["play", "head-on", "--gif", "a.png"], 2),
+        (["play", "head-on", "--at", "1"], 2),
+        (["play", "head-on", "--web", "--describe"], 2),
+        (["export", "head-on", "--format", "urdf"], 2),
+        (["export", "galton-board", "--format", "sdf"], 2),
+    ],
+)
+def test_each_mistake_has_its_exit_code_and_a_help(tmp_path: Path, arguments: list[str], code: int) -> None:
+    data = json.loads(sandbox(*arguments, "--json", cwd=tmp_path, code=code).stdout)
+    assert data["ok"] is False
+    assert data["error"]["message"]
+
+
+def test_a_guess_made_in_a_workspace_is_kept(tmp_path: Path) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    subprocess.run(
+        [sys.executable, "-m", "course", "init", "."],
+        cwd=tmp_path,
+        env=environment,
+        check=True,
+        capture_output=True,
+    )
+    sandbox("play", "head-on", "--guess", "2", cwd=tmp_path)
+    from course.progress.workspace import Workspace
+
+    (event,) = Workspace.find(tmp_path).store.events("sandbox-guess")
+    assert event.subject == "head-on"
+    assert (event.data["guess"], event.data["right"]) == (2.0, True)

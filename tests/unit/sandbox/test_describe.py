@@ -1,0 +1,54 @@
+"""A run in sentences."""
+
+from __future__ import annotations
+
+from course.sandbox.describe import account, sentence, sentences
+from course.sandbox.events import Event, Receipt
+from course.sandbox.loading import choose
+from course.sandbox.running import run
+
+
+def contact(**more) -> Event:
+    given = {"kind": "contact", "t": 0.42, "step": 101, "a": "ball", "b": "floor", "approach": 4.09}
+    return Event(**{**given, "leave": 3.27, "before": 8.36, "after": 5.35, **more})
+
+
+def test_a_contact_tells_speeds_and_the_share_of_energy_that_is_gone() -> None:
+    assert sentence(contact()) == (
+        "0.42 s: the ball meets the floor at 4.09 m/s and leaves at 3.27; 36 % of its kinetic energy is gone."
+    )
+    assert "their kinetic energy" in sentence(contact(b="ball-2", shared=True))
+    assert "ball 2" in sentence(contact(b="ball-2"))
+    assert "stays with it; 100 %" in sentence(contact(leave=0.0, after=0.0))
+    assert sentence(contact(leave=None, before=None, after=None)).endswith("at 4.09 m/s.")
+    assert "found inside" in sentence(contact(approach=-100.0))
+
+
+def test_soft_touches_and_chatter_are_counted_and_not_told() -> None:
+    events = [contact(), contact(t=0.43), contact(t=0.6, approach=0.01, minor=True), contact(t=0.9)]
+    told = list(sentences(events))
+    assert len(told) == 3
+    assert told[-1].startswith("1 more event happened")
+
+
+def test_a_long_run_is_cut_and_says_so() -> None:
+    told = list(sentences((contact(t=i) for i in range(100)), most=10))
+    assert len(told) == 11
+    assert told[-1].startswith("90 more events")
+
+
+def test_the_account_names_what_the_solver_did() -> None:
+    base = {"start": 10.0, "given": 0.0, "kinetic": 4.0, "potential": 2.0, "contacts": 3.0, "friction": 1.0}
+    assert "unaccounted" in account(Receipt(**base, residual=0.0, integrator=0.0))[-1]
+    lost = account(Receipt(**{**base, "kinetic": 3.5}, residual=0.5, integrator=0.0))[-1]
+    assert "missing" in lost
+    made = account(Receipt(**{**base, "kinetic": 4.5}, residual=-0.5, integrator=0.0))[-1]
+    assert "from nowhere" in made
+    assert "5 %" in made
+
+
+def test_a_whole_scene_reads_as_a_story() -> None:
+    done = run(choose("restitution-row"))
+    told = list(sentences(done.events))
+    assert any("ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in line for line in told)
+    assert any("ball 0 comes to rest" in line for line in told)

@@ -1,0 +1,80 @@
+"""Films and pictures are what they say they are."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from PIL import Image
+
+from course.errors import MissingCapabilityError, UsageError
+from course.sandbox import film as films
+from course.sandbox.film import Film
+from course.sandbox.loading import choose
+from course.sandbox.world import World
+
+
+def filmed(name: str, frames: int) -> tuple[Film, World]:
+    world = World(choose(name).scene)
+    film = Film(world.scene, width=200)
+    for _ in range(frames):
+        film.take(world.parts, world.snapshot())
+        world.step(10)
+    return film, world
+
+
+def test_a_gif_has_every_frame_at_its_time_and_moves() -> None:
+    film, _ = filmed("head-on", 12)
+    picture = Image.open(io.BytesIO(film.gif(fps=25)))
+    assert picture.n_frames == 12
+    assert picture.size == film.size
+    assert picture.info["duration"] == 40
+    first = picture.convert("RGB").tobytes()
+    picture.seek(11)
+    assert picture.convert("RGB").tobytes() != first
+
+
+def test_bodies_are_where_the_scene_has_them_in_their_own_colour() -> None:
+    film, world = filmed("head-on", 1)
+    image = film.draw(world.parts, World(world.scene).snapshot())
+    left, bottom, right, top = world.scene.view
+    for part in world.parts:
+        x = round((part.x - left) / (right - left) * film.size[0])
+        y = round((top - part.y) / (top - bottom) * film.size[1]) + 6  # beside the mark that shows turning
+        assert "#{:02x}{:02x}{:02x}".format(*image.getpixel((x, y))) == part.colour
+
+
+@pytest.mark.parametrize("name", ["newtons-cradle", "galton-board", "robot-boxes"])
+def test_every_shape_joint_and_wheel_can_be_drawn(name: str) -> None:
+    film, world = filmed(name, 1)
+    image = Image.open(io.BytesIO(film.png(world.parts, world.snapshot())))
+    assert len(image.getcolors(100_000)) > 10
+
+
+def test_without_ffmpeg_an_mp4_says_what_to_do(monkeypatch) -> None:
+    film, _ = filmed("head-on", 1)
+    monkeypatch.setattr(films.shutil, "which", lambda name: None)
+    with pytest.raises(MissingCapabilityError) as caught:
+        film.mp4()
+    assert "--gif" in caught.value.help
+
+
+def test_ffmpeg_gets_every_frame_and_its_failure_is_told_in_words(monkeypatch, tmp_path) -> None:
+    film, _ = filmed("head-on", 3)
+    fake = tmp_path / "ffmpeg"
+    fake.write_text('#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')
+    fake.chmod(0o755)
+    monkeypatch.setattr(films.shutil, "which", lambda name: str(fake))
+    assert len(film.mp4()) == 3 * film.size[0] * film.size[1] * 3
+    fake.write_text("#!/bin/sh\necho no such encoder >&2\nexit 1\n")
+    with pytest.raises(MissingCapabilityError, match="no such encoder"):
+        film.mp4()
+
+
+def test_a_film_without_frames_or_too_long_is_refused(monkeypatch) -> None:
+    film = Film(choose("head-on").scene)
+    with pytest.raises(UsageError):
+        film.gif()
+    monkeypatch.setattr(films, "_MOST_FRAMES", 1)
+    with pytest.raises(UsageError):
+        filmed("head-on", 2)

@@ -1,0 +1,119 @@
+"""What scenes teach is true of what they do."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from course.sandbox.describe import sentence
+from course.sandbox.loading import choose
+from course.sandbox.world import World
+
+
+def speeds(world: World) -> dict[str, float]:
+    return {
+        part.name: float(math.hypot(row[3], row[4]))
+        for part, row in zip(world.parts, world.state(), strict=True)
+    }
+
+
+def test_in_newtons_cradle_the_last_ball_takes_it_all() -> None:
+    world = World(choose("newtons-cradle").scene)
+    world.run_until(0.56)  # a quarter period and a little
+    now = speeds(world)
+    came = math.sqrt(2 * 9.81 * (1 - math.cos(math.radians(30))))
+    assert now["ball-5"] == pytest.approx(came, rel=0.02)
+    assert max(now[f"ball-{i}"] for i in range(1, 5)) < 0.02 * came
+    receipt = world.receipt
+    assert receipt.contacts == pytest.approx(0, abs=1e-9)
+    assert abs(receipt.residual) < 0.005 * receipt.start + abs(receipt.integrator)
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.8, 1.4])
+def test_a_block_slips_at_the_angle_whose_tangent_is_the_product_of_frictions(friction: float) -> None:
+    slip = math.degrees(math.atan(friction * 0.5))
+
+    def slides(angle: float) -> bool:
+        chosen = choose("incline", {"angle": angle, "friction": friction})
+        world = World(chosen.scene, chosen.settings)
+        world.run_until(1.0)
+        return speeds(world)["block"] > 0.01
+
+    assert not slides(slip - 0.2)
+    assert slides(slip + 0.2)
+
+
+@pytest.mark.parametrize("height", [0.5, 1.0, 5.0])
+def test_each_ball_of_the_row_leaves_with_its_own_restitution(height: float) -> None:
+    chosen = choose("restitution-row", {"height": height})
+    world = World(chosen.scene)
+    world.run_until(1.2 * math.sqrt(2 * height / 9.81))
+    first = {event.a: event for event in reversed(world.drain_events()) if event.kind == "contact"}
+    assert len(first) == 6
+    for i in range(6):
+        event, e = first[f"ball-{i}"], i / 5
+        assert event.leave == pytest.approx(e * event.approach, abs=1e-9)
+        assert event.lost == pytest.approx(1 - e * e, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("step", "told", "holds"), [(1 / 240, "", False), (0.0004, "inside", False), (0.0002, "meets", True)]
+)
+def test_a_bullet_tunnels_unless_half_the_wall_is_thicker_than_a_jump(step, told: str, holds: bool) -> None:
+    chosen = choose("bullet-wall", {"step": step})
+    world = World(chosen.scene, chosen.settings)
+    world.run_until(0.05)
+    sentences = [sentence(event) for event in world.drain_events() if not event.minor]
+    assert len(sentences) == bool(told)
+    assert told in "".join(sentences)
+    assert (world.state()[world._space.index["bullet"], 0] < 2.2) == holds
+
+
+@pytest.mark.parametrize("step", [0.02, 0.01, 0.001])
+def test_free_fall_falls_short_by_half_a_steps_worth(step: float) -> None:
+    chosen = choose("free-fall", {"step": step})
+    world = World(chosen.scene, chosen.settings)
+    world.run_until(1.0)
+    assert float(world.state()[0, 1]) + 9.81 / 2 == pytest.approx(9.81 * step / 2, rel=1e-9)
+
+
+def test_a_robot_turns_as_its_wheels_say_and_slips_beyond_its_grip() -> None:
+    chosen = choose("robot-boxes", {"left": 0.3, "right": 0.3})
+    world = World(chosen.scene, chosen.settings)
+    world.run_until(1.0)
+    x, _, angle, vx, _, _ = world.state()[world._space.index["robot"]]
+    assert (angle, vx) == (pytest.approx(0, abs=1e-4), pytest.approx(0.3, rel=1e-6))
+    # A standing start: grip 0.8 g for as long as it takes, so it lags by v²/2a.
+    assert x + 1.0 == pytest.approx(0.3 - 0.3**2 / (2 * 0.8 * 9.81), abs=0.002)
+    assert world.receipt.given > world.receipt.kinetic > 0
+
+
+def test_a_box_on_a_floor_slides_as_far_as_friction_lets_it() -> None:
+    world = World(choose("robot-boxes", {}).scene, {"left": 0.0, "right": 0.0})
+    world.throw(0.4, -0.1, 0.0, -2.0)
+    world.run_until(2.0)
+    row = world.state()[world._space.index["box-1"]]
+    assert -0.1 - row[1] == pytest.approx(2.0**2 / (2 * 0.4 * 9.81), abs=0.01)
+    assert float(np.hypot(row[3], row[4])) == 0.0
+    assert world.receipt.friction == pytest.approx(0.5 * 2 * 2.0**2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "seed", [1, pytest.param(2, marks=pytest.mark.soak), pytest.param(3, marks=pytest.mark.soak)]
+)
+def test_galtons_heap_is_binomial_by_chi_squared(seed: int) -> None:
+    chosen = choose("galton-board", {"seed": seed})
+    world = World(chosen.scene, receipt=False)
+    world.run_until(chosen.scene.duration)
+    x = [row[0] for part, row in zip(world.parts, world.state(), strict=True) if not part.fixed]
+    assert len(x) == 100
+    bins = np.bincount(np.clip(np.floor((np.array(x) + 0.9) / 0.2).astype(int), 0, 8), minlength=9)
+    # Bins with fewer than five expected are joined, as the test demands: 0-1, 2, 3, 4, 5, 6, 7-8... of 100.
+    expected = np.array([math.comb(8, k) for k in range(9)]) / 256 * 100
+    groups = [[0, 1, 2], [3], [4], [5], [6, 7, 8]]
+    seen, wanted = (np.array([v[g].sum() for g in groups]) for v in (bins, expected))
+    chi2 = float(((seen - wanted) ** 2 / wanted).sum())
+    assert chi2 < 13.28, bins  # 4 degrees of freedom: 1 run in 100 of a true binomial is above
+    assert 0.9 < np.std((np.array(x) + 0.9) / 0.2) < 1.9  # sqrt(8 / 4) = 1.41

@@ -1,0 +1,186 @@
+"""Scenes are data: the course's own hold together, and a wrong one is refused with its line."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import course
+from course.errors import ContentError, NotFoundError, UsageError
+from course.sandbox.loading import FOLDER, choose, read_scene, scene_ids, scenes
+from course.sandbox.parts import layout
+from course.sandbox.running import run
+
+GOOD = """format_version = 1
+id = "mine"
+title = "Mine"
+order = 1
+teaches = "Something."
+note = "A note."
+after = "And then?"
+view = [-1, -1, 1, 1]
+gravity = [0, -9.81]
+
+[[material]]
+name = "wood"
+restitution = 0.5
+
+[[body]]
+name = "floor"
+shape = "box"
+material = "wood"
+size = [2, 0.1]
+fixed = true
+
+[[body]]
+name = "ball"
+shape = "circle"
+material = "wood"
+radius = 0.1
+position = [0, 0.5]
+
+[[probe]]
+name = "height"
+quantity = "y"
+of = "ball"
+
+[prediction]
+question = "How high?"
+probe = "height"
+unit = "m"
+theory = "ball.y - g * duration ** 2 / 2"
+why = "It falls."
+agrees_abs = 1.0
+agrees_because = "A test."
+"""
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_there_are_at_least_twelve_scenes_in_an_order_without_gaps() -> None:
+    found = scenes()
+    assert len(found) >= 12
+    assert [scene.order for scene in found] == list(range(1, len(found) + 1))
+    assert {scene.id for scene in found} == set(scene_ids())
+
+
+@pytest.mark.parametrize("name", sorted(set(scene_ids()) - {"galton-board"}))
+def test_theory_and_simulation_agree_as_closely_as_each_scene_says(name: str) -> None:
+    comparison = run(choose(name)).comparison
+    assert comparison is not None
+    assert comparison.agree, f"{comparison.theory} {comparison.simulation}"
+
+
+@pytest.mark.parametrize("scene", scenes(), ids=lambda scene: scene.id)
+def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
+    assert scene.note.strip()
+    assert scene.prediction is not None
+    left, bottom, right, top = scene.view
+    for part in layout(scene):
+        assert left - 1 <= part.x <= right + 1, part.name
+        assert bottom - 1 <= part.y <= top + 1, part.name
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "words"),
+    [
+        ("radius = 0.1", "radius = -0.1", 26, "radius"),
+        ('material = "wood"\nradius', 'material = "would"\nradius', 25, "no material called would"),
+        ('name = "ball"', 'name = "floor"', 23, "is taken"),
+        ("radius = 0.1", "size = [1, 1]", 22, "lacks `radius`"),
+        ('of = "ball"', 'of = "bell"', 32, "no body called bell"),
+        ('probe = "height"', 'probe = "hight"', 36, "no probe called hight"),
+        ('theory = "ball.y', 'theory = "bell.y', 38, "bell.y"),
+        ('theory = "ball.y', "theory = \"__import__('os')", 38, "formula"),
+        ("view = [-1, -1, 1, 1]", "view = [1, -1, -1, 1]", 8, "view is empty"),
+        ("fixed = true", "fixed = true\nvelocity = [1, 0]", 15, "cannot move"),
+        ("gravity = [0, -9.81]", "gravity = [0, -9810]", 9, "gravity"),
+        ("radius = 0.1", "radius = 0.1\nbounciness = 1", 27, "unknown key `bounciness`"),
+        ("agrees_abs = 1.0\n", "", 34, "how far may theory be off"),
+        ("restitution = 0.5", "restitution = 1.5", 13, "restitution"),
+    ],
+)
+def test_a_wrong_scene_is_refused_with_its_line(
+    tmp_path: Path, old: str, new: str, line: int, words: str
+) -> None:
+    assert GOOD.count(old) == 1
+    path = write(tmp_path, GOOD.replace(old, new))
+    with pytest.raises(ContentError) as caught:
+        read_scene(path)
+    assert caught.value.line == line
+    assert words in caught.value.message
+    assert caught.value.help
+
+
+def test_a_students_wrong_scene_is_their_mistake_and_not_the_courses(tmp_path: Path) -> None:
+    path = write(tmp_path, GOOD.replace("radius = 0.1", "radius = 0"))
+    with pytest.raises(UsageError, match=r"mine\.toml:26"):
+        choose(str(path))
+
+
+def test_a_students_good_scene_runs(tmp_path: Path) -> None:
+    chosen = choose(str(write(tmp_path, GOOD)), {"gravity": 1.62})
+    assert chosen.own
+    done = run(chosen, duration=0.2)
+    assert done.comparison is not None
+    assert done.probes["height"] == pytest.approx(0.5 - 1.62 * 0.2**2 / 2, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "points", ["[[0, 0], [1, 0]]", "[[0,0],[1,0],[0.2,0.2],[0,1]]", "[[0,0],[1,1],[1,0],[0,1]]"]
+)
+def test_a_polygon_that_is_not_convex_is_refused(tmp_path: Path, points: str) -> None:
+    text = GOOD.replace('shape = "circle"', 'shape = "polygon"').replace("radius = 0.1", f"points = {points}")
+    with pytest.raises(ContentError, match="not convex"):
+        read_scene(write(tmp_path, text))
+
+
+def test_a_polygon_stays_where_it_was_drawn_and_turns_about_its_middle(tmp_path: Path) -> None:
+    text = GOOD.replace('shape = "circle"', 'shape = "polygon"').replace(
+        "radius = 0.1", "points = [[0, 0], [0.3, 0], [0, 0.3]]"
+    )
+    ball = layout(read_scene(write(tmp_path, text)))[1]
+    assert (ball.x, ball.y) == pytest.approx((0.1, 0.6))
+    assert sum(x for x, _ in ball.outline) == pytest.approx(0)
+    # A right triangle of legs a about its centroid: m a²/9.
+    assert ball.moment == pytest.approx(ball.mass * 0.3**2 / 9)
+
+
+def test_an_unknown_scene_is_not_found_and_a_close_one_suggested() -> None:
+    with pytest.raises(NotFoundError) as caught:
+        choose("newton-cradle")
+    assert caught.value.exit_code == 5
+    assert "newtons-cradle" in caught.value.help
+
+
+@pytest.mark.parametrize(
+    "settings", [{"angle": 91}, {"wind": 1}, {"gravity": -1}, {"iterations": 2.5}, {"step": math.nan}]
+)
+def test_parameters_out_of_range_or_unknown_are_refused(settings: dict[str, float]) -> None:
+    with pytest.raises(UsageError):
+        choose("incline", settings)
+
+
+def test_the_seed_alone_decides_the_jitter() -> None:
+    def places(seed: int) -> list[float]:
+        return [part.x for part in layout(choose("galton-board", {"seed": seed}).scene)]
+
+    assert places(3) == places(3) != places(4)
+
+
+def test_no_file_of_the_scenes_is_forgotten() -> None:
+    assert {path.suffix for path in FOLDER.iterdir()} == {".toml"}
+
+
+def test_the_template_of_a_new_scene_runs_as_it_is(tmp_path: Path) -> None:
+    template = Path(course.__file__).parent / "authoring" / "templates" / "scene.toml.tmpl"
+    text = template.read_text(encoding="utf-8").replace("@id@", "mine").replace("@order@", "99")
+    comparison = run(choose(str(write(tmp_path, text)))).comparison
+    assert comparison is not None
+    assert comparison.agree

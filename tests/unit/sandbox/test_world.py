@@ -1,0 +1,379 @@
+"""One world: fixed steps, hands that act, books that balance."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from course.errors import UsageError
+from course.sandbox.loading import choose
+from course.sandbox.scene import Body, Material, Repeat, Scene
+from course.sandbox.world import MAX_BODIES, World
+
+if TYPE_CHECKING:
+    import pymunk
+
+
+def scene(*bodies: Body, gravity: tuple[float, float] = (0.0, 0.0), **more) -> Scene:
+    return Scene(
+        format_version=1,
+        id="test",
+        title="t",
+        order=1,
+        teaches="t",
+        note="t",
+        after="t",
+        view=(-5, -5, 5, 5),
+        gravity=gravity,
+        material=(Material(name="m", restitution=more.pop("e", 1.0), friction=more.pop("mu", 0.0)),),
+        body=bodies,
+        **more,
+    )
+
+
+def puck(name: str, x: float, vx: float, mass: float = 1.0, y: float = 0.0, vy: float = 0.0) -> Body:
+    return Body(
+        name=name, shape="circle", material="m", radius=0.2, mass=mass, position=(x, y), velocity=(vx, vy)
+    )
+
+
+def imbalance(world: World) -> float:
+    r = world.receipt
+    return r.start + r.given - r.kinetic - r.potential - r.contacts - r.friction - r.residual
+
+
+def play_about(world: World, chance: random.Random, turns: int) -> None:
+    """Everything a hand can do, at random."""
+    for _ in range(turns):
+        x, y = chance.uniform(-1.5, 1.5), chance.uniform(-1, 1.5)
+        move = chance.randrange(9)
+        if move <= 1:
+            world.grab(x, y, 1.0)
+        elif move <= 3:
+            world.drag(x, y)
+        elif move == 4:
+            world.release()
+        elif move == 5:
+            world.throw(x, y, chance.uniform(-5, 5), chance.uniform(-5, 5), 1.0)
+        elif move == 6:
+            world.spawn(chance.choice(["circle", "box"]), x, y, chance.uniform(-2, 2))
+        elif move == 7:
+            key, low, high = chance.choice(
+                [("gravity", 0, 20), ("restitution", 0, 1), ("friction", 0, 1), ("step", 0.001, 0.008)]
+            )
+            world.set(key, chance.uniform(low, high))
+        elif chance.random() < 0.3:
+            world.reset()
+        world.step(chance.randrange(40))
+        if chance.random() < 0.3:
+            world.drain_events()
+
+
+# -- time ------------------------------------------------------------------------------------------------
+
+
+def test_real_time_becomes_whole_steps_and_the_rest_is_kept() -> None:
+    world = World(scene(puck("a", 0, 1)))
+    made = sum(world.advance(1 / 60) for _ in range(60))
+    assert made == 240
+    assert world.t == 1.0
+
+
+def test_the_step_does_not_follow_the_frame_rate() -> None:
+    slow, fast = World(choose("billiards-break").scene), World(choose("billiards-break").scene)
+    for _ in range(25):
+        slow.advance(0.02)
+    for _ in range(250):
+        fast.advance(0.002)
+    assert slow.steps == fast.steps
+    assert slow.state_hash() == fast.state_hash()
+
+
+def test_a_stalled_view_does_not_race_and_a_paused_world_stands_still() -> None:
+    world = World(scene(puck("a", 0, 1)))
+    assert world.advance(1000.0) == 60
+    world.paused = True
+    assert world.advance(1.0) == 0
+    world.paused, world.speed = False, 0.5
+    assert world.advance(0.1) == 12
+
+
+def test_time_is_a_count_of_steps_and_never_drifts() -> None:
+    world = World(scene(puck("a", 0, 0), step=0.01))
+    world.step(500)
+    world.set("step", 0.02)
+    world.step(50)
+    assert world.t == 6.0
+
+
+# -- books -----------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    masses=st.tuples(st.floats(0.01, 100), st.floats(0.01, 100)),
+    speeds=st.tuples(st.floats(0.5, 10), st.floats(-10, 0)),
+    offset=st.floats(-0.3, 0.3),
+    e=st.floats(0, 1),
+    mu=st.floats(0, 2),
+)
+def test_two_bodies_keep_their_momentum_to_nine_digits(masses, speeds, offset, e, mu) -> None:
+    world = World(
+        scene(puck("a", -1, speeds[0], masses[0]), puck("b", 1, speeds[1], masses[1], y=offset), e=e, mu=mu)
+    )
+    before = world.momentum
+    world.step(400)
+    size = sum(m * abs(v) for m, v in zip(masses, speeds, strict=True))
+    assert world.momentum[:2] == pytest.approx(before[:2], abs=1e-9 * size)
+
+
+@settings(max_examples=30, deadline=None)
+@given(masses=st.tuples(st.floats(0.01, 100), st.floats(0.01, 100)), e=st.floats(0, 1))
+def test_two_bodies_lose_the_energy_that_restitution_says(masses, e) -> None:
+    a, b = masses
+    world = World(scene(puck("a", -1, 2.0, a), puck("b", 1, -1.0, b)), {"restitution": math.sqrt(e)})
+    world.step(400)
+    expected = (1 - e**2) * (a * b / (a + b)) * 3**2 / 2
+    assert world.receipt.contacts == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert world.receipt.residual == pytest.approx(0, abs=1e-9 * (a + b))
+
+
+def test_a_fall_makes_the_energy_that_position_first_integration_makes() -> None:
+    world = World(scene(puck("a", 0, 0, mass=2.0), gravity=(0.0, -9.81), step=0.01))
+    world.step(150)
+    # m g h v / 2 with v = g t; and the height is short by g h t / 2.
+    assert -world.receipt.residual == pytest.approx(2 * 9.81 * 0.01 * 9.81 * 1.5 / 2, rel=1e-12)
+    assert world.receipt.integrator == pytest.approx(world.receipt.residual, rel=1e-12)
+    fallen = -float(world.state()[0, 1])
+    assert 9.81 * 1.5**2 / 2 - fallen == pytest.approx(9.81 * 0.01 * 1.5 / 2, rel=1e-12)
+
+
+def test_a_body_at_rest_gains_and_loses_nothing() -> None:
+    chosen = choose("box-stack")
+    world = World(chosen.scene)
+    world.step(240 * 4)
+    settled = world.receipt
+    world.step(240 * 60)
+    later = world.receipt
+    for part in ("contacts", "friction", "residual", "potential"):
+        assert getattr(later, part) == pytest.approx(getattr(settled, part), abs=2e-3), part
+
+
+@pytest.mark.parametrize(
+    "name", ["billiards-break", "dominoes", "box-stack", "restitution-row", "incline", "robot-boxes"]
+)
+def test_the_books_balance_and_nothing_but_the_solver_is_in_the_residual(name: str) -> None:
+    world = World(choose(name).scene)
+    pushed_apart = 0.0
+    g = choose(name).scene.gravity
+    blocks = []
+    world.on_block.append(lambda block: blocks.append((block.before.copy(), block.states.copy())))
+    last = world.state()
+    for _ in range(8):
+        world.run_until(world.t + 0.25)
+    world.drain_events()
+    for before, states in blocks:
+        for k in range(len(states)):
+            # What a body moved beyond its velocity is overlap being pushed apart, against gravity.
+            extra = states[k, :, :2] - last[:, :2] - before[k, :, :2] * world.settings["step"]
+            pushed_apart -= float(world._accounts.ledger.mass @ (extra @ g))
+            last = states[k]
+    receipt = world.receipt
+    assert imbalance(world) == pytest.approx(0, abs=1e-9)
+    assert receipt.contacts >= -1e-9
+    assert receipt.friction >= -1e-9
+    assert receipt.residual == pytest.approx(receipt.integrator - pushed_apart, abs=1e-9)
+
+
+def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it() -> None:
+    world = World(choose("billiards-break").scene)
+    seen: dict[tuple[int, str, str], float] = {}
+
+    def post_solve(arbiter: pymunk.Arbiter, space, data) -> None:
+        if arbiter.is_first_contact:
+            names = sorted(world._space._bodies[body.id][0].name for body in arbiter.bodies)
+            seen[world.steps + 1, names[0], names[1]] = arbiter.total_impulse.length
+
+    world._space.space.on_collision(None, None, post_solve=post_solve)
+    world.run_until(1.0)
+    told = {
+        (event.step, *sorted((event.a, event.b))): event.impulse
+        for event in world.drain_events()
+        if event.kind == "contact"
+    }
+    assert len(told) > 20
+    assert told == pytest.approx(seen, rel=1e-12)
+
+
+def test_a_world_without_a_receipt_sees_the_same_contacts() -> None:
+    def contacts(*, receipt: bool) -> list[tuple]:
+        world = World(choose("billiards-break").scene, receipt=receipt)
+        world.run_until(1.0)
+        found = [event for event in world.drain_events() if event.kind == "contact"]
+        return sorted((e.step, e.a, e.b, round(e.approach, 9), round(e.slip, 9)) for e in found)
+
+    with_it, without = contacts(receipt=True), contacts(receipt=False)
+    assert len(with_it) > 20
+    assert with_it == without
+
+
+def test_a_world_without_a_receipt_says_so() -> None:
+    with pytest.raises(UsageError):
+        _ = World(scene(puck("a", 0, 0)), receipt=False).receipt
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_whatever_hands_do_the_books_balance(seed: int) -> None:
+    chance = random.Random(seed)
+    name = chance.choice(["box-stack", "billiards-break", "robot-boxes", "restitution-row", "newtons-cradle"])
+    world = World(choose(name).scene)
+    play_about(world, chance, 25)
+    size = max(1.0, abs(world.receipt.given), world.receipt.kinetic)
+    assert abs(imbalance(world)) < 1e-9 * size
+    assert len(world.history.t) > 0
+
+
+# -- hands -----------------------------------------------------------------------------------------------
+
+
+def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:
+    world = World(scene(puck("a", 0, 0)))
+    assert world.grab(0.1, 0.0) == "a" == world.held
+    world.drag(2.0, 1.0)
+    world.step(480)
+    assert world.state()[0, :2] == pytest.approx((1.9, 1.0), abs=0.2)
+    for i in range(60):
+        world.drag(2.0 + i * 0.02, 1.0)
+        world.step(2)
+    world.release()
+    assert world.held is None
+    assert float(world.state()[0, 3]) > 1.0
+
+
+def test_nothing_is_grabbed_where_nothing_movable_is() -> None:
+    world = World(choose("box-stack").scene)
+    assert world.grab(0.9, -0.1) is None
+    assert world.grab(0.0, 0.55) == "box-6"
+
+
+def test_a_held_body_does_not_pass_through_a_wall() -> None:
+    wall = Body(name="wall", shape="box", material="m", size=(0.2, 9), position=(1, 0), fixed=True)
+    world = World(scene(wall, puck("a", 0, 0)))
+    world.grab(0, 0)
+    world.drag(4, 0)
+    world.step(480)
+    assert float(world.state()[world._space.index["a"], 0]) < 1.0
+
+
+def test_a_spawned_body_joins_in_with_energy_that_was_given() -> None:
+    world = World(scene(puck("a", 0, 0)))
+    version = world.version
+    name = world.spawn("box", 1, 1, 2, 0, 0.1)
+    assert world.version == version + 1
+    assert {part.name for part in world.parts} == {"a", name}
+    assert world.receipt.given == pytest.approx(world.receipt.kinetic)
+    with pytest.raises(UsageError):
+        world.spawn("blob", 0, 0)
+
+
+def test_there_is_a_limit_to_spawning() -> None:
+    row = Body(
+        name="a",
+        shape="circle",
+        material="m",
+        radius=0.01,
+        repeat=(Repeat(count=MAX_BODIES - 1, offset=(0.05, 0)),),
+    )
+    world = World(scene(row), receipt=False)
+    world.spawn("circle", 0, 1)
+    with pytest.raises(UsageError, match="enough"):
+        world.spawn("circle", 0, 2)
+
+
+def test_a_body_that_leaves_is_gone_and_the_books_still_balance() -> None:
+    world = World(scene(puck("a", 0, 0), puck("b", 1, 1000.0)))
+    world.step(240)
+    assert [event.a for event in world.drain_events() if event.kind == "gone"] == ["b"]
+    assert [part.name for part in world.parts] == ["a"]
+    assert imbalance(world) == pytest.approx(0, abs=1e-6)
+
+
+def test_a_reset_brings_the_start_back_and_keeps_the_settings() -> None:
+    world = World(choose("restitution-row").scene)
+    start = world.state_hash()
+    world.set("gravity", 1.62)
+    world.spawn("circle", 1, 1)
+    world.step(100)
+    world.reset()
+    assert world.state_hash() == start
+    assert world.settings["gravity"] == 1.62
+    assert (world.t, world.steps, world.ticks) == (0.0, 0, 100)
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        lambda w: w.grab(math.nan, 0),
+        lambda w: w.throw(0, 0, math.inf, 0),
+        lambda w: w.advance(math.nan),
+        lambda w: w.set("gravity", math.nan),
+        lambda w: w.set("gravity", "9"),
+        lambda w: w.set("gravity", True),
+        lambda w: w.set("speed of light", 1),
+        lambda w: w.set("iterations", 1.5),
+        lambda w: w.set("left", 1.0),
+        lambda w: w.spawn("circle", 0, 0, size=-1),
+        lambda w: w.spawn("circle", None, 0),
+    ],
+)
+def test_what_is_no_number_or_out_of_range_is_refused_and_changes_nothing(act) -> None:
+    world = World(scene(puck("a", 0, 0)))
+    before = world.state_hash(), dict(world.settings)
+    with pytest.raises(UsageError):
+        act(world)
+    assert (world.state_hash(), world.settings) == before
+
+
+def test_restitution_and_friction_of_a_pair_are_products() -> None:
+    world = World(scene(puck("a", -1, 1), puck("b", 1, -1), e=1.0), {"restitution": 0.8})
+    world.step(400)
+    event = next(event for event in world.drain_events() if event.kind == "contact")
+    assert event.leave == pytest.approx(0.64 * event.approach)
+
+
+def test_the_order_of_adding_bodies_changes_a_chaotic_outcome_and_not_a_simple_one() -> None:
+    def end(name: str, backwards: int) -> list[float]:
+        world = World(choose(name, {"backwards": backwards}).scene)
+        world.run_until(3.0)
+        where = {part.name: row[:2].tolist() for part, row in zip(world.parts, world.state(), strict=True)}
+        return [value for part in sorted(where) for value in where[part]]
+
+    assert end("newtons-cradle", 0) == pytest.approx(end("newtons-cradle", 1), abs=1e-6)
+    assert end("billiards-break", 0) != pytest.approx(end("billiards-break", 1), abs=0.05)
+
+
+@pytest.mark.soak
+def test_a_day_of_simulated_time_leaks_nothing() -> None:
+    import tracemalloc
+
+    world = World(choose("box-stack").scene)
+    world.set("step", 1 / 60)
+    world.step(60 * 600)
+    tracemalloc.start()
+    first = tracemalloc.get_traced_memory()[0]
+    import resource
+
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for _ in range(24 * 6 - 1):
+        world.step(60 * 600)
+    grown = tracemalloc.get_traced_memory()[0] - first
+    tracemalloc.stop()
+    assert world.t == pytest.approx(86400)
+    assert grown < 2_000_000
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8_000  # kB
+    assert math.isfinite(world.receipt.residual)

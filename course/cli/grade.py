@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.grading.gradebook import Result
+    from course.grading.results import Effective
     from course.grading.run import RunOptions, Summary
 
-__all__ = ["app", "explain", "run"]
+__all__ = ["app", "explain", "in_days", "levels", "run", "score_of"]
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 _MOST_TROUBLED = 20
@@ -57,19 +58,28 @@ def run(
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, help="Draw hidden inputs as an earlier run did.")
     ] = None,
+    layout: Annotated[
+        str,
+        typer.Option(
+            "--layout",
+            metavar="auto|folders|canvas|moodle|gradescope",
+            help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
+        ),
+    ] = "auto",
 ) -> int:
     """Grade a folder of submissions.
 
-    The exit code is 0 when every submission was graded, whatever the scores; 6 when some could not be, and
-    then each is listed with its reason.
+    One folder per student, or what Canvas, Moodle or Gradescope gave for download, unpacked. The exit code is
+    0 when every submission was graded, whatever the scores; 6 when some could not be, and then each is listed
+    with its reason.
     """
     from course.cli.here import load_catalog
     from course.grading.run import RunOptions, grade_class
 
     console = current()
-    level, at_least = _levels(isolation)
+    level, at_least = levels(isolation)
     options = RunOptions(
-        tuple(exercise or ()), tuple(only or ()), jobs, level, at_least, timeout, seed, resume
+        tuple(exercise or ()), tuple(only or ()), jobs, level, at_least, timeout, seed, resume, layout
     )
     catalog = load_catalog()
     with _progress(console) as report:
@@ -87,12 +97,13 @@ def explain(
     """Show everything about one result, expected values included: for the instructor, not the student."""
     from course.cli.here import load_catalog
     from course.errors import NotFoundError
-    from course.grading.exports.lines import CourseRef, grade_line
-    from course.grading.gradebook import Gradebook
+    from course.grading.exports.lines import grade_line
+    from course.grading.run import open_results
 
     catalog = load_catalog()
-    with Gradebook(out / "gradebook.sqlite") as book:
-        found = next(iter(book.results(student, exercise)), None)
+    with open_results(out) as results:
+        found = next(results.all(student, exercise), None)
+        history = results.book.history(student, exercise)
     if found is None:
         raise NotFoundError(
             f"The gradebook has no result of {student!r} for {exercise!r}.",
@@ -101,13 +112,13 @@ def explain(
         )
     console = current()
     if console.json:
-        console.emit(grade_line(found, CourseRef(catalog.course_id, catalog.version)))
+        console.emit(grade_line(found, results.course))
     else:
-        _show_result(console, catalog, found)
+        _show_result(console, catalog, found, history)
     return 0
 
 
-def _levels(isolation: str) -> tuple[str | None, str]:
+def levels(isolation: str) -> tuple[str | None, str]:
     """The level to insist on, if any, and the weakest one to accept."""
     from course.errors import UsageError
 
@@ -124,7 +135,7 @@ class _progress:  # noqa: N801 - used as a function
         self._console = console
         self._bar: Any = None
 
-    def __enter__(self) -> Callable[[Result, int, int], None]:
+    def __enter__(self) -> Callable[[Effective, int, int], None]:
         console = self._console
         if console.json:
             return self._json
@@ -149,17 +160,15 @@ class _progress:  # noqa: N801 - used as a function
         if self._bar is not None:
             self._bar.stop()
 
-    def _advance(self, _result: Result, done: int, total: int) -> None:
+    def _advance(self, _result: Effective, done: int, total: int) -> None:
         self._bar.update(self._task, completed=done, total=total)
 
-    def _line(self, result: Result, done: int, total: int) -> None:
+    def _line(self, result: Effective, done: int, total: int) -> None:
         verdict = result.verdict
         ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
-        self._console.line(
-            f"{done}/{total} {result.key.student} {result.key.exercise} {verdict.state} {ending}"
-        )
+        self._console.line(f"{done}/{total} {result.student} {result.exercise} {verdict.state} {ending}")
 
-    def _json(self, result: Result, _done: int, _total: int) -> None:
+    def _json(self, result: Effective, _done: int, _total: int) -> None:
         from course.grading.exports.lines import CourseRef, grade_line
 
         self._console.emit_line(grade_line(result, _course(CourseRef)))
@@ -191,6 +200,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
                 troubled=tuple(summary.troubled),
+                unrecognised=tuple(summary.unrecognised),
             )
         )
         return
@@ -207,6 +217,12 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
             console.item(f"{row.student} {row.exercise}", f"{row.code}: {row.message}")
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+    if summary.unrecognised:
+        console.line((f"{len(summary.unrecognised)} could not be told whose they are:", "bold"))
+    for sentence in summary.unrecognised[:_MOST_TROUBLED]:
+        console.line(sentence, indent=2)
+    if len(summary.unrecognised) > _MOST_TROUBLED:
+        console.line(f"and {len(summary.unrecognised) - _MOST_TROUBLED} more.", indent=2)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))
@@ -217,19 +233,76 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
     console.note(f"Written: {out}/gradebook.sqlite, grades.csv, results.jsonl. Seed {summary.seed}.")
 
 
-def _show_result(console: Console, catalog: Catalog, result: Result) -> None:
+def _show_result(console: Console, catalog: Catalog, found: Effective, history: list[Result]) -> None:
     from course.cli.verdicts import show_everything
+    from course.grading.numbers import format_points
 
-    verdict = result.verdict
-    passed = "passed" if verdict.passed else "not passed"
-    console.heading(f"{result.key.student}, {result.key.exercise}", verdict.state)
-    console.item("score", f"{verdict.score:g} of {verdict.max_score:g}, {passed}", width=10)
-    level = f" at {verdict.isolation}" if verdict.isolation else ""
-    console.item("graded", f"{result.graded_at}{level}, seed {result.key.seed}", width=10)
-    console.item("submission", result.key.submission_sha256, width=10)
+    verdict, result = found.verdict, found.result
+    passed = "passed" if found.passed else "not passed"
+    score = "none" if found.score is None else format_points(found.score)
+    console.heading(f"{found.student}, {found.exercise}", verdict.state)
+    console.item("score", f"{score} of {format_points(found.max_score)}, {passed}", width=10)
+    if found.override is not None:
+        at = found.override.at
+        console.item(
+            "override", f"{found.override.reason} (set {at}; the checks gave {score_of(found)})", width=10
+        )
+    if found.late is not None:
+        cost = (
+            f"{format_points(found.penalty)} points off {score_of(found)}" if found.penalty else "no penalty"
+        )
+        console.item("late", f"{in_days(found.late)}, {cost}", width=10)
+    if result.number:
+        level = f" at {verdict.isolation}" if verdict.isolation else ""
+        console.item("graded", f"{result.graded_at}{level}, seed {result.key.seed}", width=10)
+        console.item("submission", result.key.submission_sha256, width=10)
+    for older in history:
+        if older.number != result.number:
+            was = f"{format_points(older.verdict.score)}, {older.verdict.state}"
+            console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
     if verdict.error is not None:
         console.item("reason", f"{verdict.error.code}: {verdict.error.message}", width=10)
         console.item("advice", verdict.error.help, width=10)
     console.blank()
-    if verdict.checks:
+    known = catalog.exercise_ids()
+    if verdict.checks and verdict.exercise in known:
         show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
+    else:
+        for check in verdict.checks:
+            console.item(check.status.value, check.title, width=10)
+
+
+def score_of(found: Effective) -> str:
+    """What the checks gave, in words."""
+    from course.grading.numbers import format_points
+
+    return "no score" if found.raw_score is None else format_points(found.raw_score)
+
+
+def in_days(seconds: float) -> str:
+    """A lateness in words, down to the minute."""
+    days, rest = divmod(int(seconds), 86_400)
+    hours, minutes = rest // 3600, rest % 3600 // 60
+    parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * (not days)
+    return " ".join(parts)
+
+
+def _register() -> None:
+    """The commands that live in files of their own."""
+    from course.cli import grade_change, grade_export
+
+    app.command("rerun", epilog="Example: course grade rerun grades --dry-run")(grade_change.rerun)
+    app.command(
+        "override",
+        epilog="Example: course grade override grades ada integrators --score 80 --reason 'oral exam'",
+    )(grade_change.override)
+    app.command("late", epilog="Example: course grade late grades --policy late.toml")(grade_change.late)
+    app.command("similar", epilog="Example: course grade similar grades")(grade_change.similar)
+    app.command(
+        "export",
+        epilog="Example: course grade export grades --format canvas --roster class.csv"
+        " --assignment integrators=4711",
+    )(grade_export.export)
+
+
+_register()

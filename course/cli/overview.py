@@ -6,8 +6,8 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 from course.cli.console import Console, current
-from course.cli.numbers import format_points
 from course.errors import CourseError
+from course.grading.numbers import format_points
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise, Lesson

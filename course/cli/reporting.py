@@ -15,8 +15,6 @@ from course.cli.schemas import CourseRef, Envelope
 from course.cli.sim_schemas import SimFile
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from course.cli.here import Here
     from course.figures.described import Plot
     from course.grading.report import Report, Section
@@ -172,13 +170,14 @@ def _write_bag(console: Console, made: Report, bag: Path) -> str:
             help="Its sensors are not written yet, or the exercise has none.",
             code="no_streams",
         )
-    from course.simulations.bags import read_bag, streams_of, write_bag
+    from course.simulations.bags import read_bag, write_bag
+    from course.simulations.streams import KINDS, streams_from
 
     path = cwd() / bag.expanduser()
-    write_bag(path, streams_of(made.streams))
-    counts: Mapping[str, int] = {topic: len(stream) for topic, stream in read_bag(path).items()}
+    write_bag(path, streams_from(made.streams))
+    kinds = {kind: name for name, kind in KINDS.items()}
+    # Read back: what a bag holds is what a reader finds in it.
+    counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in read_bag(path)]
     console.blank()
-    console.line(
-        f"Wrote {path}: " + ", ".join(f"{topic} {count} messages" for topic, count in counts.items())
-    )
+    console.line(f"Wrote {path}: messages {', '.join(counts)}.")
     return str(path)

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from course.cli.console import Console, current
-from course.cli.numbers import format_points
 from course.errors import CourseError, UngradableError, UsageError
+from course.grading.numbers import format_points
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

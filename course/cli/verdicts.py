@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.cli.console import STATUS_STYLE, Console
-from course.cli.numbers import format_input, format_pair, format_points, format_tolerance, format_value, unit
+from course.grading.numbers import format_points, numbers_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -173,7 +173,7 @@ class _Page:
     def _details(self, check: CheckResult) -> None:
         if check.help and check.help not in self._said:
             self._text(check.help)
-        for label, text in _numbers(check):
+        for label, text in numbers_of(check):
             if label != "diagnosis" or check.help not in self._said:
                 self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
         self._said.add(check.help)
@@ -218,28 +218,6 @@ def _all_alike(checks: Sequence[CheckResult]) -> bool:
 def _points(checks: Sequence[CheckResult]) -> str:
     points = format_points(sum(check.points for check in checks))
     return f"{points}/{format_points(sum(check.max_points for check in checks))} points"
-
-
-def _numbers(check: CheckResult) -> list[tuple[str, str]]:
-    """Label and text of every number the check has to show."""
-    rows: list[tuple[str, str]] = []
-    units = check.units
-    actual, expected = format_pair(check.actual, check.expected)
-    if check.actual is not None or check.expected is not None:
-        # A function that gave no value was not measured; what stands in its place is why.
-        label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
-        rows.append((label, f"{actual}{unit(units)}"))
-    if check.expected is not None:
-        within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
-        rows.append(("expected", f"{expected}{unit(units)}{within}"))
-    if check.input:
-        rows.append(("input", format_input(check.input)))
-    if check.first_divergence:
-        place = check.first_divergence
-        rows.append(("first off", f"{place.quantity} at step {place.step}, t = {format_value(place.t)} s"))
-    if check.diagnosis:
-        rows.append(("diagnosis", check.diagnosis))
-    return rows
 
 
 def _capital(text: str) -> str:

@@ -87,7 +87,12 @@ class _Grader:
         from course.grading.session import Submission
 
         try:
-            return Answer(verdict=self._session(job.exercise).grade(Submission(job.files)))
+            verdict = self._session(job.exercise).grade(Submission(job.files))
+            if verdict.error is not None and verdict.error.code == "isolation_failed":
+                # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
+                self._sessions.pop(job.exercise).close()
+                verdict = self._session(job.exercise).grade(Submission(job.files))
+            return Answer(verdict=verdict)
         except CourseError as error:
             problem = Problem(error.code, error.message, error.help)
             return Answer(error=problem, exit_code=error.exit_code)

@@ -18,7 +18,7 @@ from course.errors import UngradableError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["MAX_NOTEBOOK", "CodeCell", "code_cells"]
+__all__ = ["MAX_NOTEBOOK", "CodeCell", "code_cells", "typed_cell"]
 
 #: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
 MAX_NOTEBOOK = 32 << 20
@@ -104,6 +104,11 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
         )
     cells = notebook.cells or [cell for sheet in notebook.worksheets for cell in sheet.cells]
     return [_code_cell(number, cell) for number, cell in enumerate(cells, 1) if cell.cell_type == "code"]
+
+
+def typed_cell(number: int, text: str) -> CodeCell:
+    """A cell of which only the text is known: what was typed into a running notebook."""
+    return _code_cell(number, _Cell("code", text))
 
 
 def _decoded(data: bytes, name: str) -> _Notebook:

@@ -14,6 +14,8 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from course.errors import UngradableError
 from course.grading.notebook_cells import CodeCell, code_cells
 
@@ -22,10 +24,19 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
 
-__all__ = ["NotebookSource", "notebook_source"]
+__all__ = ["RECORD", "SETUP", "SOLUTION", "NotebookSource", "notebook_source", "source_of"]
 
 #: Roles that the course gives cells it generates.
 SOLUTION, SETUP = "solution", "setup"
+#: Under this name a submission says which cells its module was made of.
+RECORD = "notebook.json"
+
+
+class _Record(msgspec.Struct, frozen=True):
+    """What is kept of a notebook beside its module."""
+
+    notes: tuple[str, ...]
+    starts: tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True)
@@ -36,11 +47,23 @@ class NotebookSource:
         source: the module's text, UTF-8.
         notes: what was left out or taken for granted, a sentence each.
         starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
+        called: what a cell of some number is called.
     """
 
     source: bytes
     notes: tuple[str, ...]
     starts: tuple[tuple[int, int], ...]
+    called: str = "cell {}"
+
+    def record(self) -> bytes:
+        """Notes and places as bytes, to be kept beside the module."""
+        return msgspec.json.encode({"notes": self.notes, "starts": self.starts})
+
+    @classmethod
+    def of(cls, source: bytes, record: bytes) -> NotebookSource:
+        """A module and its ``record`` put together again."""
+        kept = msgspec.json.decode(record, type=_Record)
+        return cls(source, kept.notes, kept.starts)
 
     def place(self, line: int) -> str:
         """A line of the module as a place in the notebook: "cell 7, line 3"."""
@@ -48,7 +71,7 @@ class NotebookSource:
         if index < 0:
             return f"line {line}"
         start, cell = self.starts[index]
-        return f"cell {cell}, line {line - start + 1}"
+        return f"{self.called.format(cell)}, line {line - start + 1}"
 
 
 def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook") -> NotebookSource:
@@ -62,7 +85,7 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
         UngradableError: it is no notebook, one of another language, or has none of the functions.
     """
     try:
-        return _source(code_cells(data, name), exercise, name)
+        return source_of(code_cells(data, name), exercise, name)
     except RecursionError:
         raise UngradableError(
             f"{name} holds an expression nested too deeply to be read.",
@@ -71,7 +94,8 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
         ) from None
 
 
-def _source(cells: list[CodeCell], exercise: Exercise, name: str) -> NotebookSource:
+def source_of(cells: list[CodeCell], exercise: Exercise, name: str) -> NotebookSource:
+    """The module that cells stand for, however they came to be known; see ``notebook_source``."""
     functions = {task.id for task in exercise.task}
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:
@@ -215,6 +239,7 @@ def _notes(cells: list[CodeCell], chosen: list[CodeCell], exercise: str) -> tupl
     notes = [
         f"Cell {cell.number}, line {line}: left out, since it is not Python: {text[:80]}"
         for cell in cells
+        if cell.tags.get("role") in (None, SOLUTION, SETUP)
         for line, text in cell.dropped
     ]
     unmarked = [str(cell.number) for cell in chosen if cell.tags.get("exercise") != exercise]

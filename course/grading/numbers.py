@@ -6,9 +6,16 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from course.grading.verdict import Tolerance
+    from course.grading.verdict import CheckResult, Tolerance
 
-__all__ = ["format_input", "format_pair", "format_points", "format_tolerance", "format_value"]
+__all__ = [
+    "format_input",
+    "format_pair",
+    "format_points",
+    "format_tolerance",
+    "format_value",
+    "numbers_of",
+]
 
 _DIGITS = 6
 #: More than this many digits no float64 has.
@@ -62,3 +69,25 @@ def format_tolerance(tolerance: Tolerance, units: str) -> str:
 def unit(units: str) -> str:
     """A unit to follow a number; nothing for a pure number."""
     return f" {units}" if units and units != "1" else ""
+
+
+def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
+    """Label and text of every number that a check has to show, in the order it is read."""
+    rows: list[tuple[str, str]] = []
+    units = check.units
+    actual, expected = format_pair(check.actual, check.expected)
+    if check.actual is not None or check.expected is not None:
+        # A function that gave no value was not measured; what stands in its place is why.
+        label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
+        rows.append((label, f"{actual}{unit(units)}"))
+    if check.expected is not None:
+        within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
+        rows.append(("expected", f"{expected}{unit(units)}{within}"))
+    if check.input:
+        rows.append(("input", format_input(check.input)))
+    if check.first_divergence:
+        place = check.first_divergence
+        rows.append(("first off", f"{place.quantity} at step {place.step}, t = {format_value(place.t)} s"))
+    if check.diagnosis:
+        rows.append(("diagnosis", check.diagnosis))
+    return rows

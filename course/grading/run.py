@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import secrets
 import time
 from collections import Counter
@@ -13,22 +14,35 @@ import msgspec
 from course.catalog.questions import read_questions
 from course.errors import MissingCapabilityError, UngradableError, UsageError
 from course.grading.batch import BatchOptions, grade_all
-from course.grading.exports.lines import CourseRef, write_csv, write_jsonl
-from course.grading.gradebook import Gradebook, Key, Result
-from course.grading.intake import Entry, read_quiz, read_student, students
+from course.grading.downloads import class_list
+from course.grading.exports.lines import write_csv, write_jsonl
+from course.grading.gradebook import Gradebook, GradedExercise, Key, Result, SubmittedAt
+from course.grading.intake import Entry, read_quiz, read_student, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
+from course.grading.results import Results
 from course.grading.session import grader_version
+from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.grading.batch import Graded
+    from course.grading.downloads import ClassList, Student
+    from course.grading.results import Effective
 
-__all__ = ["RunOptions", "Summary", "Trouble", "export_all", "grade_class"]
+    #: What turns entries into verdicts: processes on this machine, or anything else that does the same.
+    GradeAll = Callable[[Iterable[Entry], BatchOptions], Iterator[Graded]]
+
+__all__ = ["QUIZ_RECORD", "RunOptions", "Summary", "Trouble", "export_all", "grade_class", "open_results"]
+
+#: What a quiz record is called among the submissions in a gradebook.
+QUIZ_RECORD = "quiz.json"
+_TIMES_AT_ONCE = 256
 
 
 @dataclass(frozen=True)
@@ -40,6 +54,7 @@ class RunOptions:
             handed in is no fault.
         only: students to grade; empty takes all.
         seed: seed of the run; None draws one, and a resumed run keeps its own.
+        layout: what kind of folder it is; "auto" finds out.
     """
 
     exercises: tuple[str, ...] = ()
@@ -50,6 +65,7 @@ class RunOptions:
     timeout: float = 10.0
     seed: int | None = None
     resume: bool = False
+    layout: str = "auto"
 
 
 class Trouble(msgspec.Struct, frozen=True):
@@ -71,7 +87,9 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results that an earlier run had.
+        unrecognised: what in the class folder belongs to nobody, one sentence each.
         elapsed_s: wall seconds.
+        write_s: of these, spent on writing the gradebook.
     """
 
     states: Counter[str] = field(default_factory=Counter)
@@ -80,23 +98,31 @@ class Summary:
     not_submitted: int = 0
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
+    unrecognised: list[str] = field(default_factory=list)
     seed: int = 0
     elapsed_s: float = 0.0
+    write_s: float = 0.0
 
     @property
     def exit_code(self) -> int:
         """70 if any fault was ours, 6 if anything could not be graded, else 0 whatever the scores."""
-        return 70 if self.states["grader_error"] else 6 if self.states["ungradable"] else 0
+        if self.states["grader_error"]:
+            return 70
+        return 6 if self.states["ungradable"] or self.unrecognised else 0
 
-    def count(self, result: Result) -> None:
-        verdict = result.verdict
-        self.states[verdict.state] += 1
-        self.passed += verdict.passed
-        if verdict.isolation:
-            self.levels[verdict.isolation] += 1
-        if verdict.error is not None:
-            key, error = result.key, verdict.error
-            self.troubled.append(Trouble(key.student, key.exercise, verdict.state, error.code, error.message))
+    def count(self, results: Results) -> None:
+        """Take in everything a gradebook has."""
+        for effective in results.all():
+            verdict = effective.verdict
+            self.states[verdict.state] += 1
+            self.passed += effective.passed
+            if verdict.isolation:
+                self.levels[verdict.isolation] += 1
+            if verdict.error is not None:
+                error = verdict.error
+                self.troubled.append(
+                    Trouble(effective.student, effective.exercise, verdict.state, error.code, error.message)
+                )
 
 
 def grade_class(
@@ -104,17 +130,21 @@ def grade_class(
     out: Path,
     catalog: Catalog,
     options: RunOptions,
-    report: Callable[[Result, int, int], None],
+    report: Callable[[Effective, int, int], None],
+    *,
+    grade: GradeAll = grade_all,
 ) -> Summary:
     """Grade every submission below ``folder`` into ``out``.
 
     Args:
         report: called with each new result, how many students are done, and how many there are.
+        grade: what turns entries into verdicts; it is handed only what is left to do, and this process
+            remains the only one that writes.
 
     Raises:
-        MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
+        MissingCapabilityError: there are no hidden graders here, no sufficient protection, or no room.
         NotFoundError: no such folder, exercise or student.
-        UsageError: ``out`` exists, or lies among the submissions.
+        UsageError: ``out`` exists, is in use, or lies among the submissions.
     """
     if catalog.content.graders is None:
         raise MissingCapabilityError(
@@ -123,93 +153,158 @@ def grade_class(
             code="needs_checkout",
         )
     exercises = _exercises(catalog, options.exercises)
-    class_list = _class_list(folder, options.only)
+    members = _members(folder, options)
     started = time.monotonic()
     with _open(out, folder, options) as book:
-        seed = _seed(book, options)
-        versions = {exercise.id: grader_version(exercise, catalog) for exercise in exercises}
-        book.set_meta(seed=str(seed), course=catalog.course_id, version=catalog.version)
-        summary = Summary(seed=seed)
-        counter = _Counter(len(class_list))
-        entries = _left_to_do(class_list, exercises, options, book, versions, summary, counter)
-        batch = BatchOptions(options.graders, options.level, options.at_least, options.timeout, seed)
-        for graded in grade_all(entries, batch):
-            entry = graded.entry
-            key = Key(entry.student, entry.exercise.id, entry.sha256, versions[entry.exercise.id], seed)
-            result = Result(key, graded.verdict)
-            book.add(result)
-            report(result, counter.done, counter.total)
-        if not options.exercises or QUIZ in options.exercises:
-            for result in _quizzes(class_list, catalog, options, book, summary):
-                book.add(result)
-                report(result, counter.total, counter.total)
-        book.flush()
-        for result in book.results():
-            summary.count(result)
-        export_all(out, book, CourseRef(catalog.course_id, catalog.version))
+        run = _Run(members.students, exercises, catalog, options, book)
+        for result, files in run.results(grade):
+            book.add(result, files)
+            report(run.view.of(result), run.done, len(members.students))
+        run.note_times()
+        summary = run.summary
+        summary.unrecognised = members.unrecognised
+        results = Results(book)
+        summary.count(results)
+        export_all(out, results)
+        summary.write_s = book.write_s
     summary.elapsed_s = time.monotonic() - started
     return summary
 
 
-def _quizzes(
-    class_list: list[tuple[str, Path]],
-    catalog: Catalog,
-    options: RunOptions,
-    book: Gradebook,
-    summary: Summary,
-) -> Iterator[Result]:
-    """The quiz attempts that came with the submissions, scored here: no student's code is involved."""
-    bank = Bank(read_questions(catalog.content.quiz))
-    version = quiz_version(bank)
-    for student, path in class_list if bank.ids else ():
-        try:
-            record = read_quiz(path)
-        except UngradableError as error:
-            record = error.code  # no list of attempts, which the scoring says of it
-        verdict = grade_quiz(bank, record)
-        if verdict is None:
-            continue
-        key = Key(student, QUIZ, record_sha256(record), version, summary.seed)
-        if options.resume and book.has(key):
-            summary.already += 1
-        else:
-            yield Result(key, verdict)
+class _Run:
+    """One run over a class, with a gradebook to write to."""
 
-
-def export_all(out: Path, book: Gradebook, course: CourseRef) -> None:
-    """The files that lie beside a gradebook after every run."""
-    write_jsonl(out / "results.jsonl", book.results(), course)
-    write_csv(out / "grades.csv", book.results())
-
-
-class _Counter:
-    """How many students were reached."""
-
-    def __init__(self, total: int) -> None:
-        self.total = total
+    def __init__(
+        self,
+        students: Sequence[Student],
+        exercises: Sequence[Exercise],
+        catalog: Catalog,
+        options: RunOptions,
+        book: Gradebook,
+    ) -> None:
+        self._students = students
+        self._exercises = exercises
+        self._catalog = catalog
+        self._options = options
+        self._book = book
+        self._versions = {exercise.id: grader_version(exercise, catalog) for exercise in exercises}
+        self._times: list[SubmittedAt] = []
+        self._bank = Bank(read_questions(catalog.content.quiz))
+        self._with_quiz = bool(self._bank.ids) and (not options.exercises or QUIZ in options.exercises)
+        self.summary = Summary(seed=_seed(book, options))
         self.done = 0
+        self._note_facts()
+        self.view = Results(book)
+
+    def _note_facts(self) -> None:
+        options, book = self._options, self._book
+        course = self._catalog
+        book.set_meta(seed=str(self.summary.seed), course=course.course_id, version=course.version)
+        facts = {"level": options.level, "at_least": options.at_least, "timeout": options.timeout}
+        if not (options.resume and book.run_options()):
+            book.begin_run("run", facts)
+        book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
+        book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
+
+    def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
+        """What is left to be graded, graded; with what was handed in."""
+        options = self._options
+        batch = BatchOptions(
+            options.graders, options.level, options.at_least, options.timeout, self.summary.seed
+        )
+        for graded in grade(self._left_to_do(), batch):
+            submission = graded.entry.submission
+            yield (
+                Result(self._key(graded.entry), graded.verdict),
+                dict(submission.files) if submission else None,
+            )
+        if self._with_quiz:
+            yield from self._quizzes()
+
+    def _key(self, entry: Entry) -> Key:
+        version = self._versions[entry.exercise.id]
+        return Key(entry.student, entry.exercise.id, entry.sha256, version, self.summary.seed)
+
+    def _left_to_do(self) -> Iterator[Entry]:
+        for student in self._students:
+            for entry in read_student(student, self._exercises, required=bool(self._options.exercises)):
+                if entry.submission is None and entry.problem is None:
+                    self.summary.not_submitted += 1
+                    continue
+                self._witnessed(entry.times)
+                if self._options.resume and self._book.confirm(self._key(entry)):
+                    self.summary.already += 1
+                    continue
+                yield entry
+            self.done += 1
+
+    def _quizzes(self) -> Iterator[tuple[Result, dict[str, bytes]]]:
+        """The quiz attempts that came with the submissions, scored here: no student's code is involved."""
+        version = quiz_version(self._bank)
+        for student in self._students:
+            path = None
+            try:
+                record, path = read_quiz(student)
+            except UngradableError as error:
+                record = error.code  # no list of attempts, which the scoring says of it
+            verdict = grade_quiz(self._bank, record)
+            if verdict is None:
+                continue
+            key = Key(student.name, QUIZ, record_sha256(record), version, self.summary.seed)
+            self._witnessed(witnesses(student, QUIZ, key.submission_sha256, path))
+            if self._options.resume and self._book.confirm(key):
+                self.summary.already += 1
+            else:
+                yield Result(key, verdict), {QUIZ_RECORD: _as_json(record)}
+
+    def _witnessed(self, times: tuple[SubmittedAt, ...]) -> None:
+        self._times += times
+        if self.view.policy is not None:
+            self.view.take_in(times)
+        if len(self._times) >= _TIMES_AT_ONCE:
+            self.note_times()
+
+    def note_times(self) -> None:
+        """Put what is known about when things were handed in into the gradebook."""
+        if self._times:
+            self._book.add_times(self._times)
+        self._times.clear()
 
 
-def _left_to_do(
-    class_list: list[tuple[str, Path]],
-    exercises: Sequence[Exercise],
-    options: RunOptions,
-    book: Gradebook,
-    versions: dict[str, str],
-    summary: Summary,
-    counter: _Counter,
-) -> Iterator[Entry]:
-    for student, path in class_list:
-        for entry in read_student(student, path, exercises, required=bool(options.exercises)):
-            if entry.submission is None and entry.problem is None:
-                summary.not_submitted += 1
-                continue
-            key = Key(student, entry.exercise.id, entry.sha256, versions[entry.exercise.id], summary.seed)
-            if options.resume and book.has(key):
-                summary.already += 1
-                continue
-            yield entry
-        counter.done += 1
+def _as_json(record: object) -> bytes:
+    with contextlib.suppress(TypeError, ValueError, RecursionError, msgspec.MsgspecError):
+        return msgspec.json.encode(record)
+    return b"null"  # what cannot be written again was ungradable, and stays so
+
+
+def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[GradedExercise]:
+    """What a gradebook notes about exercises, and about the quiz if there is one."""
+    noted = [
+        GradedExercise(item.id, item.title, item.max_points, item.pass_mark, item.order) for item in exercises
+    ]
+    if bank is not None:
+        total = len(bank.ids)
+        noted.append(GradedExercise(QUIZ, "Quiz", float(total), needed(total) / total, 1_000_000))
+    return noted
+
+
+def export_all(out: Path, results: Results) -> None:
+    """The files that lie beside a gradebook after every run."""
+    write_jsonl(out / "results.jsonl", results.all(), results.course)
+    write_csv(out / "grades.csv", results)
+
+
+@contextlib.contextmanager
+def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
+    """The results in the folder of a grading run.
+
+    Args:
+        writing: hold the gradebook, and write what lies beside it anew at the end.
+    """
+    with Gradebook(out / "gradebook.sqlite", writing=writing) as book:
+        yield Results(book)
+        if writing:
+            export_all(out, Results(book))
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
@@ -218,18 +313,19 @@ def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...
     return tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
 
 
-def _class_list(folder: Path, only: tuple[str, ...]) -> list[tuple[str, Path]]:
-    everyone = students(folder)
-    if not only:
-        return everyone
-    unknown = sorted(set(only) - {name for name, _ in everyone})
-    if unknown:
-        raise UsageError(
-            f"{folder} has no student {unknown[0]!r}.",
-            help="--only takes the name of a student's folder.",
-            code="student_not_found",
-        )
-    return [(name, path) for name, path in everyone if name in only]
+def _members(folder: Path, options: RunOptions) -> ClassList:
+    found = class_list(folder, options.layout)
+    if options.only:
+        unknown = sorted(set(options.only) - {student.name for student in found.students})
+        if unknown:
+            raise UsageError(
+                f"{folder} has no student {unknown[0]!r}.",
+                help="--only takes the name of a student's folder.",
+                code="student_not_found",
+            )
+        found.students = [student for student in found.students if student.name in options.only]
+        found.unrecognised = []
+    return found
 
 
 def _open(out: Path, folder: Path, options: RunOptions) -> Gradebook:
@@ -240,27 +336,32 @@ def _open(out: Path, folder: Path, options: RunOptions) -> Gradebook:
             code="out_inside_submissions",
         )
     path = out / "gradebook.sqlite"
-    if not options.resume or not path.exists():
+    if options.resume and path.exists():
+        return Gradebook(path, writing=True)
+    try:
+        out.mkdir(parents=True)
+    except FileExistsError:
         # Killed before its gradebook was made, a run leaves the folder and perhaps the draft.
         begun = (
             options.resume
             and out.is_dir()
             and all(item.name.startswith("gradebook.new") for item in out.iterdir())
         )
-        if out.exists() and not begun:
+        if not begun:
             raise UsageError(
                 f"{out} exists already; nothing was touched.",
                 help="Name a new folder, or add --resume to finish the run that is there.",
                 code="out_exists",
-            )
-        try:
-            out.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise UsageError(
-                f"{out} cannot be made: {error.strerror}.", help="Name a folder that can be written."
             ) from None
-        return Gradebook(path, create=True, writing=True)
-    return Gradebook(path, writing=True)
+        for draft in out.iterdir():
+            draft.unlink(missing_ok=True)
+    except OSError as error:
+        raise MissingCapabilityError(
+            f"{out} cannot be made: {error.strerror}.",
+            help="Name a folder that can be written.",
+            code="read_only",
+        ) from None
+    return Gradebook(path, create=True, writing=True)
 
 
 def _seed(book: Gradebook, options: RunOptions) -> int:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 from course.errors import InternalError, MissingCapabilityError, UngradableError
 from course.grading.collected import Check, CollectedChecks
 from course.grading.failures import CheckFailed, finding_of
+from course.grading.notebook_source import RECORD, NotebookSource
 from course.grading.outcomes import found, load_problem, no_functions, result, skipped
 from course.grading.remote import RemoteSubmission
 from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
@@ -134,8 +135,19 @@ class GradingSession:
         Args:
             only: id of one check to run, with what it requires; the rest is left out of the verdict.
 
-        Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
+        Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error". What
+        is said of a notebook's module is said of its cells.
         """
+        verdict = self._grade(submission, only)
+        record = submission.files.get(RECORD)
+        if record is None:
+            return verdict
+        from course.grading.notebook_places import placed
+
+        source = submission.files[self.exercise.module]
+        return placed(verdict, NotebookSource.of(source, record), self.exercise)
+
+    def _grade(self, submission: Submission, only: str | None) -> Verdict:
         try:
             remote = self._load(submission)
         except LoadRefusedError as refused:
@@ -178,8 +190,9 @@ class GradingSession:
 
     def _load(self, submission: Submission) -> RemoteSubmission:
         """The submission in a worker; the benchmarks put an unprotected one in its place."""
+        files = {name: data for name, data in submission.files.items() if name != RECORD}
         return RemoteSubmission(
-            self._spawner, submission.files, self.exercise.module, timeout=self._timeout, seed=self._seed
+            self._spawner, files, self.exercise.module, timeout=self._timeout, seed=self._seed
         )
 
     def _run(self, remote: RemoteSubmission, only: str | None) -> list[CheckResult]:
@@ -283,6 +296,17 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
     return files
 
 
+#: Parts of ``course/grading`` that read, keep, compare or show what was scored, and decide nothing of it.
+_DECIDES_NOTHING = frozenset(
+    {
+        "archives", "batch", "cluster", "downloads", "exports", "fingerprints", "gradebook", "gradebook_file",
+        "grader", "intake", "late", "notebook_cells", "notebook_places", "notebook_source",
+        "numbers", "override", "quiz", "records", "report",
+        "rerun", "results", "roster", "run", "similar", "similar_page", "times",
+    }
+)  # fmt: skip
+
+
 def grader_version(exercise: Exercise, catalog: Catalog) -> str:
     """A digest of everything that decides a score: checks, their helpers, and the machinery."""
     package = Path(__file__).resolve().parents[1]
@@ -292,6 +316,9 @@ def grader_version(exercise: Exercise, catalog: Catalog) -> str:
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*")):
+            part = path.relative_to(folder).parts[0].removesuffix(".py")
+            if folder == package / "grading" and part in _DECIDES_NOTHING:
+                continue
             if path.suffix in {".py", ".toml", ".ini"} and "__pycache__" not in path.parts:
                 digest.update(
                     path.relative_to(folder).as_posix().encode() + b"\0" + path.read_bytes() + b"\0"

@@ -1,1 +1,1 @@
-"""Files made from a gradebook: nothing in them that is not in it."""
+"""Exports of a gradebook: every format reads the same ``Results`` and writes a file whole or not at all."""

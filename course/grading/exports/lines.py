@@ -2,36 +2,43 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import time
 from typing import TYPE_CHECKING
 
 import msgspec
 
+from course.grading.exports.cells import csv_bytes, number, replacing, safe_cell, write_bytes
+from course.grading.results import CourseRef
 from course.grading.verdict import CheckResult, Problem, finite
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from course.grading.gradebook import Result
+    from course.grading.results import Effective, Results
 
-__all__ = ["CourseRef", "GradeLine", "grade_line", "safe_cell", "write_csv", "write_jsonl"]
+__all__ = ["CourseRef", "GradeLine", "OverrideLine", "grade_line", "safe_cell", "write_csv", "write_jsonl"]
 
-#: A spreadsheet takes a cell that begins with one of these for a formula.
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
-_COLUMNS = ("student", "exercise", "score", "max_score", "passed", "state", "reason", "late_s", "isolation")
+_COLUMNS = (
+    "student", "exercise", "score", "max_score", "passed", "state", "reason", "late_s", "isolation",
+    "raw_score", "late_penalty", "override_reason", "submitted_at", "graded_at",
+)  # fmt: skip
+_PERSON = ("name", "email", "section")
 
 
-class CourseRef(msgspec.Struct, frozen=True):
-    """Which course a result is about."""
+class OverrideLine(msgspec.Struct, frozen=True):
+    """A score an instructor set."""
 
-    id: str
-    version: str
+    score: float
+    reason: str
+    at: str
 
 
 class GradeLine(msgspec.Struct, frozen=True, kw_only=True, tag="course.grade/1", tag_field="schema"):
-    """One student and exercise: the body of ``course.check/1``, and what a grading run adds to it."""
+    """One student and exercise: the body of ``course.check/1``, and what a grading run adds to it.
+
+    ``score`` is what counts, ``raw_score`` what the checks gave; both are null after a fault of the grader's.
+    """
 
     ok: bool
     exit_code: int
@@ -40,7 +47,7 @@ class GradeLine(msgspec.Struct, frozen=True, kw_only=True, tag="course.grade/1",
     exercise: str
     scope: str
     state: str
-    score: float
+    score: float | None
     max_score: float
     passed: bool
     checks: tuple[CheckResult, ...]
@@ -52,11 +59,15 @@ class GradeLine(msgspec.Struct, frozen=True, kw_only=True, tag="course.grade/1",
     late: float | None = None
     graded_at: str = ""
     warnings: tuple[str, ...] = ()
+    raw_score: float | None = None
+    late_penalty: float = 0.0
+    override: OverrideLine | None = None
+    submitted_at: str | None = None
 
 
-def grade_line(result: Result, course: CourseRef) -> GradeLine:
+def grade_line(effective: Effective, course: CourseRef) -> GradeLine:
     """A result as its line of JSON."""
-    verdict, key = result.verdict, result.key
+    verdict, key, override = effective.verdict, effective.result.key, effective.override
     codes = {"ungradable": 3, "grader_error": 70}
     return GradeLine(
         ok=verdict.all_pass,
@@ -66,48 +77,77 @@ def grade_line(result: Result, course: CourseRef) -> GradeLine:
         exercise=key.exercise,
         scope=verdict.scope,
         state=verdict.state,
-        score=verdict.score,
-        max_score=verdict.max_score,
-        passed=verdict.passed,
+        score=effective.score,
+        max_score=effective.max_score,
+        passed=effective.passed,
         checks=verdict.checks,
         error=verdict.error,
         submission_sha256=key.submission_sha256,
         grader_version=key.grader_version,
         seed=key.seed,
         isolation=verdict.isolation,
-        late=result.late,
-        graded_at=result.graded_at,
+        late=effective.late,
+        graded_at=effective.result.graded_at,
         warnings=verdict.warnings,
+        raw_score=effective.raw_score,
+        late_penalty=effective.penalty,
+        override=OverrideLine(override.score, override.reason, override.at)
+        if override is not None and override.score is not None
+        else None,
+        submitted_at=utc(effective.submitted_at) or None,
     )
 
 
-def write_jsonl(path: Path, results: Iterable[Result], course: CourseRef) -> None:
-    """One line per student and exercise, everything in it: for the instructor only."""
-    with path.open("wb") as handle:
-        for result in results:
-            handle.write(msgspec.json.encode(finite(msgspec.to_builtins(grade_line(result, course)))) + b"\n")
+def utc(seconds: float | None) -> str:
+    """A time as ISO 8601; empty for None."""
+    return "" if seconds is None else time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds))
 
 
-def write_csv(path: Path, results: Iterable[Result]) -> None:
-    """One row per student and exercise; every cell quoted, none of them a formula."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
-    writer.writerow(_COLUMNS)
-    for result in results:
-        verdict = result.verdict
-        late = "" if result.late is None else f"{result.late:.0f}"
-        reason = verdict.error.code if verdict.error else ""
-        score, most = f"{verdict.score:g}", f"{verdict.max_score:g}"
-        passed = "yes" if verdict.passed else "no"
-        cells = (result.key.student, result.key.exercise, score, most, passed, verdict.state, reason, late)
-        writer.writerow([safe_cell(cell) for cell in (*cells, verdict.isolation)])
-    path.write_bytes(b"\xef\xbb\xbf" + text.getvalue().encode("utf-8"))  # the mark makes Excel read UTF-8
+def write_jsonl(path: Path, results: Iterable[Effective], course: CourseRef) -> None:
+    """One line per student and exercise, everything in it: for the instructor only.
+
+    Raises:
+        MissingCapabilityError: it cannot be written.
+    """
+    with replacing(path) as handle:
+        for effective in results:
+            line = grade_line(effective, course)
+            handle.write(msgspec.json.encode(finite(msgspec.to_builtins(line))) + b"\n")
 
 
-def safe_cell(text: str) -> str:
-    """A cell that a spreadsheet shows as it is: formulas are disarmed, control characters are escaped."""
-    shown = "".join(
-        character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
-        for character in text
-    )
-    return "'" + shown if text.startswith(_FORMULA) else shown
+def write_csv(path: Path, results: Results, chosen: Iterable[Effective] | None = None) -> None:
+    """One row per student and exercise; every cell quoted, none of them a formula.
+
+    Args:
+        chosen: the rows; all if None.
+
+    Raises:
+        MissingCapabilityError: it cannot be written.
+    """
+    wanted = results.all() if chosen is None else chosen
+    headings = (*_COLUMNS, *_PERSON) if results.roster else _COLUMNS
+    write_bytes(path, csv_bytes(headings, (_row(results, effective) for effective in wanted)))
+
+
+def _row(results: Results, effective: Effective) -> list[str]:
+    verdict, override = effective.verdict, effective.override
+    cells = [
+        effective.student,
+        effective.exercise,
+        number(effective.score),
+        number(effective.max_score),
+        "yes" if effective.passed else "no",
+        verdict.state,
+        verdict.error.code if verdict.error else "",
+        "" if effective.late is None else f"{effective.late:.0f}",
+        verdict.isolation,
+        number(effective.raw_score),
+        number(effective.penalty),
+        override.reason if override else "",
+        utc(effective.submitted_at),
+        effective.result.graded_at,
+    ]
+    if results.roster:
+        person = results.person(effective.student)
+        cells += [person.name, person.email, person.section] if person else ["", "", ""]
+    return cells

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import sqlite3
-from typing import TYPE_CHECKING
+import subprocess
+import sys
+from pathlib import Path
 
+import msgspec
 import pytest
 
-from course.errors import IntegrityError, NotFoundError, UsageError
-from course.grading.gradebook import Gradebook, Key, Result
+from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.grading.gradebook import (
+    FromDownload,
+    Gradebook,
+    GradedExercise,
+    Key,
+    Override,
+    Result,
+    SubmittedAt,
+)
 from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
-if TYPE_CHECKING:
-    from pathlib import Path
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def key(student: str = "ada", digest: str = "a" * 64) -> Key:
@@ -32,11 +44,11 @@ def verdict(score: float = 5.0, state: str = "graded", actual: object = None) ->
 
 def test_a_result_comes_back_as_it_went_in(tmp_path: Path) -> None:
     with Gradebook(tmp_path / "g.sqlite", create=True) as book:
-        book.add(Result(key(), verdict(), 12.5))
+        book.add(Result(key(), verdict()))
         book.set_meta(seed="7")
     with Gradebook(tmp_path / "g.sqlite") as book:
         (found,) = book.results()
-        assert (found.key, found.verdict, found.late) == (key(), verdict(), 12.5)
+        assert (found.key, found.verdict) == (key(), verdict())
         assert found.graded_at.endswith("Z")
         assert book.meta()["seed"] == "7"
 
@@ -71,7 +83,6 @@ def test_a_second_writer_is_told_and_changes_nothing(tmp_path: Path) -> None:
     path = tmp_path / "g.sqlite"
     with Gradebook(path, create=True, writing=True) as book:
         book.add(Result(key(), verdict()))
-        book.flush()
         with pytest.raises(UsageError, match="Another run is writing"):
             Gradebook(path, writing=True)
     with Gradebook(path, writing=True) as book:
@@ -84,8 +95,9 @@ def test_a_newer_gradebook_is_refused_and_left_alone(tmp_path: Path) -> None:
     with sqlite3.connect(path) as db:
         db.execute("PRAGMA user_version = 99")
     before = path.read_bytes()
-    with pytest.raises(UsageError, match="newer version"):
-        Gradebook(path, writing=True)
+    for writing in (True, False):
+        with pytest.raises(MissingCapabilityError, match="newer version"):
+            Gradebook(path, writing=writing)
     assert path.read_bytes() == before
 
 
@@ -112,3 +124,165 @@ def test_a_missing_gradebook_is_not_created_by_looking(tmp_path: Path) -> None:
     with pytest.raises(NotFoundError):
         Gradebook(tmp_path / "g.sqlite")
     assert not (tmp_path / "g.sqlite").exists()
+
+
+def test_grading_anew_keeps_the_old_result_beside_the_new(tmp_path: Path) -> None:
+    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+        book.begin_run("run", {"timeout": 3.0})
+        book.add(Result(key(), verdict(1)))
+        book.add(Result(key(), verdict(2)))
+        assert [old.verdict.score for old in book.history("ada", "doubling")] == [2]
+        book.begin_run("rerun", {})
+        book.add(Result(key(), verdict(3)))
+        assert [(old.run, old.verdict.score) for old in book.history("ada", "doubling")] == [(1, 2), (2, 3)]
+        (newest,) = book.results()
+        assert newest.verdict.score == 3
+
+
+def test_handing_in_an_earlier_version_again_makes_its_score_count_again(tmp_path: Path) -> None:
+    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+        book.add(Result(key(digest="a" * 64), verdict(1)))
+        book.add(Result(key(digest="b" * 64), verdict(2)))
+        assert book.confirm(key(digest="a" * 64))
+        assert not book.confirm(key(digest="c" * 64))
+        (newest,) = book.results()
+        assert newest.verdict.score == 1
+        book.add(Result(key(digest="c" * 64), verdict(3)))
+        (newest,) = book.results()
+        assert newest.verdict.score == 3
+
+
+def test_what_was_handed_in_comes_out_again_byte_for_byte(tmp_path: Path) -> None:
+    files = {"doubling.py": b"\xff\x00 not text", "b.py": b""}
+    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+        book.add(Result(key(), verdict()), files)
+        assert book.submission("a" * 64) == files
+        assert book.submission("b" * 64) is None
+
+
+_KILLED = """
+import os, sys
+from pathlib import Path
+from tests.unit.grading.test_gradebook import Gradebook, Result, key, verdict
+book = Gradebook(Path(sys.argv[1]), create=True, writing=True)
+for number in range(30):
+    book.add(Result(key(f"student {number}"), verdict(number)))
+os._exit(9)
+"""
+
+
+def test_a_reported_result_survives_the_death_of_its_process(tmp_path: Path) -> None:
+    """The writer ends without closing anything; whoever looks next puts things in order."""
+    path = tmp_path / "g.sqlite"
+    assert subprocess.run([sys.executable, "-c", _KILLED, path], cwd=ROOT, check=False).returncode == 9
+    assert (tmp_path / "g.sqlite-wal").exists()
+    with Gradebook(path) as book:
+        assert len(list(book.results())) == 30
+    assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
+
+
+def test_a_closed_gradebook_is_one_file(tmp_path: Path) -> None:
+    with Gradebook(tmp_path / "g.sqlite", create=True, writing=True) as book:
+        book.add(Result(key(), verdict()))
+    assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
+
+
+def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "g.sqlite"
+    with Gradebook(path, create=True, writing=True) as book:
+        with pytest.raises(UsageError, match="Another run"):
+            Gradebook(path, create=True, writing=True)
+        book.add(Result(key(), verdict()))
+    with Gradebook(path) as book:
+        assert len(list(book.results())) == 1
+    assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
+
+
+def test_reading_is_refused_while_a_run_writes_and_harms_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "g.sqlite"
+    with Gradebook(path, create=True, writing=True) as book:
+        book.add(Result(key(), verdict()))
+        with pytest.raises(UsageError, match="Another run is writing"):
+            Gradebook(path)
+        book.add(Result(key("bob"), verdict()))
+    with Gradebook(path) as book:
+        assert len(list(book.results())) == 2
+
+
+def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path: Path) -> None:
+    path = tmp_path / "g.sqlite"
+    added: list[int] = []
+
+    def fill() -> None:
+        with Gradebook(path, create=True, writing=True) as book:
+            book._db.execute("PRAGMA max_page_count = 40")
+            for number in range(1000):
+                book.add(Result(key(f"student {number}"), verdict()))
+                added.append(number)
+
+    with pytest.raises(MissingCapabilityError, match="disk is full") as caught:
+        fill()
+    kept = len(added)
+    assert caught.value.exit_code == 4
+    assert "--resume" in caught.value.help
+    assert 10 < kept < 1000
+    with Gradebook(path, writing=True) as book:
+        assert len(list(book.results())) == kept
+        book.add(Result(key("one more"), verdict()))
+
+
+def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path: Path) -> None:
+    path = tmp_path / "g.sqlite"
+    body = msgspec.json.encode(verdict(4))
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        db.executescript(
+            "CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
+            "CREATE TABLE results (number INTEGER PRIMARY KEY, student TEXT NOT NULL, exercise TEXT NOT NULL,"
+            " submission_sha256 TEXT NOT NULL, grader_version TEXT NOT NULL, seed INTEGER NOT NULL,"
+            " late REAL, graded_at TEXT NOT NULL, verdict BLOB NOT NULL, verdict_sha256 TEXT NOT NULL,"
+            " UNIQUE (student, exercise, submission_sha256, grader_version, seed));"
+            "INSERT INTO meta VALUES ('seed', '7');"
+            "PRAGMA user_version = 1; PRAGMA application_id = 1668248179;"
+        )
+        db.execute(
+            "INSERT INTO results VALUES (3, 'ada', 'doubling', ?, 'v1', 7, NULL, 'then', ?, ?)",
+            ("a" * 64, body, hashlib.sha256(body).hexdigest()),
+        )
+        db.commit()
+    for _ in range(2):
+        with Gradebook(path) as book:
+            (found,) = book.results()
+            assert (found.key, found.verdict.score, found.graded_at) == (key(), 4, "then")
+            assert book.has(key())
+            assert book.meta()["seed"] == "7"
+
+
+def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path: Path) -> None:
+    path = tmp_path / "g.sqlite"
+    with Gradebook(path, create=True) as book:
+        book.add_override(Override("ada", "doubling", 5.0, "first"))
+        book.add_override(Override("ada", "doubling", None, ""))
+        assert [(item.score, item.reason) for item in book.overrides()] == [(5.0, "first"), (None, "")]
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE overrides SET score = 10.0 WHERE number = 1")
+        db.commit()
+    with Gradebook(path) as book, pytest.raises(IntegrityError, match="override"):
+        book.overrides()
+
+
+def test_of_one_witness_the_earliest_time_of_a_content_stays(tmp_path: Path) -> None:
+    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+        for at in (200.0, 100.0, 300.0, None):
+            book.add_times([SubmittedAt("ada", "doubling", "a", "mtime", at)])
+        book.add_times([SubmittedAt("ada", "doubling", "", "list", 5.0)])
+        book.add_times([SubmittedAt("ada", "doubling", "", "list", 9.0)], replace=True)
+        assert {(time.source, time.at) for time in book.times()} == {("mtime", 100.0), ("list", 9.0)}
+
+
+def test_exercises_and_students_are_noted(tmp_path: Path) -> None:
+    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+        two = [GradedExercise("b", "B", 2.0, 0.7, 2), GradedExercise("a", "A", 3.0, 0.5, 3)]
+        book.set_exercises(two)
+        assert list(book.exercises()) == two
+        book.set_students({"ada_1": FromDownload("canvas", "1", "ada")})
+        assert book.students() == {"ada_1": FromDownload("canvas", "1", "ada")}

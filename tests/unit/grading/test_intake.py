@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import NotFoundError
-from course.grading.intake import MAX_FILE, Entry, read_class, read_student, students
+from course.grading.downloads import Place, Student, class_list
+from course.grading.intake import MAX_FILE, Entry, read_class, read_student
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +26,7 @@ SOURCE = b"def double(x):\n    return 2 * x\n"
 
 
 def entry(folder: Path, exercise: Exercise, *, required: bool = True) -> Entry:
-    (found,) = read_student("ada", folder, [exercise], required=required)
+    (found,) = read_student(Student("ada", Place(folder)), [exercise], required=required)
     return found
 
 
@@ -219,7 +220,7 @@ def test_names_that_are_no_text_stay_apart(tmp_path: Path, doubling: Exercise) -
         folder = tmp_path / os.fsdecode(raw)
         folder.mkdir()
         (folder / "doubling.py").write_bytes(SOURCE)
-    names = [name for name, _ in students(tmp_path)]
+    names = [student.name for student in class_list(tmp_path).students]
     assert len(set(names)) == 2
     for name in names:
         name.encode("utf-8")
@@ -227,4 +228,4 @@ def test_names_that_are_no_text_stay_apart(tmp_path: Path, doubling: Exercise) -
 
 def test_no_such_class_is_said_plainly(tmp_path: Path) -> None:
     with pytest.raises(NotFoundError, match="not a folder of submissions"):
-        students(tmp_path / "nowhere")
+        class_list(tmp_path / "nowhere")

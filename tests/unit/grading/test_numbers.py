@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from course.cli.numbers import format_input, format_pair, format_points, format_tolerance, format_value
+from course.grading.numbers import format_input, format_pair, format_points, format_tolerance, format_value
 from course.grading.verdict import Tolerance
 
 

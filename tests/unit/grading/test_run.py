@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-import random
 import signal
 import subprocess
 import sys
-import time
 import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,14 +14,18 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from course.errors import UsageError
-from course.grading.batch import BatchOptions, grade_all
+from course.grading.batch import BatchOptions, Graded, grade_all
 from course.grading.gradebook import Gradebook
 from course.grading.intake import read_class
-from course.grading.run import RunOptions, grade_class
+from course.grading.run import RunOptions, grade_class, open_results
+from course.grading.verdict import Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.grading.intake import Entry
 
 MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 ROOT = Path(__file__).resolve().parents[3]
@@ -100,7 +102,7 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
         tmp_path / "out",
         catalog,
         again,
-        lambda result, *_: graded.append(result.key.student),
+        lambda result, *_: graded.append(result.student),
     )
     assert graded == ["student-001"]
     assert (summary.already, summary.seed) == (3, 5)
@@ -152,56 +154,6 @@ def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution:
     assert json.loads(again.stdout)["error"]["code"] == "out_exists"
 
 
-def test_a_run_killed_at_random_moments_leaves_a_readable_gradebook_and_resumes(
-    tmp_path: Path, solution: bytes
-) -> None:
-    make_class(tmp_path / "class", solution, 40)
-    out = tmp_path / "out"
-    rng = random.Random(20261121)
-    arguments = (tmp_path / "class", "--out", out, "-j", 2, "--seed", 9, "--quiet")
-    kills = 0
-    for number in range(6):
-        resume = ["--resume"] if out.exists() else []
-        process = subprocess.Popen(command(*arguments, *resume), env=environment(), stdout=subprocess.DEVNULL)
-        if not resume:
-            _wait_for(out / "gradebook.sqlite")
-        time.sleep(rng.uniform(0.0, 1.0) + 0.4 * number)
-        if process.poll() is None:
-            process.kill()
-            kills += 1
-        process.wait()
-        with Gradebook(out / "gradebook.sqlite") as book:
-            assert all(result.verdict.score in (6, 10) for result in book.results())
-    assert kills >= 1
-    last = subprocess.run(
-        command(*arguments, "--resume"), env=environment(), capture_output=True, text=True, check=False
-    )
-    assert last.returncode == 0, last.stderr
-    assert scores(out) == {f"student-{number:03}": 6.0 if number % 3 == 0 else 10.0 for number in range(40)}
-    assert not _left_behind()
-
-
-def _wait_for(path: Path) -> None:
-    deadline = time.monotonic() + 30
-    while not path.exists() and time.monotonic() < deadline:
-        time.sleep(0.01)
-
-
-def _left_behind() -> list[str]:
-    """Graders and zygotes of killed runs: they must end by themselves."""
-    deadline = time.monotonic() + 10
-    while True:
-        found = subprocess.run(
-            ["ps", "-eo", "ppid=,args="], capture_output=True, text=True, check=False
-        ).stdout
-        left = [
-            line for line in found.splitlines() if "course.grading.grader" in line and line.split()[0] == "1"
-        ]
-        if not left or time.monotonic() > deadline:
-            return left
-        time.sleep(0.2)
-
-
 def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -234,3 +186,103 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 1, 1)
     (trouble,) = summary.troubled
     assert (trouble.student, trouble.exercise, trouble.code) == ("eve", "quiz", "quiz_record_inconsistent")
+
+
+def test_a_second_run_on_one_folder_is_told_and_the_first_goes_on(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    options = RunOptions(exercises=("doubling",), at_least="L1", resume=True)
+    (tmp_path / "out").mkdir()
+    with Gradebook(tmp_path / "out" / "gradebook.sqlite", create=True, writing=True) as first:
+        with pytest.raises(UsageError, match="Another run is writing"):
+            grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None)
+        first.set_meta(seed="77")
+    assert (tmp_path / "out" / "gradebook.sqlite").exists()
+    summary = grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None)
+    assert (summary.seed, summary.states["graded"]) == (77, 1)
+
+
+def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "gradebook.new-1-0").write_bytes(b"half")
+    options = RunOptions(exercises=("doubling",), resume=True)
+    grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {"gradebook.sqlite", "grades.csv", "results.jsonl"}
+
+
+def right(entries: Iterable[Entry], _: BatchOptions) -> Iterator[Graded]:
+    """Stands in for grader processes: everything that can be read is right, the rest is said."""
+    for entry in entries:
+        problem = entry.problem
+        yield Graded(
+            entry,
+            Verdict(
+                exercise=entry.exercise.id,
+                scope="full",
+                state="graded" if problem is None else "ungradable",
+                score=0.0 if problem else entry.exercise.max_points,
+                max_score=entry.exercise.max_points,
+                passed=problem is None,
+                checks=(),
+                isolation="L1",
+                error=problem,
+            ),
+        )
+
+
+def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    folder = tmp_path / "class"
+    folder.mkdir()
+    for name in ("ada_1_10_doubling.py", "ada_1_11_halving.py", "bob_LATE_2_12_doubling.py", "cy_3_13_x.txt"):
+        (folder / name).write_bytes(name.encode())
+        os.utime(folder / name, (1_000_000, 1_000_000))
+    (folder / "cy_3_14_mine.zip").write_bytes(b"PK")
+    (folder / "eve_4_15_doubling.py").write_bytes(b"x")
+    (folder / "adam_4_16_doubling.py").write_bytes(b"x")
+    summary = grade_class(folder, tmp_path / "out", catalog, RunOptions(), lambda *_: None, grade=right)
+    assert (summary.exit_code, summary.states["graded"], summary.states["ungradable"]) == (6, 3, 2)
+    assert len(summary.unrecognised) == 1
+    with open_results(tmp_path / "out") as results:
+        found = {(item.student, item.exercise): item for item in results.all()}
+        assert found["ada_1", "halving"].score == 2.0
+        assert found["bob_2", "doubling"].flagged_late
+        assert not found["ada_1", "doubling"].flagged_late
+        assert results.downloads["bob_2"].key == "2"
+        mtimes = {time.at for time in results.book.times() if time.source == "mtime"}
+        assert mtimes == {1_000_000.0}
+        assert [item.title for item in results.exercises()] == ["Doubling", "Halving"]
+        sha256 = found["ada_1", "halving"].result.key.submission_sha256
+        assert results.book.submission(sha256) == {"halving.py": b"ada_1_11_halving.py"}
+
+
+def test_a_file_that_is_again_what_it_was_gets_its_earlier_score_without_grading(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    path = tmp_path / "class" / "student-000" / "doubling.py"
+    first = path.read_bytes()
+    graded: list[str] = []
+
+    def run(*, resume: bool) -> str:
+        options = RunOptions(exercises=("doubling",), resume=resume)
+        grade_class(
+            tmp_path / "class", tmp_path / "out", catalog, options,
+            lambda item, *_: graded.append(item.result.key.submission_sha256), grade=right,
+        )  # fmt: skip
+        with open_results(tmp_path / "out") as results:
+            (found,) = results.all()
+        return found.result.key.submission_sha256
+
+    one = run(resume=False)
+    path.write_bytes(first + b"# more")
+    other = run(resume=True)
+    path.write_bytes(first)
+    assert run(resume=True) == one
+    assert graded == [one, other]

@@ -1,0 +1,157 @@
+"""A zip for Gradescope's "Configure Autograder": our graders, run in their container on every submission.
+
+It holds hidden graders, so it is the instructor's alone. The same inputs give the same bytes.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import io
+import json
+import re
+import tomllib
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.errors import MissingCapabilityError
+from course.grading.exports.cells import write_bytes
+from course.grading.exports.selection import Written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+__all__ = ["write_autograder"]
+
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
+#: What grading imports; the rest of the course's requirements is for students.
+_NEEDED = ("msgspec", "numpy", "pytest")
+#: Parts of the package that grading does not use, and the content of a wheel.
+_LEFT_OUT = {"cli", "authoring", "notebooks", "sandbox", "content", "lessons", "__pycache__"}
+
+_SETUP = """#!/usr/bin/env bash
+# Runs once, as root, when Gradescope builds the image.
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive
+apt-get update
+apt-get install -y --no-install-recommends bubblewrap ca-certificates
+python=""
+recent='import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))'
+for candidate in python3.14 python3.13 python3.12 python3.11 python3; do
+  if command -v "$candidate" >/dev/null && "$candidate" -c "$recent"; then
+    python="$candidate"
+    break
+  fi
+done
+if [ -z "$python" ]; then
+  for version in 3.13 3.12 3.11; do
+    if apt-get install -y --no-install-recommends "python$version" "python$version-venv"; then
+      python="python$version"
+      break
+    fi
+  done
+fi
+if [ -z "$python" ]; then
+  echo "This image has no Python 3.11 or newer; choose a newer base image." >&2
+  exit 1
+fi
+"$python" -m venv /opt/grader
+/opt/grader/bin/pip install --no-cache-dir {requirements}
+# Students' code runs as another user where it can; it has no business among the graders.
+chmod -R go-rwx /autograder/source
+"""
+
+_RUN = """#!/usr/bin/env bash
+# Runs for every submission.
+set -uo pipefail
+cd /
+unset PYTHONPATH PYTHONSTARTUP
+export COURSE_CONTENT=/autograder/source/content
+export PYTHONPATH=/autograder/source
+export PYTHONDONTWRITEBYTECODE=1
+exec /opt/grader/bin/python -P -m course.grading.exports.container \\
+  /autograder/submission /autograder/results/results.json /autograder/source/config.json
+"""
+
+
+def write_autograder(
+    path: Path, catalog: Catalog, exercises: Sequence[Exercise], *, seed: int, timeout: float, asked: bool
+) -> Written:
+    """Write the zip.
+
+    Args:
+        seed: of the hidden inputs; every submission meets the same.
+        timeout: wall seconds per check.
+        asked: the exercises were named, so that one that is not handed in is reported.
+
+    Raises:
+        MissingCapabilityError: this installation has no hidden graders, or the file cannot be written.
+    """
+    if catalog.content.graders is None:
+        raise MissingCapabilityError(
+            "This installation has no hidden graders: it is a student's.",
+            help="Export from a checkout of the course.",
+            code="needs_checkout",
+        )
+    config = {
+        "exercises": [exercise.id for exercise in exercises],
+        "required": asked,
+        "seed": seed,
+        "timeout": timeout,
+        "at_least": "L1",
+    }
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as packed:
+        setup = _SETUP.replace("{requirements}", " ".join(f"'{item}'" for item in _requirements()))
+        _put(packed, "setup.sh", setup.encode(), executable=True)
+        _put(packed, "run_autograder", _RUN.encode(), executable=True)
+        _put(packed, "config.json", json.dumps(config, indent=1).encode())
+        for name, source in _files(catalog, exercises):
+            _put(packed, name, source.read_bytes())
+    write_bytes(path, buffer.getvalue())
+    notes = [
+        "The zip holds hidden graders: upload it, and give it to nobody.",
+        "The container's protection level is in the output that only you see; below L2 a hostile submission "
+        "could read the graders.",
+    ]
+    return Written(paths=[path], rows=len(exercises), notes=notes)
+
+
+def _files(catalog: Catalog, exercises: Sequence[Exercise]) -> Iterator[tuple[str, Path]]:
+    """Name in the zip and file, in a fixed order."""
+    package = Path(__file__).resolve().parents[2]
+    for path in _tree(package):
+        if not _LEFT_OUT & set(path.relative_to(package).parts):
+            yield f"course/{path.relative_to(package).as_posix()}", path
+    content = catalog.content
+    assert content.graders is not None
+    yield "content/lessons/syllabus.toml", content.syllabus
+    for exercise in exercises:
+        for kind, folder in (("exercises", content.exercises), ("graders", content.graders)):
+            for path in _tree(folder / exercise.id):
+                yield f"content/{kind}/{path.relative_to(folder).as_posix()}", path
+
+
+def _tree(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+
+
+def _put(packed: zipfile.ZipFile, name: str, content: bytes, *, executable: bool = False) -> None:
+    info = zipfile.ZipInfo(name, date_time=_EPOCH)
+    info.create_system = 3  # Unix everywhere, or the bytes would depend on who packs
+    info.external_attr = (0o100755 if executable else 0o100644) << 16
+    packed.writestr(info, content, zipfile.ZIP_DEFLATED)
+
+
+def _requirements() -> list[str]:
+    """Requirements of grading, versions included, as the project file of this checkout states them."""
+    project = Path(__file__).resolve().parents[3] / "pyproject.toml"
+    try:
+        stated = tomllib.loads(project.read_text("utf-8"))["project"]["dependencies"]
+    except (OSError, KeyError, tomllib.TOMLDecodeError):
+        stated = importlib.metadata.requires("physics-sim-course") or []
+    names = {re.split(r"[^A-Za-z0-9._-]", text, maxsplit=1)[0].lower(): text for text in stated}
+    return [names[name] for name in _NEEDED]

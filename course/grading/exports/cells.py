@@ -1,0 +1,92 @@
+"""Text for cells, XML and file contents: what a student or a name brings in is shown and never obeyed."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import os
+from typing import TYPE_CHECKING
+
+from course.errors import MissingCapabilityError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+    from typing import IO
+
+__all__ = ["csv_bytes", "is_safe", "number", "replacing", "safe_cell", "spelled_out", "write_bytes"]
+
+#: A spreadsheet takes a cell that begins with one of these for a formula; with a full-width one in some
+#: languages. The apostrophe that disarms them is itself doubled, so that no two texts become one.
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "'", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+
+
+def spelled_out(text: str) -> str:
+    """Text in which every character that steers, hides or reorders others is spelled out."""
+    return "".join(
+        character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
+        for character in text
+    )
+
+
+def safe_cell(text: str) -> str:
+    """A cell that a spreadsheet shows as it is: formulas are disarmed, control characters are escaped."""
+    shown = spelled_out(text)
+    return "'" + shown if text.lstrip().startswith(_FORMULA) or text.startswith(_FORMULA) else shown
+
+
+def is_safe(text: str) -> bool:
+    """Whether ``safe_cell`` leaves it as it is, so that another program finds this very key in the cell."""
+    return safe_cell(text) == text
+
+
+def number(value: float | None) -> str:
+    """Points, to a ten-thousandth and without zeros at the end; empty for None."""
+    if value is None:
+        return ""
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> bytes:
+    """A table with every cell quoted and safe; the mark in front makes Excel read UTF-8."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
+    writer.writerow([safe_cell(cell) for cell in headings])
+    writer.writerows([safe_cell(cell) for cell in row] for row in rows)
+    return b"\xef\xbb\xbf" + text.getvalue().encode("utf-8")
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all.
+
+    Raises:
+        MissingCapabilityError: there is no room, or it cannot be written there.
+    """
+    with replacing(path) as handle:
+        handle.write(content)
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[IO[bytes]]:
+    """A file that takes its name when it is complete; what was there stays until then.
+
+    Raises:
+        MissingCapabilityError: there is no room, or it cannot be written there.
+    """
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with draft.open("wb") as handle:
+            yield handle
+        draft.replace(path)
+    except OSError as error:
+        raise MissingCapabilityError(
+            f"{path} cannot be written: {error.strerror or error}.",
+            help="Make room, or name another place with -o; the gradebook is complete.",
+            code="cannot_write",
+        ) from None
+    finally:
+        with contextlib.suppress(OSError):
+            draft.unlink(missing_ok=True)

@@ -1,0 +1,104 @@
+"""Inside Gradescope's container: grade what was handed in, write ``results.json``.
+
+Run as ``python -m course.grading.exports.container SUBMISSION RESULTS CONFIG``. It works at the best
+protection level the container allows and says which in the output that the instructor sees. Whatever happens,
+a results file is written: a fault of ours says so and gives no score, so that nobody is marked down for it.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import traceback
+from pathlib import Path
+from typing import Any
+
+from course.catalog.load import Catalog
+from course.errors import CourseError
+from course.grading.downloads import Place, Student
+from course.grading.exports.cells import write_bytes
+from course.grading.exports.gradescope import results_body
+from course.grading.gradebook import Key, Result
+from course.grading.intake import read_student
+from course.grading.results import Effective
+from course.grading.session import GradingSession, grader_version
+from course.grading.verdict import Problem, Verdict
+
+__all__ = ["grade", "main"]
+
+
+def main(arguments: list[str]) -> int:
+    """Grade one submission; the exit code is 0 unless not even a results file could be written."""
+    submission, results, config = (Path(argument) for argument in arguments)
+    try:
+        body = grade(submission, json.loads(config.read_text("utf-8")))
+    except Exception:  # noqa: BLE001 - the boundary: Gradescope shows nothing without a results file
+        traceback.print_exc()
+        body = _our_fault()
+    write_bytes(results, json.dumps(body, indent=1, allow_nan=False).encode())
+    return 0
+
+
+def _our_fault() -> dict[str, Any]:
+    """No score and no test: Gradescope then asks the instructor to look."""
+    words = "A fault of the grader kept this from being graded; it is none of yours. It can be run again."
+    return {"output": words, "output_format": "text", "visibility": "visible", "stdout_visibility": "hidden"}
+
+
+def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
+    """The body of ``results.json`` for what lies in a folder.
+
+    Args:
+        config: exercises (ids), required (whether each must be there), seed, timeout (s), at_least.
+    """
+    catalog = Catalog()
+    exercises = [catalog.exercise(name) for name in config["exercises"]]
+    student = Student("submission", Place(folder))
+    found: list[Effective] = []
+    for entry in read_student(student, exercises, required=bool(config["required"])):
+        if entry.submission is None and entry.problem is None:
+            continue
+        if entry.submission is None:
+            assert entry.problem is not None
+            verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "ungradable", entry.problem)
+        else:
+            try:
+                with GradingSession(
+                    entry.exercise, catalog, scope="full", at_least=config["at_least"],
+                    timeout=config["timeout"], seed=config["seed"],
+                ) as session:  # fmt: skip
+                    verdict = session.grade(entry.submission)
+            except CourseError as error:
+                problem = Problem(error.code, error.message, error.help)
+                verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "grader_error", problem)
+        _log(verdict)
+        version = grader_version(entry.exercise, catalog)
+        key = Key("submission", entry.exercise.id, entry.sha256, version, config["seed"])
+        score = None if verdict.state == "grader_error" else verdict.score
+        found.append(Effective(Result(key, verdict), score, verdict.max_score, verdict.passed))
+    if any(effective.score is None for effective in found):
+        return _our_fault()
+    body = results_body(found)
+    if not found:
+        names = ", ".join(f"{exercise.id}/{exercise.module}" for exercise in exercises)
+        body["output"] = (
+            f"Nothing to grade was found. This assignment takes {names}, or the zip of `course submit`."
+        )
+    return body
+
+
+def _log(verdict: Verdict) -> None:
+    """A line that only the instructor sees."""
+    level = verdict.isolation or "no level"
+    print(f"{verdict.exercise}: {verdict.state} at {level}", verdict.error or "")  # noqa: T201
+
+
+def _not_graded(exercise: str, most: float, state: str, problem: Problem) -> Verdict:
+    return Verdict(
+        exercise=exercise, scope="full", state=state, score=0.0, max_score=most, passed=False, checks=(),
+        isolation="", error=problem,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

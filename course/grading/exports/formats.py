@@ -1,0 +1,69 @@
+"""The formats by name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.errors import UsageError
+from course.grading.exports.gradescope import write_gradescope
+from course.grading.exports.junit import write_junit
+from course.grading.exports.lines import write_csv, write_jsonl
+from course.grading.exports.platforms import write_canvas, write_moodle
+from course.grading.exports.selection import ExportOptions, Written, select
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from course.grading.results import Results
+
+    Writer = Callable[[Path, Results, ExportOptions], Written]
+
+__all__ = ["AUTOGRADER", "FORMATS", "export"]
+
+#: Needs no gradebook, and so is not one of the formats below.
+AUTOGRADER = "gradescope-autograder"
+
+
+def _csv(path: Path, results: Results, options: ExportOptions) -> Written:
+    selection = select(results, options)
+    write_csv(path, results, selection.each())
+    selection.written.paths.append(path)
+    return selection.written
+
+
+def _jsonl(path: Path, results: Results, options: ExportOptions) -> Written:
+    selection = select(results, options)
+    write_jsonl(path, selection.each(), results.course)
+    selection.written.paths.append(path)
+    return selection.written
+
+
+#: name -> what it is called in OUT, and what writes it.
+FORMATS: dict[str, tuple[str, Writer]] = {
+    "csv": ("grades.csv", _csv),
+    "jsonl": ("results.jsonl", _jsonl),
+    "junit": ("junit.xml", write_junit),
+    "gradescope": ("gradescope", write_gradescope),
+    "canvas": ("canvas.csv", write_canvas),
+    "moodle": ("moodle.csv", write_moodle),
+}
+
+
+def export(results: Results, name: str, out: Path, target: Path | None, options: ExportOptions) -> Written:
+    """Write one format.
+
+    Args:
+        out: folder of the grading run.
+        target: where to; in ``out`` under the format's own name if None.
+
+    Raises:
+        UsageError: there is no such format, or it needs something that was not given.
+        MissingCapabilityError: students are missing in the roster, or it cannot be written.
+    """
+    if name not in FORMATS:
+        raise UsageError(
+            f"--format is {name!r}.", help=f"It takes {', '.join([*FORMATS, AUTOGRADER])}.", code="usage"
+        )
+    usual, write = FORMATS[name]
+    return write(target or out / usual, results, options)

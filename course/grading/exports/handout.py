@@ -1,0 +1,31 @@
+"""A verdict as its student may read it; whatever is handed out is made from this."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.grading.verdict import CheckResult, Problem, for_student
+
+if TYPE_CHECKING:
+    from course.grading.verdict import Verdict
+
+__all__ = ["checks_for_student", "problem_for_student"]
+
+#: What a check of ours said when it broke may name its hidden values.
+_OUR_FAULT = Problem(
+    "grader_error",
+    "A fault of the grader kept this from being graded; it is none of yours.",
+    "It will be graded again. Your instructor knows of it.",
+)
+
+
+def checks_for_student(verdict: Verdict) -> tuple[CheckResult, ...]:
+    """The checks, hidden values dropped; none where the grader itself failed."""
+    if verdict.state == "grader_error":
+        return ()
+    return tuple(for_student(check) for check in verdict.checks)
+
+
+def problem_for_student(verdict: Verdict) -> Problem | None:
+    """Why there is no grade; what broke inside the grader stays with the instructor."""
+    return _OUR_FAULT if verdict.state == "grader_error" else verdict.error

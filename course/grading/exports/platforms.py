@@ -1,0 +1,98 @@
+"""Grades for Canvas and Moodle: a row per student, a column per exercise.
+
+Both find a student by an id of their own, which only the roster has. An id is written as it is or not at all:
+one that a spreadsheet would take for a formula cannot be disarmed without becoming another id.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.errors import UsageError
+from course.grading.exports.cells import csv_bytes, is_safe, number, write_bytes
+from course.grading.exports.selection import ExportOptions, Selection, Written, select
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.grading.results import Results
+    from course.grading.roster import Person
+
+__all__ = ["write_canvas", "write_moodle"]
+
+
+def write_canvas(path: Path, results: Results, options: ExportOptions) -> Written:
+    """A file for Canvas' gradebook import.
+
+    A column is found by the assignment's id; a title without one would become a new assignment, so every
+    exercise needs its id. An empty cell leaves what Canvas has.
+
+    Raises:
+        UsageError: an assignment's id or the roster is missing.
+        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
+    """
+    selection = select(results, options, usable=_has_canvas_id)
+    missing = [name for name in selection.exercises if name not in options.assignments]
+    if missing:
+        raise UsageError(
+            f"Canvas needs the id of the assignment for {missing[0]}.",
+            help="Add --assignment EXERCISE=ID (the number at the end of the assignment's address), or "
+            "--exercise to export fewer.",
+            code="needs_assignment",
+        )
+    for name, assignment in options.assignments.items():
+        if not (assignment.isascii() and assignment.isdigit()):
+            raise UsageError(
+                f"The assignment's id for {name} is {assignment!r}, not a number.",
+                help="It is the number at the end of the assignment's address in Canvas.",
+                code="needs_assignment",
+            )
+    titles = [f"{results.title(name)} ({options.assignments[name]})" for name in selection.exercises]
+    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
+    most = {exercise.id: exercise.max_points for exercise in results.exercises()}
+    rows = [["    Points Possible", "", "", "", "", *(number(most[name]) for name in selection.exercises)]]
+    for student, scores in _table(selection).items():
+        person = selection.people[student]
+        rows.append(
+            [person.name or student, person.canvas_id, person.sis_user_id, "", person.section, *scores]
+        )
+    write_bytes(path, csv_bytes(headings, rows))
+    selection.written.paths.append(path)
+    return selection.written
+
+
+def _has_canvas_id(person: Person) -> bool:
+    return bool(person.canvas_id or person.sis_user_id) and is_safe(person.sis_user_id)
+
+
+def write_moodle(path: Path, results: Results, options: ExportOptions) -> Written:
+    """A file for Moodle's grade import, whose columns the teacher maps; an empty cell is no grade.
+
+    Raises:
+        UsageError: the roster is missing.
+        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
+    """
+    selection = select(results, options, usable=_has_moodle_key)
+    headings = ["moodle_key", "name", *(results.title(name) for name in selection.exercises)]
+    rows = []
+    for student, scores in _table(selection).items():
+        person = selection.people[student]
+        rows.append([person.moodle_key, person.name, *scores])
+    write_bytes(path, csv_bytes(headings, rows))
+    selection.written.paths.append(path)
+    selection.written.notes.append("In Moodle, map the column moodle_key to what your roster has in it.")
+    return selection.written
+
+
+def _has_moodle_key(person: Person) -> bool:
+    return bool(person.moodle_key) and is_safe(person.moodle_key)
+
+
+def _table(selection: Selection) -> dict[str, list[str]]:
+    """Scores by student, in the order of the exercises; empty where there is none."""
+    table: dict[str, list[str]] = {}
+    columns = {name: column for column, name in enumerate(selection.exercises)}
+    for effective in selection.each():
+        row = table.setdefault(effective.student, [""] * len(columns))
+        row[columns[effective.exercise]] = number(effective.score)
+    return table

@@ -1,0 +1,132 @@
+"""What goes into an export, and who is left out and why: the same for every format."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from course.errors import MissingCapabilityError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from course.grading.results import Effective, Results
+    from course.grading.roster import Person
+
+__all__ = ["ExportOptions", "Selection", "Written", "select"]
+
+_SHOWN = 10
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """What to export.
+
+    Attributes:
+        exercises: ids; empty takes all.
+        assignments: exercise id -> id of the assignment on the platform.
+        partial: leave out students the roster has not, instead of stopping.
+    """
+
+    exercises: tuple[str, ...] = ()
+    assignments: dict[str, str] = field(default_factory=dict)
+    partial: bool = False
+
+
+@dataclass
+class Written:
+    """What an export wrote.
+
+    Attributes:
+        paths: the files.
+        rows: results in them.
+        unmatched: students left out.
+        without_grade: "student exercise" of results a fault of ours left without a score.
+        notes: what the instructor should know, one sentence each.
+    """
+
+    paths: list[Path] = field(default_factory=list)
+    rows: int = 0
+    unmatched: list[str] = field(default_factory=list)
+    without_grade: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Selection:
+    """The results of an export.
+
+    Attributes:
+        people: student -> row of the roster; empty without one.
+    """
+
+    results: Results
+    exercises: tuple[str, ...]
+    people: dict[str, Person]
+    written: Written
+
+    def each(self) -> Iterator[Effective]:
+        """The results, ordered by student and exercise; what is missing is noted on the way."""
+        left_out = set(self.written.unmatched)
+        for effective in self.results.all():
+            if effective.exercise not in self.exercises or effective.student in left_out:
+                continue
+            if effective.score is None:
+                self.written.without_grade.append(f"{effective.student} {effective.exercise}")
+            self.written.rows += 1
+            yield effective
+
+
+def select(
+    results: Results,
+    options: ExportOptions,
+    usable: Callable[[Person], bool] | None = None,
+) -> Selection:
+    """Decide what an export holds.
+
+    Args:
+        usable: whether a row of the roster has the key this format finds people by; without it a roster is
+            not needed.
+
+    Raises:
+        UsageError: no such exercise, or this format needs a roster.
+        MissingCapabilityError: the roster lacks students, and ``partial`` was not asked for.
+    """
+    known = {exercise.id for exercise in results.exercises()}
+    unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
+    if unknown:
+        raise UsageError(
+            f"The gradebook has no exercise {unknown[0]!r}.",
+            help=f"It has {', '.join(sorted(known)) or 'none'}.",
+            code="exercise_not_found",
+        )
+    if usable is not None and results.roster is None:
+        raise UsageError(
+            "This format finds students by the platform's ids, which are in a roster.",
+            help="Add --roster FILE; docs/instructor.md shows one.",
+            code="needs_roster",
+        )
+    written = Written()
+    people: dict[str, Person] = {}
+    if results.roster is not None:
+        people, unmatched = results.roster.match(results.students(), results.downloads)
+        if usable is not None:
+            unmatched += [student for student, person in people.items() if not usable(person)]
+            people = {student: person for student, person in people.items() if usable(person)}
+        if unmatched and not options.partial:
+            raise _unmatched(sorted(unmatched))
+        written.unmatched = sorted(unmatched)
+    exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
+    return Selection(results, exercises, people, written)
+
+
+def _unmatched(students: list[str]) -> MissingCapabilityError:
+    listed = ", ".join(repr(student) for student in students[:_SHOWN])
+    more = f" and {len(students) - _SHOWN} more" if len(students) > _SHOWN else ""
+    return MissingCapabilityError(
+        f"The roster has no usable row of their own for {len(students)} students: {listed}{more}. "
+        "Nothing was written.",
+        help="Complete the roster, or add --partial to leave them out.",
+        code="unmatched_students",
+    )

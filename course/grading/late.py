@@ -1,0 +1,191 @@
+"""What lateness costs: a policy as data, applied whenever scores are read and never written into them.
+
+    format_version = 1
+    grace_minutes = 15               # late by less costs nothing
+    percent_per_day = 10             # of the exercise's maximum, for each day begun; or points_per_day
+    of = "maximum"                   # or "score": percent of what was reached
+    at_most_percent = 50             # no penalty is larger
+    closed_after_days = 7            # later than this scores nothing
+    trust = ["list", "gradescope"]   # whose times count, the most trusted first; "mtime" if you say so
+
+    [[deadline]]
+    exercise = "integrators"         # "*" for every exercise without one of its own
+    due = 2026-12-01T23:59:00+01:00
+
+    [[extension]]
+    student = "ada"
+    exercise = "*"
+    days = 2
+
+Which time counts: a student's machine is never believed, so nothing inside a submission is read for it. A
+list the instructor gives and the download of a learning platform are believed; the time of a file is believed
+only where the policy says so, because copying and unpacking change it.
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+import math
+import tomllib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import msgspec
+
+from course.errors import MissingCapabilityError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+__all__ = ["FORMAT_VERSION", "Deadline", "Extension", "Penalty", "Policy", "parse_policy", "read_policy"]
+
+FORMAT_VERSION = 1
+_DAY_S = 86_400.0
+#: A timestamp may be stored to the second: arriving in the second of the deadline is in time.
+_ROUNDING_S = 1.0
+
+_Share = Annotated[float, msgspec.Meta(ge=0, le=100)]
+_Days = Annotated[float, msgspec.Meta(ge=0, le=3660)]
+Source = Literal["list", "gradescope", "mtime"]
+
+
+class Deadline(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """When an exercise is due; the time must say its distance from UTC."""
+
+    exercise: str
+    due: dt.datetime
+
+
+class Extension(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """More time for one student."""
+
+    student: str
+    days: _Days
+    exercise: str = "*"
+
+
+class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A late policy; the fields are those of the file."""
+
+    format_version: int
+    deadline: tuple[Deadline, ...]
+    extension: tuple[Extension, ...] = ()
+    grace_minutes: Annotated[float, msgspec.Meta(ge=0, le=10_080)] = 0.0
+    percent_per_day: _Share = 0.0
+    points_per_day: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+    of: Literal["maximum", "score"] = "maximum"
+    at_most_percent: _Share = 100.0
+    closed_after_days: _Days | None = None
+    trust: tuple[Source, ...] = ("list", "gradescope")
+
+    def due(self, exercise: str, student_names: tuple[str, ...], granted_days: float = 0.0) -> float | None:
+        """When it is due for this student, in seconds since 1970; None if the policy does not say.
+
+        Args:
+            student_names: every id the student goes by.
+            granted_days: more time from elsewhere (the roster); the longest extension counts.
+        """
+        exact = [item for item in self.deadline if item.exercise == exercise]
+        found = exact or [item for item in self.deadline if item.exercise == "*"]
+        if not found:
+            return None
+        days = [
+            item.days
+            for item in self.extension
+            if item.student in student_names and item.exercise in {"*", exercise}
+        ]
+        return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
+
+    def penalty(self, late_s: float | None, score: float, maximum: float) -> Penalty:
+        """What being late by so many seconds costs, in points."""
+        if late_s is None or late_s <= 60.0 * self.grace_minutes:
+            return Penalty(0.0, 0)
+        days = math.ceil(late_s / _DAY_S)
+        if self.closed_after_days is not None and late_s > self.closed_after_days * _DAY_S:
+            return Penalty(score, days, closed=True)
+        base = maximum if self.of == "maximum" else score
+        points = days * (self.percent_per_day / 100.0 * base + self.points_per_day)
+        return Penalty(min(points, self.at_most_percent / 100.0 * base, score), days)
+
+
+@dataclass(frozen=True)
+class Penalty:
+    """Points taken off for ``days`` days begun; ``closed`` if nothing was accepted any more."""
+
+    points: float
+    days: int
+    closed: bool = False
+
+
+def lateness(submitted: float, due: float) -> float | None:
+    """Seconds after the deadline; None if in time."""
+    late = submitted - due
+    return late if late >= _ROUNDING_S else None
+
+
+def read_policy(path: Path) -> tuple[Policy, str]:
+    """A policy, and its text as it is kept in a gradebook.
+
+    Raises:
+        UsageError: the file cannot be read, or says something that is no policy.
+        MissingCapabilityError: it is in a newer format.
+    """
+    try:
+        text = path.read_text("utf-8-sig")
+    except (OSError, UnicodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8"
+        raise UsageError(f"{path} cannot be read: {reason}.", help="Name a late policy.") from None
+    return parse_policy(text, str(path)), text
+
+
+def parse_policy(text: str, name: str = "The late policy") -> Policy:
+    """A policy from its text.
+
+    Raises:
+        UsageError: it says something that is no policy; the message names the place.
+        MissingCapabilityError: it is in a newer format.
+    """
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _wrong(name, str(error)) from None
+    version = raw.get("format_version")
+    if isinstance(version, int) and version > FORMAT_VERSION:
+        raise MissingCapabilityError(
+            f"{name} is in a newer format ({version}).", help="Update the course.", code="newer_format"
+        )
+    try:
+        policy = msgspec.convert(raw, Policy)
+    except msgspec.ValidationError as error:
+        raise _wrong(name, str(error)) from None
+    _check(policy, name)
+    return policy
+
+
+def _check(policy: Policy, name: str) -> None:
+    if policy.format_version != FORMAT_VERSION:
+        raise _wrong(name, f"format_version must be {FORMAT_VERSION}")
+    for deadline in policy.deadline:
+        if deadline.due.tzinfo is None:
+            why = "lacks its distance from UTC, as in +01:00"
+            raise _wrong(name, f"the deadline of {deadline.exercise} {why}")
+    exercises = [deadline.exercise for deadline in policy.deadline]
+    if len(set(exercises)) < len(exercises):
+        raise _wrong(name, "an exercise has two deadlines")
+    if policy.percent_per_day and policy.points_per_day:
+        raise _wrong(name, "it has both percent_per_day and points_per_day")
+
+
+def _wrong(name: str, why: str) -> UsageError:
+    return UsageError(
+        f"{name}: {why}.", help="docs/instructor.md shows a whole policy.", code="invalid_policy"
+    )
+
+
+def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set[str]) -> list[str]:
+    """Exercises and students the policy names that were not graded: slips of the pen, most likely."""
+    named = {item.exercise for item in policy.deadline} | {item.exercise for item in policy.extension}
+    named.discard("*")
+    unknown = [f"exercise {name}" for name in sorted(named - exercises.keys())]
+    return unknown + [f"student {name}" for name in sorted({e.student for e in policy.extension} - students)]

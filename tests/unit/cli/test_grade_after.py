@@ -1,0 +1,220 @@
+"""`course grade export|override|late|rerun|similar|explain`: what an instructor types after a run."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from course.grading.gradebook import FromDownload, Gradebook, SubmittedAt
+from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
+from tests.unit.grading.test_results import DAY, DUE, POLICY
+
+ROSTER = """student,name,email,canvas_id,moodle_key,extension_days
+ada,Ada L,a@x.org,11,m1,
+bob,Bob,b@x.org,12,m2,2
+"""
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    with make_book(tmp_path / "out", {"ada": RIGHT, "bob": HALF, "cy": REFUSED, "dan": BROKEN}) as book:
+        for student in ("ada", "bob"):
+            at = DUE.timestamp() + 2 * DAY
+            book.add_times([SubmittedAt(student, "doubling", digest(student), "gradescope", at)])
+    (tmp_path / "roster.csv").write_text(ROSTER, "utf-8")
+    (tmp_path / "late.toml").write_text(POLICY.replace("bob", "nobody"), "utf-8")
+    return tmp_path / "out"
+
+
+def grades(path: Path) -> dict[str, dict[str, str]]:
+    rows = csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""))
+    return {row["student"]: row for row in rows}
+
+
+def test_an_override_is_in_every_file_at_once_and_can_be_lifted(course, out: Path) -> None:
+    ran = course("grade", "override", "out", "bob", "doubling", "--score", "9", "--reason", "oral exam")
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out == "bob doubling: 9 of 10 counts; the checks gave 5.\n"
+    assert grades(out / "grades.csv")["bob"]["override_reason"] == "oral exam"
+    assert '"reason":"oral exam"' in (out / "results.jsonl").read_text()
+    assert "oral exam" in course("grade", "explain", "out", "bob", "doubling").out
+    assert course("grade", "explain", "out", "bob", "doubling", "--json").json["override"]["score"] == 9
+    ran = course("grade", "override", "out", "bob", "doubling", "--lift", "--json")
+    assert (ran.code, ran.json["score"], ran.json["override"]) == (0, 5.0, None)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "error"),
+    [
+        (("override", "out", "bob", "doubling", "--score", "9"), 2, "no_reason"),
+        (("override", "out", "bob", "doubling"), 2, "usage"),
+        (("override", "out", "bob", "doubling", "--score", "9", "--lift"), 2, "usage"),
+        (("override", "out", "bob", "doubling", "--score", "11", "--reason", "x"), 2, "impossible_score"),
+        (("override", "out", "eve", "doubling", "--score", "1", "--reason", "x"), 5, "student_not_found"),
+        (("override", "out", "bob", "doubling", "--lift"), 5, "no_override"),
+        (("export", "out", "--format", "canvas"), 2, "needs_roster"),
+        (("export", "out", "--format", "canvas", "--roster", "roster.csv"), 4, "unmatched_students"),
+        (("export", "out", "--format", "xlsx"), 2, "usage"),
+        (("export", "--format", "csv"), 2, "usage"),
+        (("export", "out", "--assignment", "doubling"), 2, "usage"),
+        (("export", "out", "--exercise", "none"), 2, "exercise_not_found"),
+        (("export", "nowhere"), 5, "gradebook_not_found"),
+        (("late", "out", "--policy", "roster.csv"), 2, "invalid_policy"),
+        (("late", "out", "--policy", "late.toml", "--clear"), 2, "usage"),
+        (("late", "out", "--times", "roster.csv"), 2, "invalid_times"),
+        (("rerun", "nowhere"), 5, "gradebook_not_found"),
+        (("similar", "nowhere"), 5, "gradebook_not_found"),
+    ],
+)
+def test_what_cannot_be_done_is_said_and_changes_nothing(course, out: Path, words, code, error) -> None:
+    before = {path: path.read_bytes() for path in out.iterdir()}
+    ran = course("grade", *words, "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (code, error)
+    assert ran.json["error"]["help"]
+    assert {path: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) -> None:
+    assert "No late policy" in course("grade", "late", "out").out
+    ran = course("grade", "late", "out", "--policy", "late.toml")
+    assert ran.code == 0
+    assert "ada doubling: 2 d late, 2 points (2026-12-03T23:59:00Z, by gradescope)" in ran.out
+    assert "2 are late." in ran.out
+    assert "2 have no time anybody trusted gives" in ran.out
+    assert "no student nobody" in ran.err
+    assert grades(out / "grades.csv")["ada"]["score"] == "8"
+    ran = course("grade", "late", "out", "--roster", "roster.csv", "--json")
+    assert [(one["student"], one["late"]) for one in ran.json["late"]] == [("ada", 2 * DAY)]
+    times = out.parent / "times.csv"
+    times.write_text(
+        "student,exercise,submitted_at\nada,doubling,2026-12-01T10:00:00Z\neve,doubling,2026-12-01T10:00:00Z\n"
+    )
+    ran = course("grade", "late", "out", "--times", "times.csv", "--json")
+    assert (ran.json["late"], "student eve" in ran.json["unknown_names"]) == ([], True)
+    assert course("grade", "late", "out", "--clear").code == 0
+    assert grades(out / "grades.csv")["ada"]["score"] == "10"
+
+
+def test_an_export_says_what_it_wrote_and_who_was_left_out(course, out: Path) -> None:
+    words = (
+        "grade",
+        "export",
+        "out",
+        "--format",
+        "canvas",
+        "--roster",
+        "roster.csv",
+        "--exercise",
+        "doubling",
+    )
+    ran = course(*words, "--assignment", "doubling=77", "--partial", "-o", "c.csv")
+    assert ran.code == 0, ran.err
+    assert "Wrote c.csv." in ran.out
+    assert "Left out, not in the roster: 2\n  cy\n  dan\n" in ran.out
+    assert (out.parent / "c.csv").read_text("utf-8-sig").splitlines()[2] == '"Ada L","11","","","","10"'
+    # The roster is remembered: the next export needs no other.
+    ran = course("grade", "export", "out", "--format", "moodle", "--partial", "--json")
+    assert (ran.code, ran.json["unmatched"], ran.json["rows"]) == (0, ["cy", "dan"], 2)
+    assert Path(ran.json["paths"][0]).name == "moodle.csv"
+
+
+def test_lines_of_json_are_printed_where_json_is_asked_for(course, out: Path) -> None:
+    (out / "results.jsonl").unlink(missing_ok=True)
+    ran = course("grade", "export", "out", "--format", "jsonl", "--json")
+    lines = [json.loads(line) for line in ran.out.splitlines()]
+    assert [(line["schema"], line["student"]) for line in lines] == [
+        ("course.grade/1", name) for name in ("ada", "bob", "cy", "dan")
+    ]
+    assert not (out / "results.jsonl").exists()
+    assert course("grade", "export", "out", "--format", "jsonl").code == 0
+    assert [json.loads(line) for line in (out / "results.jsonl").read_bytes().splitlines()] == lines
+
+
+def test_a_student_from_a_download_is_found_by_the_platforms_number(course, out: Path) -> None:
+    with Gradebook(out / "gradebook.sqlite", writing=True) as book:
+        book.set_students({"dan": FromDownload("canvas", "12", "d")})
+    roster = out.parent / "roster.csv"
+    roster.write_text("student,canvas_id\nada,11\nb2,12\n", "utf-8")
+    ran = course("grade", "export", "out", "--roster", "roster.csv", "--partial", "--json")
+    assert (ran.json["unmatched"], ran.json["without_grade"]) == (["bob", "cy"], ["dan doubling"])
+
+
+def test_an_autograder_needs_no_gradebook(course, tmp_path: Path) -> None:
+    ran = course(
+        "grade", "export", "--format", "gradescope-autograder", "--exercise", "doubling", "--seed", "3"
+    )
+    assert ran.code == 0, ran.err
+    with zipfile.ZipFile(tmp_path / "gradescope-autograder.zip") as packed:
+        assert '"seed": 3' in packed.read("config.json").decode()
+        assert not [name for name in packed.namelist() if "halving" in name]
+
+
+def test_a_regrading_is_told_change_by_change(course, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from course.grading import rerun
+    from course.grading.batch import Graded
+
+    now = {"ada": RIGHT, "bob": RIGHT, "cy": REFUSED, "dan": WRONG}
+    monkeypatch.setattr(
+        rerun.rerun, "__kwdefaults__",
+        {"grade": lambda entries, _: (Graded(entry, now[entry.student]) for entry in entries)},
+    )  # fmt: skip
+    before = (out / "gradebook.sqlite").read_bytes()
+    ran = course("grade", "rerun", "out", "--dry-run")
+    assert ran.code == 0, ran.err
+    assert "bob doubling: 5 -> 10\n    kept_back: fail -> pass, +5 points\n" in ran.out
+    assert "dan doubling: no score -> 0, grader_error -> graded" in ran.out
+    assert "Nothing was changed." in ran.out
+    assert (out / "gradebook.sqlite").read_bytes() == before
+    ran = course("grade", "rerun", "out", "--json")
+    assert [change["student"] for change in ran.json["changes"]] == ["bob", "dan"]
+    assert grades(out / "grades.csv")["bob"]["score"] == "10"
+    assert "before: " in course("grade", "explain", "out", "bob", "doubling").out
+    assert "3 were graded by these very graders" not in course("grade", "rerun", "out", "--dry-run").err
+
+
+def test_likeness_is_shown_and_written_as_a_page(course, out: Path) -> None:
+    ran = course("grade", "similar", "out")
+    assert ran.code == 0, ran.err
+    assert "pairs among 4 submissions" in ran.out
+    assert (out / "similar.html").read_text().startswith("<!DOCTYPE html>")
+    assert course("grade", "similar", "out", "--json").json["schema"] == "course.grade-similar/1"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="how root gives up its rights is Linux's")
+def test_a_folder_that_cannot_be_written_is_said_and_can_still_be_read(course, out: Path) -> None:
+    """In a process of its own, in which permissions count even for root."""
+    root = Path(__file__).resolve().parents[3]
+    code = (
+        "import sys\n"
+        "from course.cli.app import run\n"
+        "print(run(['grade', 'explain', sys.argv[1], 'ada', 'doubling', '--quiet']))\n"
+        "print(run(['grade', 'override', sys.argv[1], 'ada', 'doubling', '--score', '1', '--reason', 'x']))\n"
+        "print(run(['grade', 'export', sys.argv[1]]))\n"
+    )
+    # 24 is PR_CAPBSET_DROP, 1 is CAP_DAC_OVERRIDE: after the exec root may do what the modes say.
+    first = (
+        "import ctypes, os, sys\n"
+        "ctypes.CDLL(None).prctl(24, 1, 0, 0, 0)\n"
+        "os.execv(sys.executable, [sys.executable, '-c', *sys.argv[1:]])\n"
+    )
+    (out / "gradebook.sqlite").chmod(0o444)
+    out.chmod(0o555)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", first, code, str(out)],
+            env={**os.environ, "PYTHONPATH": str(root)}, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+    finally:
+        out.chmod(0o755)
+    codes = [line for line in done.stdout.splitlines() if line.isdigit()]
+    assert codes == ["0", "4", "4"], done.stdout + done.stderr
+    assert "gradebook.sqlite cannot be written" in done.stderr
+    assert "grades.csv cannot be written" in done.stderr

@@ -1,0 +1,100 @@
+"""Gradebooks made by hand, for tests of what is made from them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.grading.gradebook import Gradebook, GradedExercise, Key, Result
+from course.grading.session import Submission
+from course.grading.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SECRET = 1234.5678
+
+#: Names of students as nobody should have them, and some do.
+HOSTILE = [
+    "=cmd|' /C calc'!A0", "+1", "-1", "@x", "\tx", "\r\nx", 'a"b', "a,b", "a;b", "a\nb", "é漢字",
+    "\x1b[31mred", "'=1+1", "=1+1", "<script>alert(1)</script>", "]]>&amp;", "../../up", "Ada\u202eevoL",
+    "\u00a0", "\uff1d1", "O'Neil", "a\x00b", "\ufffe\uffff", "x" * 300,
+]  # fmt: skip
+
+
+def digest(student: str) -> str:
+    """Of what ``make_book`` has a student hand in."""
+    return Submission({"doubling.py": student.encode()}).sha256
+
+
+def key(student: str, exercise: str = "doubling", version: str = "v1") -> Key:
+    return Key(student, exercise, digest(student), version, 7)
+
+
+def check(
+    name: str, status: Status = Status.PASS, *, hidden: bool = False, points: float = 5.0
+) -> CheckResult:
+    right = status is Status.PASS
+    return CheckResult(
+        id=name,
+        title=f"The title of {name}",
+        task="double",
+        status=status,
+        visibility=Visibility.HIDDEN if hidden else Visibility.PUBLIC,
+        points=points if right else 0.0,
+        max_points=points,
+        input=None if right else {"x": SECRET},
+        expected=None if right else SECRET * 2,
+        actual=None if right else "<b>1</b>",
+        units="m",
+        tolerance=None if right else Tolerance(rel=1e-3, source="exact"),
+        diagnosis=None if right else "SQUARES",
+        message="" if right else "It is not twice the number.",
+        help="" if right else "Add it to itself.",
+        stdout=None if right else f"I saw {SECRET}",
+        duration_ms=1.5,
+    )
+
+
+def verdict(
+    *checks: CheckResult, state: str = "graded", exercise: str = "doubling", error: Problem | None = None
+) -> Verdict:
+    score = sum(item.points for item in checks)
+    return Verdict(
+        exercise=exercise,
+        scope="full",
+        state=state,
+        score=score,
+        max_score=10.0,
+        passed=state == "graded" and score >= 7,
+        checks=checks,
+        isolation="L3" if state == "graded" else "",
+        error=error or (None if state == "graded" else Problem("no_file", "There is none.", "Hand one in.")),
+    )
+
+
+RIGHT = verdict(check("shown"), check("kept_back", hidden=True))
+HALF = verdict(check("shown"), check("kept_back", Status.FAIL, hidden=True))
+WRONG = verdict(check("shown", Status.FAIL), check("kept_back", Status.FAIL, hidden=True))
+REFUSED = verdict(state="ungradable")
+BROKEN = verdict(
+    check("shown", Status.GRADER_ERROR),
+    state="grader_error",
+    error=Problem("check_failed", f"kept_back: ZeroDivisionError at {SECRET}", "Regrade."),
+)
+
+
+def make_book(path: Path, verdicts: dict[str, Verdict], *, writing: bool = True) -> Gradebook:
+    """An open gradebook with one result per student."""
+    path.mkdir(parents=True, exist_ok=True)
+    book = Gradebook(path / "gradebook.sqlite", create=True, writing=writing)
+    book.set_meta(seed="7", course="mini", version="1")
+    book.begin_run("run", {"timeout": 10.0})
+    book.set_exercises(
+        [
+            GradedExercise("doubling", "Doubling", 10.0, 0.7, 1),
+            GradedExercise("halving", "Halving", 2.0, 0.7, 2),
+        ]
+    )
+    for student, found in verdicts.items():
+        book.add(Result(key(student), found), {"doubling.py": student.encode()})
+    return book

@@ -1,0 +1,228 @@
+"""Class folders straight from learning platforms: whose is what, or a list of what is nobody's."""
+
+from __future__ import annotations
+
+import datetime as dt
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.errors import MissingCapabilityError, NotFoundError, UsageError
+from course.grading.downloads import ClassList, class_list
+from course.grading.gradebook import FromDownload
+from course.grading.intake import read_student
+from tests.unit.grading.test_intake import archive
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SOURCE = b"def double(x):\n    return 2 * x\n"
+
+
+def put(folder: Path, *names: str) -> None:
+    for name in names:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(SOURCE + name.encode())
+
+
+def graded(found: ClassList, exercise) -> dict[str, bytes | str]:
+    """Student -> what would be graded, or the code of why not."""
+    answers: dict[str, bytes | str] = {}
+    for student in found.students:
+        (entry,) = read_student(student, [exercise], required=True)
+        if entry.submission is not None:
+            answers[student.name] = entry.submission.files["doubling.py"].removeprefix(SOURCE)
+        else:
+            assert entry.problem is not None
+            answers[student.name] = entry.problem.code
+    return answers
+
+
+def test_a_canvas_download_is_a_class(tmp_path: Path, doubling) -> None:
+    put(
+        tmp_path,
+        "lovelaceada_101_9001_doubling.py",
+        "hopper_LATE_102_9002_doubling-2.py",
+        "o_neil_LATE_103_9003_other.txt",
+        "twice_104_9004_doubling.py",
+        "twice_104_9005_doubling-1.py",
+        "anon_106_9007_doubling.py",
+    )
+    archive(tmp_path / "zipped_105_9006_physics-sim-submission.zip", {"doubling/doubling.py": SOURCE + b"z"})
+    found = class_list(tmp_path)
+    assert (found.layout, found.unrecognised) == ("canvas", [])
+    assert graded(found, doubling) == {
+        "lovelaceada_101": b"lovelaceada_101_9001_doubling.py",
+        "hopper_102": b"hopper_LATE_102_9002_doubling-2.py",
+        "o_neil_103": "no_file",
+        "twice_104": "ambiguous_files",
+        "zipped_105": b"z",
+        "anon_106": b"anon_106_9007_doubling.py",
+    }
+    by_name = {student.name: student for student in found.students}
+    assert by_name["hopper_102"].flagged_late
+    assert not by_name["zipped_105"].flagged_late
+    assert by_name["lovelaceada_101"].identity == FromDownload("canvas", "101", "lovelaceada")
+
+
+def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
+    put(tmp_path, "ada_101_1_doubling.py", "eve_101_2_doubling.py", "bob_102_3_doubling.py")
+    found = class_list(tmp_path)
+    assert [student.name for student in found.students] == ["bob_102"]
+    assert len(found.unrecognised) == 1
+    assert "ada and eve" in found.unrecognised[0]
+
+
+def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> None:
+    put(
+        tmp_path,
+        "Ada Lovelace_11_assignsubmission_file/doubling.py",
+        "Ada Lovelace_11_assignsubmission_onlinetext/onlinetext.html",
+        "Ada Lovelace_12_assignsubmission_file_/doubling/doubling.py",
+        "Group A-漢 字_13_assignsubmission_file/notes.txt",
+    )
+    found = class_list(tmp_path)
+    assert (found.layout, found.unrecognised) == ("moodle", [])
+    assert graded(found, doubling) == {
+        "Ada Lovelace_11": b"Ada Lovelace_11_assignsubmission_file/doubling.py",
+        "Ada Lovelace_12": b"Ada Lovelace_12_assignsubmission_file_/doubling/doubling.py",
+        "Group A-漢 字_13": "no_file",
+    }
+    assert found.students[0].identity == FromDownload("moodle", "11", "Ada Lovelace")
+
+
+def test_a_moodle_download_without_folders_is_a_class_and_file_names_forge_nobody(
+    tmp_path: Path, doubling
+) -> None:
+    put(
+        tmp_path,
+        "Ada_11_assignsubmission_file_doubling.py",
+        "Eve_12_assignsubmission_file_Bob_13_assignsubmission_file_doubling.py",
+        "Bob_13_assignsubmission_file_doubling.py",
+    )
+    assert graded(class_list(tmp_path), doubling) == {
+        "Ada_11": b"Ada_11_assignsubmission_file_doubling.py",
+        "Eve_12": "no_file",
+        "Bob_13": b"Bob_13_assignsubmission_file_doubling.py",
+    }
+
+
+METADATA = """---
+submission_900:
+  :submitters:
+  - :name: Ada Lovelace
+    :sid: '31'
+    :email: ada@x.org
+  :created_at: 2026-12-01 23:59:30.000000000 Z
+  :results:
+    tests:
+    - output: |
+        submission_999:
+          :submitters:
+          - :name: forged
+submission_901:
+  :submitters:
+  - :name: Bob
+    :email: bob@x.org
+  - :name: Cy
+    :sid: '33'
+submission_902:
+  :submitters:
+  - :name: Dan
+    :sid: '34'
+submission_903:
+  :submitters:
+  - :name: Dan
+    :sid: '34'
+submission_904:
+  :submitters: []
+../../etc:
+  :submitters:
+  - :name: Eve
+    :sid: '35'
+"""
+
+
+def gradescope(folder: Path, metadata: str = METADATA) -> None:
+    numbers = (900, 901, 902, 903, 904, 905)
+    put(folder, *(f"submission_{number}/doubling.py" for number in numbers))
+    (folder / "submission_metadata.yml").write_text(metadata, "utf-8")
+
+
+@pytest.mark.parametrize("inner", ["", "assignment_77_export"])
+def test_a_gradescope_download_is_a_class(tmp_path: Path, doubling, inner: str) -> None:
+    pytest.importorskip("yaml")
+    gradescope(tmp_path / inner)
+    found = class_list(tmp_path)
+    assert found.layout == "gradescope"
+    assert graded(found, doubling) == {
+        "31": b"submission_900/doubling.py",
+        "bob@x.org": b"submission_901/doubling.py",
+        "33": b"submission_901/doubling.py",
+    }
+    at = dt.datetime(2026, 12, 1, 23, 59, 30, tzinfo=dt.UTC).timestamp()
+    assert {student.name: student.submitted_at for student in found.students} == {
+        "31": at, "bob@x.org": None, "33": None,
+    }  # fmt: skip
+    words = "\n".join(sorted(found.unrecognised))
+    assert len(found.unrecognised) == 4
+    for fact in ("submission_905", "34 has several", "names nobody", "../../etc"):
+        assert fact in words
+
+
+@pytest.mark.parametrize(
+    "metadata", ["[1, 2", "- 1", "1: x", "!!python/object/apply:os.getcwd []", "&a [*a]"]
+)
+def test_metadata_that_gradescope_does_not_write_is_refused(tmp_path: Path, metadata: str) -> None:
+    pytest.importorskip("yaml")
+    gradescope(tmp_path, metadata)
+    with pytest.raises(UsageError) as caught:
+        class_list(tmp_path)
+    assert caught.value.code == "bad_metadata"
+
+
+def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gradescope(tmp_path)
+    monkeypatch.setitem(__import__("sys").modules, "yaml", None)
+    with pytest.raises(MissingCapabilityError, match="PyYAML") as caught:
+        class_list(tmp_path)
+    assert "pip install" in caught.value.help
+
+
+@pytest.mark.parametrize(
+    ("names", "odd"),
+    [
+        (["Ada_11_assignsubmission_file/doubling.py", "bob/doubling.py"], "bob"),
+        (["ada_101_1_doubling.py", "doubling.py"], "doubling.py"),
+    ],
+)
+def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
+    tmp_path: Path, names: list[str], odd: str
+) -> None:
+    put(tmp_path, *names)
+    with pytest.raises(UsageError) as caught:
+        class_list(tmp_path)
+    assert caught.value.code == "mixed_layout"
+    assert odd in caught.value.message
+    assert "--layout" in caught.value.help
+    layout = "moodle" if "assign" in names[0] else "canvas"
+    found = class_list(tmp_path, layout)
+    assert len(found.students) == 1
+    assert len(found.unrecognised) == 1
+    assert found.unrecognised[0].startswith(odd)
+
+
+def test_folders_with_a_stray_file_among_them_are_folders(tmp_path: Path) -> None:
+    put(tmp_path, "ada/doubling.py", "x_1_2_notes.txt", "readme.txt")
+    found = class_list(tmp_path)
+    assert (found.layout, [student.name for student in found.students]) == ("folders", ["ada"])
+
+
+def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match="no submissions"):
+        class_list(tmp_path)
+    with pytest.raises(UsageError, match="--layout"):
+        class_list(tmp_path, "blackboard")

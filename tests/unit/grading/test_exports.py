@@ -1,0 +1,282 @@
+"""Every export, read back by somebody else's reader, with the names nobody should have."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from course.errors import MissingCapabilityError, UsageError
+from course.grading.exports.cells import is_safe, number, replacing, safe_cell
+from course.grading.exports.formats import FORMATS, export
+from course.grading.exports.lines import utc
+from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook import Override, SubmittedAt
+from course.grading.results import Results
+from course.grading.roster import Person, Roster
+from tests.unit.grading.junit_rules import violations
+from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, SECRET, digest, make_book
+from tests.unit.grading.test_results import POLICY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"})
+#: Values of hidden checks, in every spelling a file may have them.
+SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
+FOR_STUDENTS = ["junit", "gradescope"]
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""), strict=True))
+
+
+@pytest.fixture(scope="module")
+def class_of_everybody(tmp_path_factory: pytest.TempPathFactory):
+    """Results of a class with every hostile name, every state, an override and somebody late."""
+    out = tmp_path_factory.mktemp("exports")
+    verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(HOSTILE)}
+    verdicts |= {"late": RIGHT, "set": HALF, "broken": BROKEN}
+    with make_book(out, verdicts) as book:
+        book.add_override(Override("set", "doubling", 8.25, 'said "=1+1", <b>then</b> left\nearly'))
+        at = 1_796_169_540.0 + 2 * 86_400  # two days after the deadline of POLICY
+        book.add_times([SubmittedAt("late", "doubling", digest("late"), "gradescope", at)])
+        book.set_meta(late_policy=POLICY)
+    return out
+
+
+@pytest.fixture
+def results(class_of_everybody: Path):
+    results = Results.open(class_of_everybody)
+    results.roster = Roster(
+        tuple(
+            Person(name, name, f"{at}@x.org", str(100 + at), f"sis-{at}", "A", f"key{at}")
+            for at, name in enumerate([*HOSTILE, "late", "set", "broken"])
+        )
+    )
+    yield results
+    results.book.close()
+
+
+def write(results: Results, name: str, tmp_path: Path, options: ExportOptions = OPTIONS) -> Path:
+    written = export(results, name, tmp_path, None, options)
+    assert written.rows == len(HOSTILE) + 3
+    assert written.without_grade == ["broken doubling"]
+    return tmp_path / FORMATS[name][0]
+
+
+def test_the_table_has_a_row_for_everybody_and_no_formula(results: Results, tmp_path: Path) -> None:
+    path = write(results, "csv", tmp_path)
+    rows = read_csv(path)
+    assert len(rows) == len({row["student"] for row in rows}) == len(HOSTILE) + 3
+    everywhere = [cell for row in rows for cell in row.values()]
+    assert not [cell for cell in everywhere if cell.startswith(("=", "+", "-", "@", "\uff1d"))]
+    assert all(cell.isprintable() for cell in everywhere)
+    by_name = {row["student"]: row for row in rows}
+    assert by_name["late"] | {"graded_at": ""} == by_name["late"] | {
+        "graded_at": "", "score": "8", "raw_score": "10", "late_penalty": "2", "late_s": "172800",
+        "passed": "yes", "submitted_at": "2026-12-03T23:59:00Z",
+    }  # fmt: skip
+    assert (by_name["set"]["score"], by_name["set"]["raw_score"]) == ("8.25", "5")
+    assert by_name["set"]["override_reason"] == 'said "=1+1", <b>then</b> left\\nearly'
+    assert (by_name["broken"]["score"], by_name["broken"]["state"]) == ("", "grader_error")
+    assert by_name["é漢字"]["name"] == "é漢字"
+    assert by_name["é漢字"]["email"].endswith("@x.org")
+
+
+def test_the_lines_of_json_have_the_very_ids(results: Results, tmp_path: Path) -> None:
+    lines = [json.loads(line) for line in write(results, "jsonl", tmp_path).read_bytes().splitlines()]
+    by_name = {line["student"]: line for line in lines}
+    assert by_name.keys() == {*HOSTILE, "late", "set", "broken"}
+    assert (by_name["late"]["late"], by_name["late"]["late_penalty"]) == (172_800, 2)
+    assert by_name["set"]["override"]["score"] == 8.25
+    assert (by_name["broken"]["score"], by_name["broken"]["exit_code"]) == (None, 70)
+    assert by_name["+1"]["checks"][1]["expected"] == SECRET * 2, "the instructor's file has everything"
+
+
+def test_junit_keeps_the_rules_of_jenkins_whatever_the_names(results: Results, tmp_path: Path) -> None:
+    content = write(results, "junit", tmp_path).read_bytes()
+    assert violations(content) == []
+    suites = ET.fromstring(content).findall("testsuite")
+    assert len(suites) == len(HOSTILE) + 3
+    for suite in suites:
+        cases = suite.findall("testcase")
+        assert int(suite.get("tests", "")) == len(cases)
+        assert int(suite.get("failures", "")) == len(suite.findall("testcase/failure"))
+        assert int(suite.get("errors", "")) == len(suite.findall("testcase/error"))
+    facts = [{item.get("name"): item.get("value") for item in suite.iter("property")} for suite in suites]
+    by_name = {fact["student"]: fact for fact in facts}
+    assert (by_name["late"]["score"], by_name["late"]["late_s"]) == ("8", "172800")
+    assert by_name["set"]["override"].startswith('said "=1+1"')
+    assert "score" not in by_name["broken"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"<testsuites><testsuite name='a' tests='1' failures='0'/></testsuites>",
+        b"<testsuites><testcase name='a'/></testsuites>",
+        b"<testsuites><testsuite name='a' tests='' failures='' errors=''><testcase name='b'><properties/>"
+        b"</testcase></testsuite></testsuites>",
+        b"<testsuites id='1'/>",
+        b"<testsuites time='1s'/>",
+        b"<testsuites>words</testsuites>",
+        b"<report/>",
+    ],
+)
+def test_the_rules_refuse_what_the_schema_refuses(content: bytes) -> None:
+    assert violations(content)
+
+
+_TOP = {
+    "score", "execution_time", "output", "output_format", "visibility", "stdout_visibility", "extra_data",
+    "tests",
+}  # fmt: skip
+_TEST = {
+    "score", "max_score", "status", "name", "number", "output", "output_format", "tags", "visibility",
+    "extra_data",
+}  # fmt: skip
+_VISIBILITY = {"hidden", "after_due_date", "after_published", "visible"}
+
+
+def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
+    results: Results, tmp_path: Path
+) -> None:
+    folder = write(results, "gradescope", tmp_path)
+    index = read_csv(folder / "index.csv")
+    assert len(index) == len(HOSTILE) + 3
+    assert {path.name for path in folder.iterdir()} == {"index.csv", *(row["file"] for row in index)}
+    for row in index:
+        body = json.loads((folder / row["file"]).read_bytes())
+        assert body.keys() <= _TOP
+        assert body["visibility"] in _VISIBILITY
+        assert isinstance(body["score"], int | float)
+        for test in body["tests"]:
+            assert test.keys() <= _TEST
+            assert test["visibility"] in _VISIBILITY
+            assert test["status"] in {"passed", "failed"}
+            assert 0 <= test["score"] <= test["max_score"]
+            assert all(isinstance(tag, str) for tag in test["tags"])
+    by_name = {row["student"]: json.loads((folder / row["file"]).read_bytes()) for row in index}
+    assert by_name["late"]["score"] == 8
+    assert "taken off for lateness" in by_name["late"]["output"]
+    assert "oral" not in by_name["set"]["output"]
+    assert "Score set by the instructor" in by_name["set"]["output"]
+    assert [test["visibility"] for test in by_name["late"]["tests"]] == ["visible", "after_due_date"]
+
+
+def test_canvas_finds_its_students_and_its_assignment(results: Results, tmp_path: Path) -> None:
+    path = write(results, "canvas", tmp_path)
+    headings, points, *rows = csv.reader(io.StringIO(path.read_text("utf-8-sig"), newline=""), strict=True)
+    assert headings == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Doubling (4711)"]
+    assert points == ["    Points Possible", "", "", "", "", "10"]
+    by_id = {row[1]: row for row in rows}
+    assert len(by_id) == len(HOSTILE) + 3
+    assert by_id[str(100 + len(HOSTILE))][5] == "8"
+    assert by_id[str(100 + len(HOSTILE) + 1)][5] == "8.25"
+    assert by_id[str(100 + len(HOSTILE) + 2)][5] == "", "a fault of ours is no zero"
+    assert by_id["100"][0] == safe_cell(HOSTILE[0])
+
+
+def test_moodle_finds_its_students_by_their_key(results: Results, tmp_path: Path) -> None:
+    rows = read_csv(write(results, "moodle", tmp_path))
+    by_key = {row["moodle_key"]: row for row in rows}
+    assert by_key[f"key{len(HOSTILE)}"]["Doubling"] == "8"
+    assert by_key[f"key{len(HOSTILE) + 2}"]["Doubling"] == ""
+
+
+@pytest.mark.parametrize("name", FOR_STUDENTS)
+def test_what_students_may_read_has_nothing_hidden(results: Results, tmp_path: Path, name: str) -> None:
+    path = write(results, name, tmp_path)
+    files = [path] if path.is_file() else list(path.iterdir())
+    text = "\n".join(file.read_text("utf-8-sig") for file in files)
+    assert "It is not twice the number." in text
+    assert not [secret for secret in SECRETS if secret in text]
+
+
+@pytest.mark.parametrize("name", ["csv", "jsonl", "junit", "gradescope", "canvas", "moodle"])
+def test_students_the_roster_has_not_stop_every_export_unless_partial(
+    results: Results, tmp_path: Path, name: str
+) -> None:
+    assert results.roster is not None
+    results.roster = Roster(tuple(person for person in results.roster.people if person.student != "late"))
+    with pytest.raises(MissingCapabilityError) as caught:
+        export(results, name, tmp_path, None, OPTIONS)
+    assert (caught.value.code, caught.value.exit_code) == ("unmatched_students", 4)
+    assert "'late'" in caught.value.message
+    assert list(tmp_path.iterdir()) == []
+    written = export(results, name, tmp_path, None, dataclasses.replace(OPTIONS, partial=True))
+    assert written.unmatched == ["late"]
+    assert written.rows == len(HOSTILE) + 2
+
+
+@pytest.mark.parametrize(
+    ("name", "person"),
+    [
+        ("canvas", Person("late")),
+        ("canvas", Person("late", sis_user_id="=1+1")),
+        ("moodle", Person("late")),
+        ("moodle", Person("late", moodle_key="@sum")),
+    ],
+)
+def test_a_key_that_is_missing_or_would_have_to_be_changed_is_no_key(
+    results: Results, tmp_path: Path, name: str, person: Person
+) -> None:
+    assert results.roster is not None
+    others = tuple(other for other in results.roster.people if other.student != "late")
+    results.roster = Roster((*others, person))
+    with pytest.raises(MissingCapabilityError, match="'late'"):
+        export(results, name, tmp_path, None, OPTIONS)
+
+
+def test_what_a_platform_needs_is_asked_for(results: Results, tmp_path: Path) -> None:
+    for options, code in (
+        (ExportOptions(("doubling",)), "needs_assignment"),
+        (ExportOptions(("doubling",), {"doubling": "4a"}), "needs_assignment"),
+        (ExportOptions(("nothing",)), "exercise_not_found"),
+        (ExportOptions((), {"nothing": "1"}), "exercise_not_found"),
+    ):
+        with pytest.raises(UsageError) as caught:
+            export(results, "canvas", tmp_path, None, options)
+        assert caught.value.code == code
+    results.roster = None
+    for name in ("canvas", "moodle"):
+        with pytest.raises(UsageError) as caught:
+            export(results, name, tmp_path, None, OPTIONS)
+        assert caught.value.code == "needs_roster"
+    with pytest.raises(UsageError, match="--format"):
+        export(results, "xlsx", tmp_path, None, OPTIONS)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_points_are_written_without_noise() -> None:
+    values = [0.0, -0.0, 8.0, 33.3333333, 0.1 + 0.2, 100.0, 1234567.0, None]
+    assert [number(value) for value in values] == ["0", "0", "8", "33.3333", "0.3", "100", "1234567", ""]
+    assert utc(0.0) == "1970-01-01T00:00:00Z"
+
+
+def test_no_two_ids_become_one_cell() -> None:
+    cells = [safe_cell(name) for name in ("=1", "'=1", "''=1", "1", "-1", "'-1")]
+    assert len(set(cells)) == len(cells)
+    assert [is_safe(text) for text in ("x", "=x", "a\nb")] == [True, False, False]
+
+
+def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path: Path) -> None:
+    path = tmp_path / "grades.csv"
+    path.write_text("old")
+
+    def fill() -> None:
+        with replacing(path) as handle:
+            handle.write(b"half of the new")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(MissingCapabilityError, match="No space left") as caught:
+        fill()
+    assert caught.value.exit_code == 4
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]

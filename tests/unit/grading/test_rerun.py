@@ -1,0 +1,176 @@
+"""Regrading: who changes, by how much, by which check; and nothing is lost."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.errors import IntegrityError, MissingCapabilityError
+from course.grading.batch import BatchOptions, Graded
+from course.grading.exports.lines import grade_line
+from course.grading.gradebook import Key, Result
+from course.grading.override import override
+from course.grading.rerun import RerunOptions, rerun
+from course.grading.results import Results
+from course.grading.session import grader_version
+from tests.unit.grading.conftest import MINI
+from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+    from course.grading.intake import Entry
+
+NOW = {"ada": RIGHT, "bob": HALF, "cy": RIGHT, "dan": RIGHT}
+
+
+class Graders:
+    """Stand-ins for grader processes: the verdicts of ``NOW``."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self.options: BatchOptions | None = None
+
+    def __call__(self, entries: Iterable[Entry], options: BatchOptions) -> Iterator[Graded]:
+        self.options = options
+        for entry in entries:
+            assert entry.submission is not None
+            assert entry.submission.files == {"doubling.py": entry.student.encode()}
+            self.asked.append(entry.student)
+            yield Graded(entry, NOW[entry.student])
+
+
+def test_a_dry_run_says_who_would_change_and_by_which_check_and_changes_nothing(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    graders = Graders()
+    with make_book(tmp_path, {"ada": WRONG, "bob": HALF, "cy": HALF, "dan": BROKEN}) as book:
+        before = [grade_line(item, Results(book).course) for item in Results(book).all()]
+        done = rerun(Results(book), catalog, RerunOptions(dry_run=True), grade=graders)
+        assert [grade_line(item, Results(book).course) for item in Results(book).all()] == before
+        assert book.history("ada", "doubling")[-1].run == 1
+    assert graders.asked == ["ada", "bob", "cy", "dan"]
+    assert graders.options is not None
+    assert (graders.options.seed, graders.options.timeout) == (7, 10.0)
+    assert (done.regraded, done.faults, done.kept, done.up_to_date) == (4, 0, 0, 0)
+    changes = {change.student: change for change in done.changes}
+    assert changes.keys() == {"ada", "cy", "dan"}
+    assert (changes["cy"].score_before, changes["cy"].score_after) == (5.0, 10.0)
+    (check,) = changes["cy"].checks
+    assert (check.id, check.before, check.after, check.points_after) == ("kept_back", "fail", "pass", 5.0)
+    assert (changes["dan"].score_before, changes["dan"].state_before) == (None, "grader_error")
+
+
+def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing_to_do(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    graders = Graders()
+    with make_book(tmp_path, {"ada": WRONG, "bob": HALF}) as book:
+        override(Results(book), "ada", "doubling", 1.5, "copied")
+        done = rerun(Results(book), catalog, RerunOptions(), grade=graders)
+        assert [old.verdict.score for old in book.history("ada", "doubling")] == [0.0, 10.0]
+        (found,) = Results(book).all("ada")
+        assert (found.score, found.raw_score) == (1.5, 10.0)
+        assert [change.overridden for change in done.changes] == [True]
+        again = rerun(Results(book), catalog, RerunOptions(), grade=graders)
+        assert (again.regraded, again.up_to_date) == (0, 2)
+        assert len(book.history("ada", "doubling")) == 2
+        everything = rerun(Results(book), catalog, RerunOptions(everything=True), grade=graders)
+        assert (everything.regraded, everything.changes) == (2, ())
+        assert len(book.history("ada", "doubling")) == 3
+
+
+def test_what_a_fault_of_ours_left_is_graded_again_by_the_same_graders(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    version = grader_version(catalog.exercise("doubling"), catalog)
+    with make_book(tmp_path, {}) as book:
+        for student, found in (("ada", RIGHT), ("dan", BROKEN)):
+            book.add(Result(key(student, version=version), found), {"doubling.py": student.encode()})
+        graders = Graders()
+        done = rerun(Results(book), catalog, RerunOptions(), grade=graders)
+        assert graders.asked == ["dan"]
+        assert (done.regraded, done.up_to_date) == (1, 1)
+        assert {item.student: item.score for item in Results(book).all()} == {"ada": 10.0, "dan": 10.0}
+
+
+def test_what_was_not_handed_in_stays_as_it_is(tmp_path: Path, catalog: Catalog) -> None:
+    with make_book(tmp_path, {}) as book:
+        book.add(Result(key("cy"), REFUSED))
+        book.add(Result(Key("ada", "gone", digest("ada"), "v", 7), RIGHT), {"doubling.py": b"ada"})
+        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
+        assert (done.kept, done.regraded, done.changes) == (2, 0, ())
+
+
+def test_a_submission_that_is_not_what_was_handed_in_is_never_graded(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    with make_book(tmp_path, {}) as book:
+        book.add(Result(key("ada"), WRONG), {"doubling.py": b"somebody else's"})
+        with pytest.raises(IntegrityError, match="'ada'"):
+            rerun(Results(book), catalog, RerunOptions(), grade=Graders())
+
+
+def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: Catalog) -> None:
+    def dies(entries: Iterable[Entry], options: BatchOptions) -> Iterator[Graded]:
+        yield next(Graders()(entries, options))
+        raise KeyboardInterrupt
+
+    graders = Graders()
+    with make_book(tmp_path, {"ada": WRONG, "bob": HALF, "cy": HALF}) as book:
+        with pytest.raises(KeyboardInterrupt):
+            rerun(Results(book), catalog, RerunOptions(), grade=dies)
+        rerun(Results(book), catalog, RerunOptions(), grade=graders)
+        assert graders.asked == ["bob", "cy"]
+        assert [len(book.history(name, "doubling")) for name in ("ada", "bob", "cy")] == [2, 2, 2]
+
+
+def test_a_quiz_is_scored_again_from_its_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On the real course, whose quiz is real; no worker is needed."""
+    import msgspec
+
+    from course.quizzing.bank import Bank
+
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    catalog = Catalog()
+    posed = Bank.of(catalog).pose(5)
+    right = {one.question: one.key.id for one in posed}
+    record = {
+        "seed": 5, "version": "1", "finished_at": "then", "questions": list(right), "answers": right,
+        "score": len(right),
+    }  # fmt: skip
+    with make_book(tmp_path, {}) as book:
+        where = Key("ada", "quiz", "f" * 64, "older", 7)
+        book.add(Result(where, WRONG), {"quiz.json": msgspec.json.encode([record])})
+        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
+        assert done.regraded == 1
+        (found,) = Results(book).all("ada")
+        assert (found.score, found.passed) == (len(right), True)
+
+
+def test_a_students_installation_cannot_regrade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(MINI, tmp_path / "course")
+    shutil.rmtree(tmp_path / "course" / "graders")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    with (
+        make_book(tmp_path / "out", {"ada": WRONG}) as book,
+        pytest.raises(MissingCapabilityError, match="hidden graders"),
+    ):
+        rerun(Results(book), Catalog(), RerunOptions())
+
+
+def test_what_decides_nothing_does_not_make_another_grader(tmp_path: Path, catalog: Catalog) -> None:
+    """Otherwise a change of a report would regrade a class."""
+    from course.grading import session
+
+    folder = MINI.parents[2] / "course" / "grading"
+    present = {path.name.removesuffix(".py") for path in folder.iterdir()}
+    decides = {
+        "session", "collected", "plugin", "kit", "expectations", "marching", "remote", "values", "failures",
+        "verdict",
+    }  # fmt: skip
+    assert decides <= present - session._DECIDES_NOTHING

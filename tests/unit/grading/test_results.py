@@ -1,0 +1,303 @@
+"""The one reader of a gradebook: newest grading, override, lateness, faults of ours."""
+
+from __future__ import annotations
+
+import datetime as dt
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.errors import MissingCapabilityError, NotFoundError, UsageError
+from course.grading.gradebook import FromDownload, Result, SubmittedAt
+from course.grading.late import Policy, lateness, parse_policy, read_policy, unknown_names
+from course.grading.override import lift, override
+from course.grading.results import Results
+from course.grading.roster import read_roster
+from course.grading.times import read_times
+from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.grading.gradebook import Gradebook
+
+DUE = dt.datetime(2026, 12, 1, 23, 59, tzinfo=dt.UTC)
+HOUR, DAY = 3600.0, 86_400.0
+POLICY = """
+format_version = 1
+grace_minutes = 15
+percent_per_day = 10
+at_most_percent = 50
+closed_after_days = 7
+[[deadline]]
+exercise = "doubling"
+due = 2026-12-01T23:59:00Z
+[[extension]]
+student = "bob"
+days = 2
+"""
+
+
+def policy(**changes: object) -> Policy:
+    import msgspec
+
+    return msgspec.structs.replace(parse_policy(POLICY), **changes)
+
+
+def hand_in(book: Gradebook, student: str, late: float, source: str = "gradescope") -> None:
+    book.add_times([SubmittedAt(student, "doubling", digest(student), source, DUE.timestamp() + late)])
+
+
+def test_the_newest_grading_counts_and_its_state_is_kept_apart(tmp_path: Path) -> None:
+    with make_book(tmp_path, {"ada": WRONG, "cy": REFUSED, "dan": BROKEN}) as book:
+        book.add(Result(key("ada", version="v2"), RIGHT))
+        found = {item.student: item for item in Results(book).all()}
+    assert (found["ada"].score, found["ada"].passed) == (10.0, True)
+    assert (found["cy"].score, found["cy"].passed, found["cy"].max_score) == (0.0, False, 10.0)
+    assert (found["dan"].score, found["dan"].raw_score, found["dan"].passed) == (None, None, False)
+
+
+def test_an_override_counts_in_place_of_what_is_graded_before_and_after(tmp_path: Path) -> None:
+    with make_book(tmp_path, {"ada": WRONG, "dan": BROKEN}) as book:
+        now = override(Results(book), "ada", "doubling", 8.5, "  oral exam ")
+        assert (now.score, now.raw_score, now.passed) == (8.5, 0.0, True)
+        book.begin_run("rerun", {})
+        book.add(Result(key("ada", version="v2"), HALF))
+        (found,) = Results(book).all("ada")
+        assert (found.score, found.raw_score, found.passed) == (8.5, 5.0, True)
+        assert found.override is not None
+        assert (found.override.reason, bool(found.override.at)) == ("oral exam", True)
+        assert override(Results(book), "dan", "doubling", 3, "our fault").score == 3.0
+        lifted = lift(Results(book), "ada", "doubling", "")
+        assert lifted is not None
+        assert (lifted.score, lifted.override) == (5.0, None)
+
+
+def test_a_score_can_be_set_where_nothing_was_handed_in(tmp_path: Path) -> None:
+    with make_book(tmp_path, {"ada": RIGHT}) as book:
+        now = override(Results(book), "ada", "halving", 2, "on paper")
+        assert (now.score, now.max_score, now.passed) == (2.0, 2.0, True)
+        assert now.verdict.error is not None
+        assert now.verdict.error.code == "not_submitted"
+        assert [item.exercise for item in Results(book).all("ada")] == ["doubling", "halving"]
+        assert lift(Results(book), "ada", "halving", "") is None
+        assert [item.exercise for item in Results(book).all("ada")] == ["doubling"]
+
+
+@pytest.mark.parametrize(
+    ("student", "exercise", "score", "reason", "error", "code"),
+    [
+        ("ada", "doubling", 10.5, "x", UsageError, "impossible_score"),
+        ("ada", "doubling", -1.0, "x", UsageError, "impossible_score"),
+        ("ada", "doubling", float("nan"), "x", UsageError, "impossible_score"),
+        ("ada", "doubling", 1.0, " ", UsageError, "no_reason"),
+        ("bob", "doubling", 1.0, "x", NotFoundError, "student_not_found"),
+        ("ada", "nothing", 1.0, "x", NotFoundError, "exercise_not_found"),
+    ],
+)
+def test_an_impossible_override_changes_nothing(
+    tmp_path: Path, student: str, exercise: str, score: float, reason: str, error: type, code: str
+) -> None:
+    with make_book(tmp_path, {"ada": RIGHT}) as book:
+        with pytest.raises(error) as caught:
+            override(Results(book), student, exercise, score, reason)
+        assert caught.value.code == code
+        assert book.overrides() == []
+        with pytest.raises(NotFoundError, match="no override"):
+            lift(Results(book), "ada", "doubling", "")
+
+
+@pytest.mark.parametrize(
+    ("late", "score"),
+    [
+        (-HOUR, 10.0),
+        (0.5, 10.0),
+        (15 * 60.0, 10.0),
+        (15 * 60.0 + 1, 9.0),
+        (DAY, 9.0),
+        (DAY + 1, 8.0),
+        (4.5 * DAY, 5.0),
+        (6.5 * DAY, 5.0),
+        (7 * DAY + 1, 0.0),
+    ],
+)
+def test_lateness_costs_what_the_policy_says_and_never_touches_the_checks(
+    tmp_path: Path, late: float, score: float
+) -> None:
+    with make_book(tmp_path, {"ada": RIGHT}) as book:
+        hand_in(book, "ada", late)
+        (before,) = Results(book).all()
+        book.set_meta(late_policy=POLICY)
+        (found,) = Results(book).all()
+    assert (before.score, before.late, before.penalty) == (10.0, None, 0.0)
+    assert (found.score, found.raw_score, found.penalty) == (score, 10.0, 10.0 - score)
+    assert found.late == (late if late >= 1 else None)
+    assert found.passed == (score >= 7)
+
+
+def test_extensions_of_policy_and_roster_give_more_time(tmp_path: Path) -> None:
+    roster = tmp_path / "roster.csv"
+    roster.write_text("student,extension_days\nada,\nbob,1\ncy,3.5\n", "utf-8")
+    with make_book(tmp_path / "out", {"ada": RIGHT, "bob": RIGHT, "cy": RIGHT}) as book:
+        for student in ("ada", "bob", "cy"):
+            hand_in(book, student, 3 * DAY)
+        book.set_meta(late_policy=POLICY)
+        late = {item.student: item.late for item in Results(book, read_roster(roster)).all()}
+        assert late == {"ada": 3 * DAY, "bob": DAY, "cy": None}
+        book.set_meta(roster=read_roster(roster).dump())
+        assert {item.student: item.late for item in Results(book).all()} == late
+
+
+def test_an_override_is_final_and_no_penalty_touches_it(tmp_path: Path) -> None:
+    with make_book(tmp_path, {"ada": RIGHT}) as book:
+        hand_in(book, "ada", 2 * DAY)
+        book.set_meta(late_policy=POLICY)
+        override(Results(book), "ada", "doubling", 9.5, "ill")
+        (found,) = Results(book).all()
+    assert (found.score, found.penalty, found.late) == (9.5, 0.0, 2 * DAY)
+
+
+def test_only_trusted_witnesses_make_anybody_late(tmp_path: Path) -> None:
+    with make_book(tmp_path, {"ada": RIGHT}) as book:
+        hand_in(book, "ada", 3 * DAY, "mtime")
+        book.set_meta(late_policy=POLICY)
+        (found,) = Results(book).all()
+        assert (found.late, found.submitted_at) == (None, None)
+        book.set_meta(late_policy='trust = ["list", "mtime"]\n' + POLICY)
+        (found,) = Results(book).all()
+        assert (found.late, found.witness) == (3 * DAY, "mtime")
+        book.add_times([SubmittedAt("ada", "doubling", "", "list", DUE.timestamp())])
+        (found,) = Results(book).all()
+        assert (found.late, found.witness) == (None, "list")
+
+
+def test_the_time_of_another_version_is_not_this_ones(tmp_path: Path) -> None:
+    with make_book(tmp_path, {"ada": RIGHT}) as book:
+        book.add_times([SubmittedAt("ada", "doubling", "f" * 64, "gradescope", DUE.timestamp() + DAY)])
+        book.add_times([SubmittedAt("ada", "doubling", digest("ada"), "canvas-late", None)])
+        book.set_meta(late_policy=POLICY)
+        (found,) = Results(book).all()
+    assert (found.late, found.flagged_late) == (None, True)
+
+
+def test_points_a_day_and_percent_of_the_score_are_other_ways_to_count() -> None:
+    points = policy(percent_per_day=0.0, points_per_day=1.5, at_most_percent=100.0)
+    assert points.penalty(2 * DAY, 8.0, 10.0).points == 3.0
+    assert points.penalty(6 * DAY, 8.0, 10.0).points == 8.0
+    assert policy(of="score").penalty(2 * DAY, 5.0, 10.0).points == 1.0
+    assert policy().penalty(2 * DAY, 5.0, 10.0).points == 2.0
+    assert policy().penalty(None, 5.0, 10.0).points == 0.0
+    assert lateness(10.0, 10.0) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "format_version = 1",
+        "format_version = 1\n[[deadline]]\nexercise = 'x'\ndue = 2026-12-01T23:59:00",
+        "format_version = 1\npercent_per_day = -1\n[[deadline]]\nexercise='x'\ndue = 2026-12-01T23:59:00Z",
+        "format_version = 1\npercent_a_day = 1\n[[deadline]]\nexercise='x'\ndue = 2026-12-01T23:59:00Z",
+        "format_version = 1\ntrust = ['student']\n[[deadline]]\nexercise='x'\ndue = 2026-12-01T23:59:00Z",
+        POLICY + "[[deadline]]\nexercise = 'doubling'\ndue = 2027-12-01T23:59:00Z",
+        POLICY.replace("grace", "points_per_day = 1\ngrace"),
+        "= no toml",
+    ],
+)
+def test_what_is_no_policy_is_refused_with_the_reason(text: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        parse_policy(text, "late.toml")
+    assert caught.value.code == "invalid_policy"
+    assert caught.value.message.startswith("late.toml: ")
+
+
+def test_a_newer_policy_and_one_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(MissingCapabilityError, match="newer format"):
+        parse_policy("format_version = 2")
+    with pytest.raises(UsageError, match="cannot be read"):
+        read_policy(tmp_path / "none.toml")
+
+
+def test_names_a_policy_has_and_the_gradebook_has_not_are_listed() -> None:
+    assert unknown_names(parse_policy(POLICY), {"halving": 1}, {"ada"}) == [
+        "exercise doubling",
+        "student bob",
+    ]
+    assert unknown_names(parse_policy(POLICY), {"doubling": 1}, {"bob"}) == []
+
+
+def test_a_list_of_times_is_read_to_the_second(tmp_path: Path) -> None:
+    path = tmp_path / "times.csv"
+    path.write_text("student,exercise,submitted_at\nada,doubling,2026-12-02T01:00:00+01:00\n", "utf-8")
+    assert [(time.student, time.at) for time in read_times(path)] == [("ada", DUE.timestamp() + 60)]
+    for bad in ("2026-12-02T01:00:00", "yesterday", ""):
+        path.write_text(f"student,exercise,submitted_at\nada,doubling,{bad}\n", "utf-8")
+        with pytest.raises(UsageError, match="line 2"):
+            read_times(path)
+
+
+# -- the roster ------------------------------------------------------------------------------------------
+
+
+def roster_of(tmp_path: Path, text: str):
+    path = tmp_path / "roster.csv"
+    path.write_bytes(text.encode("utf-8"))
+    return read_roster(path)
+
+
+def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path: Path) -> None:
+    text = '\ufeffname,student,canvas_id\r\n"漢字, é ""x""\nline two",=ada,42\r\n'
+    (person,) = roster_of(tmp_path, text).people
+    assert (person.student, person.name, person.canvas_id) == ("=ada", '漢字, é "x"\nline two', "42")
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("name\nada\n", "no heading 'student'"),
+        ("student,grade\nada,1\n", "'grade'"),
+        ("student,student\nada,1\n", "two columns"),
+        ("student,name\nada\n", "line 2"),
+        ("student,name\nada,x,y\n", "line 2"),
+        ("student,name\n,x\n", "line 2: it names no student"),
+        ("student,canvas_id\nada,4a\n", "canvas_id '4a'"),
+        ("student,extension_days\nada,two\n", "extension_days"),
+        ("student,extension_days\nada,nan\n", "extension_days"),
+        ("student\nada\nada\n", "student 'ada' is in two rows"),
+        ("student,canvas_id\nada,1\nbob,1\n", "canvas_id '1' is in two rows"),
+        ('student\n"ada\n', "line"),
+    ],
+)
+def test_what_is_no_roster_is_refused_with_the_row(tmp_path: Path, text: str, reason: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        roster_of(tmp_path, text)
+    assert caught.value.code == "invalid_roster"
+    assert reason in caught.value.message
+
+
+def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
+    roster = roster_of(
+        tmp_path,
+        "student,name,email,canvas_id,sis_user_id,moodle_key\n"
+        "a1,Ada  LOVELACE,ada@x.org,11,s1,m1\nb1,Bob,b@x.org,12,s2,m2\nb2,Bob,c@x.org,13,s3,m3\n",
+    )
+    downloads = {
+        "lovelace_11": FromDownload("canvas", "11", "lovelace"),
+        "Ada Lovelace_900": FromDownload("moodle", "900", "Ada Lovelace"),
+        "Bob_901": FromDownload("moodle", "901", "Bob"),
+        "s2": FromDownload("gradescope", "s2", "Bob", "", "s2"),
+        "Bob": FromDownload("gradescope", "c@x.org", "Bob", "C@x.org", ""),
+    }
+    assert roster.find("a1").student == "a1"  # type: ignore[union-attr]
+    assert roster.find("Ada Lovelace") is None
+    names = {name: roster.find(name, who) for name, who in downloads.items()}
+    assert {name: found and found.student for name, found in names.items()} == {
+        "lovelace_11": "a1", "Ada Lovelace_900": "a1", "Bob_901": None, "s2": "b1", "Bob": "b2",
+    }  # fmt: skip
+
+
+def test_two_folders_that_claim_one_row_are_both_unmatched(tmp_path: Path) -> None:
+    roster = roster_of(tmp_path, "student,canvas_id\nada,11\nbob,12\n")
+    downloads = {"x_11": FromDownload("canvas", "11", "x")}
+    found, unmatched = roster.match(["ada", "bob", "x_11", "eve"], downloads)
+    assert list(found) == ["bob"]
+    assert unmatched == ["ada", "eve", "x_11"]

@@ -1,0 +1,215 @@
+"""Likeness: copies are found whatever their names, the stub does not count, and nothing is run."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import pathlib
+import shutil
+from typing import TYPE_CHECKING
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from course.grading.fingerprints import RUN, WINDOW, Parser, fingerprints
+from course.grading.gradebook import Result
+from course.grading.results import Results
+from course.grading.session import Submission
+from course.grading.similar import compare
+from course.grading.similar_page import page
+from tests.unit.grading.conftest import MINI
+from tests.unit.grading.made import RIGHT, key, make_book
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pytest
+
+    from course.catalog.load import Catalog
+
+ORIGINAL = '''
+def doublings(x, n):
+    """Doubled again and again."""
+    values = [x]
+    for index in range(n):
+        last = values[-1]
+        if last > 0 or index % 2 == 0:
+            values.append(last + last)
+        else:
+            values.append(-(abs(last) * 2))
+    while len(values) < n + 1:
+        values.append(None)
+    return values
+
+
+def double(x):
+    result = x
+    for _ in range(1):
+        result = result + x
+    return result
+'''
+RENAMED = '''
+# mine, honestly
+def double(number):
+    """Something else."""
+    total   = number
+    for _unused in range( 1 ):
+        total = (total
+                 + number)
+    return total
+
+def doublings(start, times):
+    out = [start]
+    for k in range(times):
+        previous = out[-1]
+        if previous > 0 or k % 2 == 0: out.append(previous + previous)
+        else: out.append(-(abs(previous) * 2))
+    while len(out) < times + 1:
+        out.append(None)
+    return out
+'''
+OTHER = """
+import numpy as np
+
+def double(x):
+    return np.multiply(x, 2)
+
+def doublings(x, n):
+    if n == 0:
+        return np.array([x])
+    return np.concatenate([[x], doublings(double(x), n - 1)])
+
+class Helper:
+    def __init__(self, a):
+        self.a = a
+    def run(self, b):
+        return {key: value for key, value in zip(self.a, b)}
+"""
+
+
+def class_of(tmp_path: Path, sources: dict[str, str | bytes]):
+    book = make_book(tmp_path, {})
+    for student, source in sources.items():
+        content = source if isinstance(source, bytes) else source.encode()
+        files = {"doubling.py": content}
+        where = dataclasses.replace(key(student), submission_sha256=Submission(files).sha256)
+        book.add(Result(where, RIGHT), files)
+    return book
+
+
+def test_a_copy_with_other_names_layout_and_order_is_found(tmp_path: Path, catalog: Catalog) -> None:
+    stub = catalog.exercise("doubling").stub_path.read_text("utf-8")
+    sources = {"ada": ORIGINAL, "bob": RENAMED, "cy": OTHER, "dan": stub, "eve": stub + "\n\nx = 1\n"}
+    with class_of(tmp_path, sources) as book:
+        found = compare(Results(book), catalog, (), at_least=0.6)
+    pairs = {frozenset((pair.first.label, pair.second.label)): pair for pair in found.pairs}
+    assert frozenset(("ada", "bob")) in pairs
+    assert pairs[frozenset(("ada", "bob"))].share > 0.95
+    assert not [both for both in pairs if "cy" in both]
+    assert not [both for both in pairs if both & {"dan", "eve"}], "what the stub gave is nobody's"
+    assert found.compared == 5
+
+
+def test_what_the_stub_gave_is_nobodys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from course.catalog.load import Catalog
+
+    shutil.copytree(MINI, tmp_path / "course")
+    (tmp_path / "course" / "exercises" / "doubling" / "doubling.py").write_text(ORIGINAL, "utf-8")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    sources = {"ada": ORIGINAL + "def own():\n" + BLOCK, "bob": ORIGINAL + OTHER, "cy": ORIGINAL}
+    with class_of(tmp_path / "out", sources) as book:
+        assert compare(Results(book), Catalog(), (), at_least=0.3).pairs == []
+
+
+def test_what_the_course_itself_has_is_recognised(tmp_path: Path, catalog: Catalog) -> None:
+    import course.physics.integrators as textbook
+
+    assert textbook.__file__ is not None
+    with class_of(
+        tmp_path, {"ada": pathlib.Path(textbook.__file__).read_bytes() + b"\nx = 1\n", "cy": OTHER}
+    ) as book:
+        found = compare(Results(book), catalog, (), at_least=0.6)
+    assert [(pair.first.label, pair.second.label) for pair in found.pairs] == [
+        ("ada", "course.physics.integrators")
+    ]
+
+
+def test_many_copies_of_one_file_are_all_found_without_all_pairs(tmp_path: Path, catalog: Catalog) -> None:
+    sources = {f"student {number:03}": ORIGINAL + f"# {number}\n" for number in range(60)}
+    with class_of(tmp_path, sources) as book:
+        found = compare(Results(book), catalog, ("doubling",), at_least=0.6)
+    assert {pair.share for pair in found.pairs} == {1.0}
+    named = {label for pair in found.pairs for label in (pair.first.label, pair.second.label)}
+    assert named == sources.keys()
+    assert len(found.pairs) == 59
+
+
+def test_sources_that_hurt_the_parser_are_named_and_the_rest_compared(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    bad = {
+        "syntax": b"def (",
+        "nul": b"\x00",
+        "bytes": b"\xff\xfe",
+        "parentheses": b"(" * 5000,
+        "minus": b"x = " + b"-" * 200_000 + b"1",
+        "plus": b"x = " + b"1+" * 100_000 + b"1",
+    }
+    with class_of(tmp_path, {"ada": ORIGINAL, "bob": RENAMED, **bad}) as book:
+        found = compare(Results(book), catalog, (), at_least=0.6)
+    assert [{pair.first.label, pair.second.label} for pair in found.pairs] == [{"ada", "bob"}]
+    assert {"syntax doubling", "nul doubling", "parentheses doubling"} <= set(found.unreadable)
+    assert found.compared + len(found.unreadable) == 2 + len(bad)
+
+
+def test_a_source_is_never_run(tmp_path: Path) -> None:
+    trap = f"open({str(tmp_path / 'ran')!r}, 'w').close()\n"
+    with Parser() as parse:
+        assert parse(trap.encode()) is not None
+    assert not (tmp_path / "ran").exists()
+
+
+def test_the_page_shows_text_as_text(tmp_path: Path, catalog: Catalog) -> None:
+    evil = "# <script>alert(1)</script> \u202e\n" + ORIGINAL
+    with class_of(tmp_path, {"<b>ada</b>": evil, "bob&co": RENAMED}) as book:
+        text = page(compare(Results(book), catalog, (), at_least=0.5))
+    assert "<script" not in text
+    assert "\u202e" not in text
+    assert "<b>ada" not in text
+    assert "&lt;b&gt;ada&lt;/b&gt;" in text
+    assert "bob&amp;co" in text
+    assert "<mark>" in text
+    assert "http" not in text.replace("http-equiv", "")
+
+
+def test_right_solutions_that_were_written_differently_are_not_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The course's own unusual solutions; the default of ``--share`` lies between them and a copy."""
+    from course.catalog.load import Catalog
+
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    catalog = Catalog()
+    assert catalog.content.solutions is not None
+    shares: list[float] = []
+    for exercise in catalog.exercises():
+        paths = sorted((catalog.content.solutions / exercise.id / "accepted").glob("*.py"))
+        found = [fingerprints(path.read_bytes()) for path in paths]
+        prints = [item.marks.keys() for item in found if item is not None and len(item.marks) >= 10]
+        for one, other in itertools.combinations(prints, 2):
+            shares.append(len(one & other) / min(len(one), len(other)))
+    assert len(shares) > 20
+    assert max(shares) < 0.5
+
+
+BLOCK = "".join(f"    a{n} = b{n}[{n}] + c(d, {n})\n" for n in range(12))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.sampled_from(["x = 1", "y += f(x)", "if x: pass", "z = [q for q in x]"]), max_size=12))
+def test_a_long_shared_passage_is_never_missed(before: list[str]) -> None:
+    """Winnowing's promise: any passage of RUN + WINDOW - 1 nodes leaves a common mark."""
+    one = fingerprints(("def f():\n" + BLOCK).encode())
+    other = fingerprints(("\n".join(before) + "\ndef g():\n" + BLOCK).encode())
+    assert one is not None
+    assert other is not None
+    assert one.nodes > RUN + WINDOW
+    assert one.marks.keys() & other.marks.keys()

@@ -1,19 +1,22 @@
 """Full marks under every seed: gradings of the model solution and of each accepted variant, in workers.
 
-    python tests/benchmarks/calibration/seeds.py EXERCISE... [--seeds 1000] [--accepted 200] [--first 1]
+    python tests/benchmarks/calibration/seeds.py EXERCISE... [--seeds 1000] [--accepted 200] [--own]
 
 Each seed is a grading run of its own, with its own hidden draws; everything else is what `course grade run`
 does. A grading that is not full marks is printed with the check, the seed and the finding, and the exit code
-is 1. CPU a submission is printed too, the worker's included.
+is 1. CPU a submission is printed too, the worker's included. With --own an accepted variant is put through
+the checks of the tasks it does in its own way; all else in it is the model solution's code.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
@@ -25,8 +28,12 @@ from course.catalog.load import Catalog  # noqa: E402
 from course.grading.session import GradingSession, Submission  # noqa: E402
 from course.grading.verdict import Status  # noqa: E402
 
+if TYPE_CHECKING:
+    from course.catalog.models import Exercise
+    from course.grading.verdict import Verdict
 
-def grade_all(exercise_id: str, seeds: int, accepted: int, first: int) -> int:
+
+def grade_all(exercise_id: str, seeds: int, accepted: int, first: int, *, own: bool) -> int:
     """Grade under many seeds; how many gradings were not full marks."""
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
@@ -38,24 +45,44 @@ def grade_all(exercise_id: str, seeds: int, accepted: int, first: int) -> int:
     with GradingSession(exercise, catalog, scope="full") as session:
         for name, (source, count) in sources.items():
             submission = Submission({exercise.module: source})
+            only: list[str | None] = [None]
+            if own and name.startswith("accepted/"):
+                tasks = _tasks_of(solution.parent / name, solution, exercise)
+                only = [check.id for check in session.checks if check.task in tasks]
             short, start = 0, time.process_time() + descendants_cpu(os.getpid())
             for seed in range(first, first + count):
                 session._seed = seed  # a session keeps one seed for a whole run; here each grading is a run
-                verdict = session.grade(submission)
-                if not verdict.all_pass:
-                    short += 1
-                    bad = [check for check in verdict.checks if check.status is not Status.PASS]
-                    for check in bad[:3]:
-                        print(f"  {name} seed {seed}: {check.id} {check.status}: {check.message}")
-                    if not bad:
-                        print(f"  {name} seed {seed}: {verdict.state}: {verdict.error}")
+                verdicts = [session.grade(submission, only=check) for check in only]
+                full = [_is_full(verdict, f"{name} seed {seed}") for verdict in verdicts]
+                short += not all(full)
             cpu = (time.process_time() + descendants_cpu(os.getpid()) - start) / max(count, 1)
+            scope = "" if only == [None] else f" on {len(only)} checks"
             print(
-                f"{exercise_id} {name}: {count - short} of {count} full marks, {cpu:.2f} s CPU each",
+                f"{exercise_id} {name}: {count - short} of {count} full marks{scope}, {cpu:.2f} s CPU each",
                 flush=True,
             )
             wrong += short
     return wrong
+
+
+def _is_full(verdict: Verdict, label: str) -> bool:
+    """Whether it is full marks; what is not is printed."""
+    if verdict.all_pass:
+        return True
+    bad = [check for check in verdict.checks if check.status is not Status.PASS]
+    for check in bad[:3]:
+        print(f"  {label}: {check.id} {check.status}: {check.message}", flush=True)
+    if not bad:
+        print(f"  {label}: {verdict.state}: {verdict.error}", flush=True)
+    return False
+
+
+def _tasks_of(path: Path, solution: Path, exercise: Exercise) -> set[str]:
+    """Tasks that a variant does in its own way; all of them if it changes another function of the solution."""
+    tasks = {task.id for task in exercise.task}
+    names = set(re.findall(r"^(?:def )?(\w+)(?:\(| = )", path.read_text(), re.M))
+    others = set(re.findall(r"^def (\w+)\(", solution.read_text(), re.M)) - tasks
+    return tasks if names & others else names & tasks
 
 
 def main() -> int:
@@ -66,8 +93,10 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=1000, help="for the model solution")
     parser.add_argument("--accepted", type=int, default=200, help="for each accepted variant")
     parser.add_argument("--first", type=int, default=1, help="the first seed")
+    parser.add_argument("--own", action="store_true", help="variants: only the tasks they do differently")
     options = parser.parse_args()
-    wrong = [grade_all(name, options.seeds, options.accepted, options.first) for name in options.exercise]
+    counts = options.seeds, options.accepted, options.first
+    wrong = [grade_all(name, *counts, own=options.own) for name in options.exercise]
     return int(any(wrong))
 
 

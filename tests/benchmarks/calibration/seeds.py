@@ -78,7 +78,7 @@ def _is_full(verdict: Verdict, label: str) -> bool:
 
 
 def _tasks_of(path: Path, solution: Path, exercise: Exercise) -> set[str]:
-    """Tasks that a variant does in its own way; all of them if it changes another function of the solution."""
+    """Tasks that a variant does in its own way; all, if it changes another function of the solution."""
     tasks = {task.id for task in exercise.task}
     names = set(re.findall(r"^(?:def )?(\w+)(?:\(| = )", path.read_text(), re.M))
     others = set(re.findall(r"^def (\w+)\(", solution.read_text(), re.M)) - tasks

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -28,8 +27,6 @@ __all__ = ["Wish", "play"]
 
 #: Frames per simulated second of a film.
 _FPS = 25.0
-#: Packages that the view in a browser needs.
-_WEB = ("starlette", "uvicorn", "websockets")
 _LONGEST = 86_400.0
 
 
@@ -95,12 +92,13 @@ def play(console: Console, wish: Wish) -> int:
     targets = _Targets.of(wish)
     chosen = sandbox_files.chosen(wish.scene, wish.settings)
     if wish.web:
-        _need_web()
+        from course.sandbox.views import web
+
+        web.need()
     seen = wish.web or (not wish.unseen and console.interactive and console.fancy)
-    guess = _guess(console, chosen, wish)
     if seen:
-        return _play_seen(console, chosen, wish, targets, guess)
-    return _run_unseen(console, chosen, wish, targets, guess)
+        return _play_seen(console, chosen, wish, targets)
+    return _run_unseen(console, chosen, wish, targets, _guess(console, chosen, wish))
 
 
 def _check(wish: Wish) -> None:
@@ -116,19 +114,6 @@ def _check(wish: Wish) -> None:
         raise UsageError("--guess must be a finite number.", code="bad_parameter")
     if wish.at is not None and wish.png is None:
         raise UsageError("--at says when the picture of --png is taken.", help="Add --png FILE.")
-
-
-def _need_web() -> None:
-    missing = [name for name in _WEB if importlib.util.find_spec(name) is None]
-    if missing:
-        from course.engines.extras import requirement_of
-
-        wanted = " ".join(f"'{requirement_of(name).text}'" for name in _WEB)
-        raise MissingCapabilityError(
-            f"--web needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed.",
-            help=f"pip install {wanted}",
-            code="missing_extra",
-        )
 
 
 def _guess(console: Console, chosen: Chosen, wish: Wish) -> float | None:
@@ -155,30 +140,24 @@ def _guess(console: Console, chosen: Chosen, wish: Wish) -> float | None:
 # -- seen ------------------------------------------------------------------------------------------------
 
 
-def _play_seen(console: Console, chosen: Chosen, wish: Wish, targets: _Targets, guess: float | None) -> int:
+def _play_seen(console: Console, chosen: Chosen, wish: Wish, targets: _Targets) -> int:
+    """Open a view; it asks for the prediction and shows the comparison itself."""
     from course.sandbox.recording import Recording
     from course.sandbox.world import World
 
     world = World(chosen.scene, chosen.settings)
     recording = Recording(world) if "record" in targets.paths else None
     view = _view("web" if wish.web else "terminal")
+    options: dict[str, Any] = {"chosen": chosen, "guess": wish.guess, "keep": lambda c: _keep(chosen, c)}
+    if wish.web:
+        options |= {"port": wish.port, "open_browser": wish.open_browser, "say": console.line}
     try:
-        if wish.web:
-            view(world, chosen.scene, port=wish.port, open_browser=wish.open_browser, say=console.line)
-        else:
-            view(world, chosen.scene)
+        view(world, chosen.scene, **options)
     except KeyboardInterrupt:
         pass  # how one leaves
     finally:
         if recording is not None:
             sandbox_files.write(console, targets.paths["record"], recording.encode(), "record")
-    if guess is not None:
-        from course.sandbox.running import run
-
-        with console.working("Comparing"):
-            done = run(chosen, duration=wish.duration, guess=guess)
-        _show_comparison(console, done.comparison)
-        _keep(chosen, done.comparison)
     console.note(("After playing: ", "bold"), chosen.scene.after)
     return 0
 

@@ -13,6 +13,7 @@ import hmac
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import anyio
 from starlette.applications import Starlette
 from starlette.datastructures import MutableHeaders
 from starlette.responses import FileResponse, PlainTextResponse
@@ -20,7 +21,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import AsyncIterator, Awaitable, Callable
 
     from starlette.requests import Request
     from starlette.responses import Response
@@ -200,20 +201,16 @@ def _file(name: str, kind: str) -> Callable[[Request], Response]:
 
 async def _serve(websocket: WebSocket, session: Session, page: Page) -> None:
     """Talk to one page until it leaves, or is too far behind, or the server stops."""
-    tasks = [
-        asyncio.create_task(_listen(websocket, session, page)),
-        asyncio.create_task(_speak(websocket, page)),
-    ]
-    try:
-        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        for task in tasks:
-            task.cancel()
-        results = await asyncio.gather(*tasks, return_exceptions=True)
-    for result in results:
-        gone = (asyncio.CancelledError, WebSocketDisconnect, OSError)
-        if isinstance(result, BaseException) and not isinstance(result, gone):
-            raise result
+
+    async def until_done(talk: Awaitable[None]) -> None:
+        # Leaving in the middle of a word is how pages leave.
+        with contextlib.suppress(WebSocketDisconnect, OSError):
+            await talk
+        both.cancel_scope.cancel()
+
+    async with anyio.create_task_group() as both:
+        both.start_soon(until_done, _listen(websocket, session, page))
+        both.start_soon(until_done, _speak(websocket, page))
     if page.lost and websocket.application_state is WebSocketState.CONNECTED:
         with contextlib.suppress(RuntimeError, WebSocketDisconnect, OSError):
             await websocket.close(_BEHIND, "Too far behind, or too many requests.")

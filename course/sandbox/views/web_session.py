@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from course.errors import UsageError
+from course.errors import CourseError, UsageError
 from course.sandbox.settings import SETTINGS
 from course.sandbox.views import web_messages as messages
 from course.sandbox.views.web_story import Experiment, Teller
@@ -45,12 +45,20 @@ _BLINK = 0.5
 
 
 class Page:
-    """One page's end: texts in order, and only the newest of the frames."""
+    """One page's end: texts in order, and only the newest of the frames.
 
-    def __init__(self) -> None:
+    Args:
+        now: in s, on the session's clock.
+
+    Attributes:
+        watching: somebody sees it.
+        lost: it is not talked to any more.
+    """
+
+    def __init__(self, now: float) -> None:
         self.watching = True
         self.lost = False
-        self.allowance = messages.Allowance(perf_counter())
+        self.allowance = messages.Allowance(now)
         self._texts: deque[str | bytes] = deque()
         self._frame: bytes | None = None
         self._news = asyncio.Event()
@@ -73,18 +81,22 @@ class Page:
         self._frame = data
         self._news.set()
 
+    def take(self) -> str | bytes | None:
+        """What is next to send; None if there is nothing."""
+        if self._texts:
+            return self._texts.popleft()
+        data, self._frame = self._frame, None
+        return data
+
     async def fetch(self) -> str | bytes | None:
-        """What is next to send; None if the page is too far behind."""
-        while True:
-            if self.lost:
-                return None
-            if self._texts:
-                return self._texts.popleft()
-            if self._frame is not None:
-                data, self._frame = self._frame, None
+        """What is next to send, as soon as there is something; None if the page is let go."""
+        while not self.lost:
+            data = self.take()
+            if data is not None:
                 return data
             self._news.clear()
             await self._news.wait()
+        return None
 
 
 class Session:
@@ -129,7 +141,7 @@ class Session:
         """A new page, with everything it has to know; None if there are too many."""
         if len(self.pages) >= MAX_PAGES:
             return None
-        page = Page()
+        page = Page(self._clock())
         page.tell(_json(self._introduction()))
         page.tell(_json(self._bodies()))
         page.tell(messages.past(self.world))
@@ -172,21 +184,22 @@ class Session:
         world = self.world
         match request:
             case messages.Grab(x, y, reach):
-                self.experiment.touch()
-                self._holder = page if world.grab(x, y, reach) else None
+                if world.grab(x, y, reach):
+                    self._holder = page
+                    self.experiment.touch()
             case messages.Drag(x, y):
                 if self._holder is page:
                     world.drag(x, y)
             case messages.Release():
                 self._drop(page)
             case messages.Throw(x, y, vx, vy, reach):
-                self.experiment.touch()
-                world.throw(x, y, vx, vy, reach)
+                if world.throw(x, y, vx, vy, reach):
+                    self.experiment.touch()
             case messages.Push(name, vx, vy):
                 self._push(name, vx, vy)
             case messages.Spawn(shape, x, y):
-                self.experiment.touch()
                 world.spawn(shape, x, y)
+                self.experiment.touch()
             case messages.Set(key, value):
                 world.set(key, value)
                 self.experiment.changed()
@@ -248,8 +261,14 @@ class Session:
         self._advance(min(real_dt, _GAP))
         events = self.world.drain_events()
         self.experiment.take(events)
-        self.experiment.passed()
-        lines = self._teller.tell(events)
+        try:
+            if self.experiment.passed():
+                self.world.paused = True
+        except CourseError as error:
+            # The comparison stands, it only could not be kept.
+            self.world.paused = True
+            self._tell({"type": "error", "message": error.message})
+        lines = self._teller.tell(events, self._clock())
         if lines:
             self._tell({"type": "events", "events": lines})
         if self.world.version != self._version:
@@ -285,7 +304,6 @@ class Session:
                 break
         if stop and made == parts:
             world.run_until(self.scene.duration)
-            world.paused = True
         self._pace += 0.1 * (made / parts - self._pace)
 
     # -- what is said ----------------------------------------------------------------------------

@@ -26,8 +26,8 @@ __all__ = ["Experiment", "Teller"]
 _KEPT = 60
 #: A pair that touches again within this long, in s, is not told about again.
 _PATIENCE = 0.05
-#: Sentences for one frame; more than that nobody reads.
-_AT_ONCE = 12
+#: Contacts and stops told of at once, and in a second of real time; more than that nobody reads.
+_BURST, _RATE = 10.0, 4.0
 #: Events kept for the probes of one run.
 _MOST = 50_000
 
@@ -38,31 +38,50 @@ class Teller:
     def __init__(self) -> None:
         self._last: dict[tuple[str, str], float] = {}
         self._told: deque[dict[str, Any]] = deque(maxlen=_KEPT)
+        self._free, self._then, self._left = _BURST, 0.0, 0
 
     def told(self) -> list[dict[str, Any]]:
         """The latest lines, oldest first."""
         return list(self._told)
 
-    def tell(self, events: Sequence[Event]) -> list[dict[str, Any]]:
-        """Lines for those of the events that are worth one."""
+    def tell(self, events: Sequence[Event], now: float) -> list[dict[str, Any]]:
+        """Lines for those of the events that are worth one.
+
+        Args:
+            events: in order.
+            now: real time in s. Of contacts and stops only so many are told each second; the others are
+                counted.
+        """
+        self._free = min(_BURST, self._free + _RATE * (now - self._then))
+        self._then = now
         lines: list[dict[str, Any]] = []
-        left = 0
         for event in events:
-            if event.kind == "contact":
-                pair = (event.a, event.b)
-                since = event.t - self._last.get(pair, -1.0)
-                self._last[pair] = event.t
-                # Time that runs backwards is a world that was reset.
-                if event.minor or 0.0 <= since < _PATIENCE:
-                    continue
-            if len(lines) >= _AT_ONCE:
-                left += 1
+            if event.kind == "contact" and self._again(event):
                 continue
+            if event.kind in {"contact", "rest"} and not self._may():
+                continue
+            if self._left:
+                what = "contact or stop" if self._left == 1 else "contacts and stops"
+                lines.append({"text": f"{self._left} more {what}.", "kind": "more"})
+                self._left = 0
             lines.append(_line(event))
-        if left:
-            lines.append({"text": f"{left} more in the same moment.", "kind": "more"})
         self._told.extend(lines)
         return lines
+
+    def _again(self, event: Event) -> bool:
+        """Whether a contact is too soft, or its pair was told about a moment ago."""
+        pair = (event.a, event.b)
+        since = event.t - self._last.get(pair, -1.0)
+        self._last[pair] = event.t
+        # Time that runs backwards is a world that was reset.
+        return event.minor or 0.0 <= since < _PATIENCE
+
+    def _may(self) -> bool:
+        if self._free < 1.0:
+            self._left += 1
+            return False
+        self._free -= 1.0
+        return True
 
 
 def _line(event: Event) -> dict[str, Any]:
@@ -144,11 +163,15 @@ class Experiment:
             return None
         return max(0.0, self._chosen.scene.duration - self._world.t)
 
-    def passed(self) -> None:
-        """Time passed, and ``take`` has the events: compare if the end of the run was reached."""
+    def passed(self) -> bool:
+        """Time passed, and ``take`` has the events: compare if the end of the run was reached.
+
+        Returns:
+            whether it was.
+        """
         asked, probes, left = self._chosen.scene.prediction, self._probes, self.left()
         if asked is None or probes is None or left is None or left > 1e-9:
-            return
+            return False
         answer = probes.read(self._events)[asked.probe]
         now = msgspec.structs.replace(self._chosen, settings=dict(self._world.settings))
         comparison = compare(asked, answer, values_of(now), self.guess)
@@ -158,6 +181,7 @@ class Experiment:
         self._world.on_block[:] = self._listeners
         if self._keep is not None and self.guess is not None:
             self._keep(comparison)
+        return True
 
     def report(self) -> dict[str, Any]:
         """For pages."""

@@ -11,6 +11,9 @@ const world = mount(document.getElementById("world"), {
   send(message) {
     if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
   },
+  named(title) {
+    document.title = `${title} · sandbox`;
+  },
 });
 
 function connect() {

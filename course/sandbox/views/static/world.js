@@ -1,5 +1,6 @@
-// A world as a page shows it. `mount(element, { send })` builds everything inside one element; `send` takes one
-// request as an object, `receive` what the world answers: JSON text (or an object), and float32 frames.
+// A world as a page shows it. `mount(element, { send, named })` builds everything inside one element; `send` takes
+// one request as an object, `receive` what the world answers: JSON text (or an object), and float32 frames; `named`
+// is told the scene's title.
 // Nothing is fetched, and nothing outside the element is touched, so a notebook can use this file as it is.
 
 const HEAD = 20; // numbers in front of the bodies of a frame
@@ -12,7 +13,7 @@ const ENERGY = [
   ["potential", "of height", "--potential"],
   ["contacts", "lost in contacts", "--contacts"],
   ["friction", "lost to friction", "--friction"],
-  ["residual", "the solver's", "--residual"],
+  ["residual", "solver's error", "--residual"],
 ];
 const MOMENTUM = [
   ["px", "to the right", "--kinetic"],
@@ -29,8 +30,8 @@ const KEYS = [
   ["Esc", "choose no body"],
 ];
 
-export function mount(element, { send }) {
-  const view = new View(element, send);
+export function mount(element, { send, named = () => {} }) {
+  const view = new View(element, send, named);
   return {
     receive: (data) => view.receive(data),
     lost: (text) => view.say(text, true),
@@ -61,9 +62,19 @@ function short(value, scale = 0) {
   return text.replace("-", "−");
 }
 
+/** A round number in few letters. */
+function tick(value) {
+  const text = String(Number(value.toPrecision(2)));
+  return (text.length > 5 ? value.toExponential(0) : text).replace("-", "−");
+}
+
 /** A number as it was meant: up to six digits, none that say nothing. */
 const plain = (value) => (value === null ? "did not happen" : String(Number(value.toPrecision(6))).replace("-", "−"));
 const spoken = (name) => name.replaceAll("-", " ");
+const amount = (value, of) => {
+  const small = of === "s" && value < 0.1;
+  return plain(Number((small ? 1000 * value : value).toPrecision(3))) + unit(small ? "ms" : of);
+};
 const unit = (text) => (text === "1" || !text ? "" : ` ${text}`);
 
 /** The values a slider can take: fine near where worlds usually are, coarse far out. */
@@ -93,10 +104,10 @@ function nearest(values, wanted) {
   return best;
 }
 
-/** A round number of about this size: 1, 2 or 5 times a power of ten. */
+/** The next round number from this size up: 1, 2 or 5 times a power of ten. */
 function round(size) {
   const power = 10 ** Math.floor(Math.log10(size));
-  return power * (size / power >= 5 ? 5 : size / power >= 2 ? 2 : 1);
+  return power * [1, 2, 5, 10].find((step) => step * power >= size * 0.999);
 }
 
 // -- plots ----------------------------------------------------------------------------------------
@@ -127,11 +138,10 @@ class Plot {
     const legend = this.series.map((s, i) =>
       h("div", {}, h("dt", { class: `key ${s.colour.slice(2)}` }, s.label), this.values[i]),
     );
-    this.total = h("span", { class: "total" });
     this.element = h(
       "section",
       { class: "plot" },
-      h("h2", {}, title, h("small", {}, ` ${unitText}`), this.total),
+      h("h2", {}, title, h("small", {}, ` ${unitText}`)),
       this.canvas,
       h("dl", {}, ...legend),
     );
@@ -178,7 +188,7 @@ class Plot {
     c.textAlign = "right";
     c.textBaseline = "middle";
     c.lineWidth = 1;
-    const gap = round((high - low) / 2.2);
+    const gap = round((high - low) / 3);
     for (let v = Math.ceil(low / gap) * gap; v <= high + gap * 1e-6; v += gap) {
       const zero = Math.abs(v) < gap / 2;
       c.strokeStyle = colour(zero ? "--axis" : "--grid");
@@ -187,7 +197,7 @@ class Plot {
       c.lineTo(width, Math.round(y(v)) + 0.5);
       c.stroke();
       c.fillStyle = colour("--quiet");
-      c.fillText(zero ? "0" : String(Number(v.toPrecision(2))).replace("-", "−"), left - 5, y(v));
+      c.fillText(zero ? "0" : tick(v), left - 5, y(v));
     }
   }
 
@@ -196,7 +206,11 @@ class Plot {
     c.lineWidth = 1.75;
     c.setLineDash(s.colour === "--residual" ? [3, 3] : []);
     c.beginPath();
-    rows.forEach((row, i) => (i ? c.lineTo(x(row[0]), y(row[s.at])) : c.moveTo(x(row[0]), y(row[s.at]))));
+    const every = Math.ceil(rows.length / 600); // more points than pixels show nothing more
+    const last = rows.length - 1;
+    c.moveTo(x(rows[0][0]), y(rows[0][s.at]));
+    for (let i = every; i < last; i += every) c.lineTo(x(rows[i][0]), y(rows[i][s.at]));
+    c.lineTo(x(rows[last][0]), y(rows[last][s.at]));
     c.stroke();
     c.setLineDash([]);
   }
@@ -233,7 +247,8 @@ function distance(body, px, py) {
 // -- the view -------------------------------------------------------------------------------------
 
 class View {
-  constructor(element, send) {
+  constructor(element, send, named) {
+    this.named = named;
     this.host = element;
     this.send = send;
     this.bodies = [];
@@ -275,17 +290,20 @@ class View {
     const button = (label, act, more = {}) => h("button", { type: "button", onclick: act, ...more }, label);
     this.title = h("h1");
     this.teaches = h("p", { class: "teaches" });
-    this.clock = h("output", { class: "clock", "aria-label": "simulated time" });
+    // An output would be read aloud at every change.
+    this.clock = h("span", { class: "clock", role: "timer", "aria-label": "simulated time" });
     this.canvas = h("canvas", { class: "world", tabindex: "0", role: "application" });
     this.canvas.setAttribute("aria-label", "The world. N chooses a body, arrow keys push it, Space runs and pauses.");
     this.tag = h("p", { class: "tag" });
     this.picked = h("p", { class: "picked", hidden: true });
+    this.lag = h("p", { class: "lag" });
+    this.ruler = h("p", { class: "ruler" }, h("i"), h("span"));
     this.banner = h("p", { class: "banner", role: "alert", hidden: true });
     this.card = h("section", { class: "card", "aria-label": "Prediction", hidden: true });
     this.run = button("Run", () => this.toggle(), { class: "main" });
     this.arrows = h("input", { type: "checkbox", onchange: () => this.draw() });
     this.speed = h("input", { type: "range", min: "0", step: "1", id: "speed" });
-    this.speedShown = h("output", { for: "speed" });
+    this.speedShown = h("span", { class: "value" });
     this.speed.addEventListener("input", () => this.later("speed", { do: "speed", value: this.speeds[this.speed.value] }));
     this.speeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 4];
     this.knobs = h("div", { class: "knobs" });
@@ -322,8 +340,8 @@ class View {
     this.root = h(
       "div",
       { class: "sandbox" },
-      h("header", { class: "top" }, h("div", {}, this.title, this.teaches), this.clock, theme),
-      h("div", { class: "stage" }, this.canvas, this.tag, this.picked, this.banner),
+      h("header", { class: "top" }, this.title, this.clock, theme, this.teaches),
+      h("div", { class: "stage" }, this.canvas, this.tag, this.picked, this.lag, this.ruler, this.banner),
       this.card,
       bar,
       panel,
@@ -399,10 +417,13 @@ class View {
     this.scene = scene;
     this.say("");
     this.title.textContent = scene.title;
+    this.named(scene.title);
     this.teaches.textContent = scene.teaches;
     this.note.textContent = scene.note;
     this.after.replaceChildren(h("strong", {}, "Think: "), scene.after);
     this.tag.textContent = scene.above ? "Seen from above" : "";
+    const [left, bottom, right, top] = scene.view;
+    this.root.style.setProperty("--shape", `${right - left} / ${top - bottom}`);
     this.span = Math.min(Math.max(scene.duration, 0.01), 10);
     this.list.replaceChildren();
     this.addLines(scene.events);
@@ -431,7 +452,7 @@ class View {
       const values = stops(knob, now);
       const id = `knob-${knob.name}`;
       const input = h("input", { type: "range", id, min: "0", max: String(values.length - 1), step: "1" });
-      const shown = h("output", { for: id });
+      const shown = h("span", { class: "value" });
       input.addEventListener("input", () => {
         const value = values[input.value];
         this.show(knob.name, value);
@@ -450,10 +471,10 @@ class View {
     const unset = value === null;
     if (!unset && document.activeElement !== input) input.value = String(nearest(values, value));
     if (unset) input.value = String(nearest(values, 0.5));
-    const digits = unset ? "its own" : plain(Number(value.toPrecision(3)));
-    shown.textContent = unset ? digits : digits + unit(knob.unit);
+    const text = unset ? "as it is" : amount(value, knob.unit);
+    shown.textContent = text;
     input.classList.toggle("unset", unset);
-    input.setAttribute("aria-valuetext", unset ? "each body has its own" : digits + unit(knob.unit));
+    input.setAttribute("aria-valuetext", unset ? "each body has its own" : text);
   }
 
   status(status) {
@@ -475,7 +496,7 @@ class View {
     const now = performance.now();
     if (!this.still) {
       for (const event of events) if (event.x !== undefined) this.flashes.push({ ...event, at: now });
-      this.flashes = this.flashes.slice(-60);
+      this.flashes = this.flashes.slice(-24);
     }
     this.unsaid.push(...events.map((event) => event.text));
   }
@@ -653,7 +674,7 @@ class View {
       const [, , , vx, vy] = this.row(i);
       if (!body.fixed) fastest = Math.max(fastest, Math.hypot(vx, vy));
     });
-    return round(Math.max(2, (3 * fastest) / (right - left)));
+    return round(Math.max(2, (2 * fastest) / (right - left)));
   }
 
   down(event) {
@@ -748,8 +769,8 @@ class View {
   // -- drawing ------------------------------------------------------------------------------------
 
   fit() {
-    if (!this.scene) return;
     const { canvas } = this;
+    if (!this.scene || !canvas.clientWidth || !canvas.clientHeight) return;
     const [left, bottom, right, top] = this.scene.view;
     this.dense = Math.min(devicePixelRatio || 1, 2);
     canvas.width = Math.round(canvas.clientWidth * this.dense);
@@ -757,8 +778,12 @@ class View {
     this.scale = Math.min(canvas.clientWidth / (right - left), canvas.clientHeight / (top - bottom));
     this.middle = [canvas.clientWidth / 2, canvas.clientHeight / 2];
     this.centre = [(left + right) / 2, (bottom + top) / 2];
+    const gap = round(50 / this.scale);
+    this.ruler.firstChild.style.width = `${gap * this.scale}px`;
+    this.ruler.lastChild.textContent = `${plain(gap)} m`;
     this.changed = true;
     this.stale = 0;
+    this.draw(); // at once: a canvas that changed its size is empty
   }
 
   draw() {
@@ -793,7 +818,7 @@ class View {
   }
 
   grid(c) {
-    const gap = round(90 / this.scale);
+    const gap = round(50 / this.scale);
     const [w, t] = [this.middle[0] / this.scale, this.middle[1] / this.scale];
     const [x0, y0] = this.centre;
     c.lineWidth = this.pixel;
@@ -808,15 +833,6 @@ class View {
       c.lineTo(x0 + w, y);
     }
     c.stroke();
-    // A bar of one gap's length: how large things are.
-    const [bx, by] = [x0 - w + 14 * this.pixel, y0 - t + 14 * this.pixel];
-    c.strokeStyle = this.colour("--quiet");
-    c.lineWidth = 2 * this.pixel;
-    c.beginPath();
-    c.moveTo(bx, by);
-    c.lineTo(bx + gap, by);
-    c.stroke();
-    this.text(c, `${plain(gap)} m`, bx + gap / 2, by + 10 * this.pixel);
   }
 
   text(c, text, x, y, colour = "--quiet") {
@@ -826,6 +842,10 @@ class View {
     c.font = "12px system-ui, sans-serif";
     c.textAlign = "center";
     c.textBaseline = "middle";
+    c.lineWidth = 3;
+    c.lineJoin = "round";
+    c.strokeStyle = this.colour("--paper");
+    c.strokeText(text, 0, 0);
     c.fillStyle = this.colour(colour);
     c.fillText(text, 0, 0);
     c.restore();
@@ -844,13 +864,16 @@ class View {
     } else {
       c.fillStyle = body.colour;
       c.fill(body.path);
+      // Outlines cost five times what areas do, so only what would not be seen gets one.
+      if (this.faint(body)) {
+        c.strokeStyle = this.colour("--rim");
+        c.lineWidth = this.pixel;
+        c.stroke(body.path);
+      }
       if (body.shape === "circle" && !body.fixed) {
-        c.strokeStyle = "rgba(255, 255, 255, 0.75)";
-        c.lineWidth = Math.max(1.5 * this.pixel, body.radius * 0.08);
-        c.beginPath();
-        c.moveTo(body.radius * 0.35, 0);
-        c.lineTo(body.radius * 0.85, 0);
-        c.stroke();
+        const thick = Math.max(1.5 * this.pixel, body.radius * 0.08);
+        c.fillStyle = this.faint(body) ? this.colour("--rim") : "rgba(255, 255, 255, 0.75)";
+        c.fillRect(body.radius * 0.35, -thick / 2, body.radius * 0.5, thick);
       }
     }
     if (chosen) {
@@ -858,6 +881,17 @@ class View {
       c.strokeStyle = this.colour("--accent");
       c.stroke(body.path);
     }
+  }
+
+  /** Whether a body's colour is all but that of the paper. */
+  faint(body) {
+    const key = `faint ${body.colour}`;
+    if (!this.colours || this.colours[key] === undefined) {
+      const light = (hex) => [1, 3, 5].reduce((sum, at, i) => sum + [0.21, 0.72, 0.07][i] * parseInt(hex.slice(at, at + 2), 16), 0);
+      const far = Math.abs(light(body.colour) - light(this.colour("--paper")));
+      this.colours[key] = far < 40;
+    }
+    return this.colours[key];
   }
 
   wheels(c, body) {
@@ -947,7 +981,7 @@ class View {
       const age = (now - flash.at) / FLASH;
       c.globalAlpha = 1 - age;
       c.beginPath();
-      c.arc(flash.x, flash.y, (6 + 16 * age) * this.pixel, 0, 2 * Math.PI);
+      c.arc(flash.x, flash.y, (4 + 9 * age) * this.pixel, 0, 2 * Math.PI);
       c.stroke();
     }
     c.globalAlpha = 1;
@@ -963,8 +997,9 @@ class View {
     }
     this.stale = now;
     const { t, pace } = this.frame;
-    const slow = !this.state?.paused && pace < 0.9 ? ` (${Math.round(100 * pace)} % of the speed asked for)` : "";
-    this.clock.textContent = `${t.toFixed(this.span < 1 ? 3 : 2)} s${slow}`;
+    this.clock.textContent = `${t.toFixed(this.span < 1 ? 3 : 2)} s`;
+    const slow = !this.state?.paused && pace < 0.8;
+    this.lag.textContent = slow ? `Too much work: ${Math.round(100 * pace)} % of the speed asked for` : "";
     const row = this.chosen && this.rowOf(this.chosen);
     if (row) {
       const body = this.bodies.find((b) => b.name === this.chosen);

@@ -1,0 +1,365 @@
+"""The sandbox in a real browser: hands, sliders, keys, reload, and nothing that leaves this machine.
+
+Needs Chromium, Debian's or one that CHROMIUM names, and the package playwright, which downloads none.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import numpy as np
+import pytest
+
+CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium on this machine"),
+]
+sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+pytest.importorskip("uvicorn", reason="the extra `web` is not installed")
+
+ROOT = Path(__file__).parents[2]
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+HEAD = 20
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory):
+    with sync_api.sync_playwright() as play:
+        context = play.chromium.launch_persistent_context(
+            tmp_path_factory.mktemp("chromium"), executable_path=CHROMIUM, headless=True, args=FLAGS
+        )
+        yield context
+        context.close()
+
+
+class Sandbox:
+    """A scene that is served, a page that shows it, and what went over the wire."""
+
+    def __init__(self, context, scene: str, size: tuple[int, int]) -> None:
+        self.server = subprocess.Popen(
+            [sys.executable, "-m", "course", "sandbox", "play", scene, "--web", "--no-browser"],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "COLUMNS": "200", "PYTHONUNBUFFERED": "1"},
+        )
+        said = ""
+        while not (found := re.search(r"http://127\.0\.0\.1:\d+/[\w-]+/", said)):
+            line = self.server.stdout.readline()
+            assert line, f"the server ended: {said}"
+            said += line
+        self.address = found[0]
+        self.complaints: list[str] = []
+        self.requests: list[str] = []
+        self.frame: np.ndarray | None = None
+        self.names: list[str] = []
+        self.status: dict = {}
+        self.page = context.new_page()
+        self.page.set_viewport_size({"width": size[0], "height": size[1]})
+        self.page.on(
+            "console",
+            lambda message: (
+                self.complaints.append(message.text) if message.type in {"error", "warning"} else None
+            ),
+        )
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("websocket", self._wire)
+        self.page.goto(self.address)
+        self.until(lambda: self.frame is not None and self.status)
+
+    def _wire(self, wire) -> None:
+        self.requests.append(wire.url)
+        wire.on("framereceived", self._heard)
+
+    def _heard(self, data: str | bytes) -> None:
+        if isinstance(data, bytes):
+            numbers = np.frombuffer(data, "<f4")
+            if numbers[0] == 1:
+                self.frame = numbers
+            return
+        message = json.loads(data)
+        if message["type"] == "scene":
+            self.status, self.view = message["status"], message["view"]
+        elif message["type"] == "status":
+            self.status = message
+        elif message["type"] == "bodies":
+            self.names = [body["name"] for body in message["bodies"]]
+
+    def until(self, true, patience: float = 30.0) -> None:
+        end = time.monotonic() + patience
+        while not true():
+            assert time.monotonic() < end, "it did not happen"
+            self.page.wait_for_timeout(20)
+
+    def body(self, name: str) -> tuple[float, ...]:
+        """x, y, angle, vx, vy."""
+        at = HEAD + 5 * self.names.index(name)
+        return tuple(self.frame[at : at + 5].tolist())
+
+    def pixel(self, x: float, y: float) -> tuple[float, float]:
+        """Where a place of the world is on the page."""
+        box = self.page.locator("canvas.world").bounding_box()
+        left, bottom, right, top = self.view
+        scale = min(box["width"] / (right - left), box["height"] / (top - bottom))
+        return (
+            box["x"] + box["width"] / 2 + (x - (left + right) / 2) * scale,
+            box["y"] + box["height"] / 2 - (y - (bottom + top) / 2) * scale,
+        )
+
+    def close(self) -> int:
+        self.page.close()
+        self.server.send_signal(signal.SIGINT)
+        try:
+            return self.server.wait(20)
+        finally:
+            self.server.kill()
+            self.server.stdout.close()
+
+
+@pytest.fixture
+def sandbox(browser):
+    made: list[Sandbox] = []
+
+    def make(scene: str, size: tuple[int, int] = (1280, 800)) -> Sandbox:
+        made.append(Sandbox(browser, scene, size))
+        return made[-1]
+
+    yield make
+    for one in made:
+        assert one.complaints == []
+        origin = urlsplit(one.address).netloc
+        assert {urlsplit(url).netloc for url in one.requests} == {origin}
+        assert one.close() == 0
+
+
+def test_a_body_is_dragged_and_thrown_with_the_mouse(sandbox) -> None:
+    at = sandbox("head-on")
+    at.page.get_by_role("button", name="Just run").click()
+    at.until(lambda: not at.status["paused"])
+    at.page.get_by_role("button", name="Reset").click()
+    at.page.locator("label.speed input").focus()
+    for _ in range(3):
+        at.page.keyboard.press("ArrowLeft")
+    at.until(lambda: at.status["speed"] == 0.1)
+    at.page.mouse.move(*at.pixel(*at.body("left-puck")[:2]))
+    at.page.mouse.down()
+    at.until(lambda: at.frame[6] == 1)
+    at.page.mouse.move(*at.pixel(-1.0, 1.0), steps=4)
+    at.until(lambda: at.body("left-puck")[1] > 0.5)
+    at.page.mouse.move(*at.pixel(1.0, 1.0))
+    at.until(lambda: at.body("left-puck")[3] > 0.5)
+    at.page.mouse.up()
+    at.until(lambda: at.frame[6] == 0)
+    assert at.body("left-puck")[3] > 0.2
+    assert "the hand lets go" in at.page.locator(".events").inner_text()
+
+
+def test_while_time_stands_dragging_sets_the_velocity(sandbox) -> None:
+    at = sandbox("restitution-row")
+    x, y, *_ = at.body("ball-3")
+    at.page.mouse.move(*at.pixel(x, y))
+    at.page.mouse.down()
+    at.page.mouse.move(*at.pixel(x + 0.5, y + 0.25), steps=3)
+    at.page.mouse.up()
+    at.until(lambda: at.body("ball-3")[3] != 0)
+    assert at.body("ball-3")[3] == pytest.approx(1.0, abs=0.05)
+    assert at.body("ball-3")[4] == pytest.approx(0.5, abs=0.05)
+    assert at.status["paused"]
+
+
+def test_a_finger_drags_on_a_phone(sandbox) -> None:
+    at = sandbox("head-on", (390, 844))
+    at.page.get_by_role("button", name="Just run").click()
+    at.page.get_by_role("button", name="Reset").click()
+    at.page.locator("label.speed input").focus()
+    at.page.keyboard.press("Home")
+    at.until(lambda: at.status["speed"] == 0.01 and not at.status["paused"])
+    touch = at.page.context.new_cdp_session(at.page)
+
+    def finger(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in places]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    before = at.body("right-puck")
+    finger("touchStart", at.pixel(*before[:2]))
+    at.until(lambda: at.frame[6] == 1)
+    finger("touchMove", at.pixel(before[0], before[1] + 0.8))
+    at.until(lambda: at.body("right-puck")[4] > 0.2)
+    finger("touchEnd")
+    at.until(lambda: at.frame[6] == 0)
+    assert at.page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_sliders_act_and_say_what_they_are_at(sandbox) -> None:
+    at = sandbox("restitution-row")
+    for name, key in (
+        ("gravity", "Home"),
+        ("restitution", "End"),
+        ("step", "ArrowLeft"),
+        ("iterations", "ArrowRight"),
+    ):
+        slider = at.page.get_by_role("slider", name=name)
+        before = at.status["settings"].get(name)
+        slider.press(key)
+        at.until(lambda name=name, before=before: at.status["settings"].get(name) != before)
+    now = at.status["settings"]
+    assert (now["gravity"], now["restitution"], now["iterations"]) == (0, 1, 40)
+    assert now["step"] == pytest.approx(1 / 480)
+    assert at.page.get_by_role("slider", name="step").get_attribute("aria-valuetext") == "2.08 ms"
+
+
+def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
+    at = sandbox("head-on")
+    at.page.get_by_label("Your guess").fill("two")
+    at.page.get_by_role("button", name="Run and compare").click()
+    assert at.page.get_by_role("alert").filter(has_text="A number, please.").is_visible()
+    at.page.get_by_label("Your guess").fill("1,5")
+    at.page.keyboard.press("Enter")
+    at.page.locator(".answers").wait_for(timeout=30_000)
+    answers = at.page.locator(".answers").inner_text().split()
+    assert answers == ["Your", "guess", "1.5", "m/s", "Theory", "2", "m/s", "Simulation", "2", "m/s"]
+    at.page.get_by_role("button", name="Run again").click()
+    at.until(lambda: at.status["stage"] == "run")
+
+
+def test_a_reload_changes_nothing(sandbox) -> None:
+    at = sandbox("head-on")
+    at.page.get_by_label("Your guess").fill("2")
+    at.page.keyboard.press("Enter")
+    at.page.locator(".answers").wait_for(timeout=30_000)
+    told = at.page.locator(".events ol").inner_text()
+    where, answers = at.body("right-puck"), at.page.locator(".answers").inner_text()
+    at.frame = None
+    at.page.reload()
+    at.until(lambda: at.frame is not None)
+    at.page.locator(".answers").wait_for()
+    assert at.body("right-puck") == where
+    assert at.page.locator(".events ol").inner_text() == told
+    assert at.page.locator(".answers").inner_text() == answers
+
+
+def test_everything_can_be_done_with_keys(sandbox) -> None:
+    at = sandbox("head-on")
+    reached = set()
+    for _ in range(40):
+        at.page.keyboard.press("Tab")
+        reached.add(
+            at.page.evaluate("(e => e.id || e.textContent.trim() || e.className)(document.activeElement)")
+        )
+    wanted = {
+        "Run",
+        "Step",
+        "Reset",
+        "+ Ball",
+        "+ Box",
+        "speed",
+        "guess",
+        "world",
+        "knob-gravity",
+        "knob-step",
+    }
+    assert wanted <= {item.removesuffix(" over") for item in reached}
+    at.page.locator("canvas.world").focus()
+    at.page.keyboard.press("n")
+    assert "left puck" in at.page.locator(".picked").inner_text()
+    assert "left puck" in at.page.get_by_role("status").inner_text()
+    at.page.keyboard.press("ArrowUp")
+    at.until(lambda: at.body("left-puck")[4] > 0)
+    at.page.keyboard.press("b")
+    at.until(lambda: "new-1" in at.names)
+    at.page.keyboard.press("s")
+    at.until(lambda: at.frame[2] > 0)
+    at.page.keyboard.press("r")
+    at.until(lambda: at.frame[2] == 0 and "new-1" not in at.names)
+    at.page.keyboard.press(" ")
+    at.until(lambda: not at.status["paused"])
+
+
+#: Names of everything that can be operated, and contrast of everything that can be read.
+_BASICS = """() => {
+  const wrong = [];
+  for (const e of document.querySelectorAll('button, input, summary, canvas[tabindex], [role=application]')) {
+    const name = e.getAttribute('aria-label') || e.textContent.trim() ||
+      [...(e.labels || [])].map((l) => l.textContent.trim()).join(' ');
+    if (!name) wrong.push('no name: ' + e.outerHTML.slice(0, 80));
+    const box = e.getBoundingClientRect();
+    if (box.width && Math.min(box.width, box.height) < 16) wrong.push('small: ' + e.outerHTML.slice(0, 80));
+  }
+  const ids = [...document.querySelectorAll('[id]')].map((e) => e.id);
+  if (new Set(ids).size !== ids.length) wrong.push('an id is there twice');
+  if (!document.documentElement.lang) wrong.push('no language');
+  if (document.querySelectorAll('h1').length !== 1) wrong.push('not one h1');
+  const linear = (v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const light = (c) => {
+    const [r, g, b] = c.map((v) => linear(v / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const rgb = (text) => text.match(/[\\d.]+/g).map(Number);
+  const under = (e) => {
+    for (; e; e = e.parentElement) {
+      const c = rgb(getComputedStyle(e).backgroundColor);
+      if (c.length < 4 || c[3] > 0) return c.slice(0, 3);
+    }
+    return [255, 255, 255];
+  };
+  for (const e of document.querySelectorAll('.sandbox *')) {
+    const text = [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+    if (!text || !e.getBoundingClientRect().width) continue;
+    const [a, b] = [light(rgb(getComputedStyle(e).color).slice(0, 3)), light(under(e))];
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < 4.5) wrong.push(`contrast ${ratio.toFixed(2)}: ` + e.outerHTML.slice(0, 80));
+  }
+  return wrong;
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
+    at = sandbox("restitution-row")
+    # Without motion colours change at once, and are not measured half way.
+    at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    assert at.page.evaluate(_BASICS) == []
+    at.page.get_by_label("Your guess").fill("1")
+    at.page.keyboard.press("Enter")
+    at.page.locator(".answers").wait_for(timeout=30_000)
+    assert at.page.evaluate(_BASICS) == []
+    paper = at.page.evaluate("getComputedStyle(document.querySelector('.sandbox')).backgroundColor")
+    assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 23, 27)"}[scheme]
+
+
+def test_another_page_reaches_nothing_even_with_the_address(browser, sandbox) -> None:
+    at = sandbox("head-on")
+    elsewhere = browser.new_page()
+    try:
+        elsewhere.goto("about:blank")
+        address = at.address.replace("http:", "ws:") + "socket"
+        opened = """(address) => new Promise((done) => {
+          const socket = new WebSocket(address);
+          socket.onopen = () => done('open');
+          socket.onerror = () => done('refused');
+        })"""
+        assert elsewhere.evaluate(opened, address) == "refused"
+        fetched = "(address) => fetch(address).then(() => 'read', () => 'refused')"
+        assert elsewhere.evaluate(fetched, at.address + "world.js") == "refused"
+    finally:
+        elsewhere.close()

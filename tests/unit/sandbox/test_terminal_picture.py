@@ -1,0 +1,128 @@
+"""The terminal's picture: what is where, and what is sent."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from course.sandbox.loading import choose
+from course.sandbox.views.terminal_camera import Camera
+from course.sandbox.views.terminal_picture import PAPER, Overlay, Picture, Spark, label_of
+from course.sandbox.world import World
+
+SIZE = (52, 19)
+
+
+def pictured(scene: str, *, colour: bool = True, size: tuple[int, int] = SIZE) -> tuple[World, Picture]:
+    world = World(choose(scene).scene)
+    return world, Picture(world.parts, Camera.fit(world.scene.view, *size), colour=colour)
+
+
+def text(cells) -> str:
+    return "\n".join("".join(map(chr, row)) for row in cells.char)
+
+
+def test_a_place_is_drawn_in_the_cell_that_stands_for_it():
+    camera = Camera.fit((-2.0, -1.5, 2.0, 1.5), 80, 24)
+    for column, row in ((0, 0), (79, 23), (40, 12), (7, 20)):
+        assert camera.cell(*camera.place(column, row)) == (column, row)
+
+
+@pytest.mark.parametrize("size", [(10, 4), (52, 19), (114, 40), (200, 5)])
+def test_all_of_the_view_fits_into_any_window(size: tuple[int, int]):
+    camera = Camera.fit((-3.0, -6.0, 3.0, 1.0), *size)
+    for x, y in ((-2.999, -5.999), (2.999, 0.999)):
+        column, row = camera.cell(x, y)
+        assert 0 <= column < size[0]
+        assert 0 <= row < size[1]
+
+
+def test_a_ball_is_drawn_where_it_is_and_nowhere_else():
+    world, picture = pictured("head-on")
+    cells = picture.draw(world.snapshot(), Overlay())
+    shot = world.snapshot()
+    at = {picture.camera.cell(float(x), float(y)) for x, y in zip(shot.x, shot.y, strict=True)}
+    for column, row in at:
+        assert int(cells.paper[row, column]) != PAPER
+    filled = int(((cells.paper != PAPER) | (cells.char != ord(" "))).sum())
+    # Two discs of a radius of 0.2 m, in cells of one by two pixels, and a rim of one cell around each.
+    radius = 0.2 * picture.camera.scale
+    assert 2 * np.pi * radius**2 / 2 * 0.8 < filled < 2 * np.pi * (radius + 1.5) ** 2 / 2
+
+
+def test_only_rows_that_differ_are_named_and_only_as_far_as_they_do():
+    world, picture = pictured("head-on")
+    before = picture.draw(world.snapshot(), Overlay())
+    assert picture.draw(world.snapshot(), Overlay()).changes(before) == []
+    world.run_until(0.2)
+    after = picture.draw(world.snapshot(), Overlay())
+    changes = after.changes(before)
+    assert 0 < len(changes) < SIZE[1] / 2
+    rows = {row for row, _, _ in changes}
+    for row in range(SIZE[1]):
+        same = (before.paper[row] == after.paper[row]).all() and (before.ink[row] == after.ink[row]).all()
+        assert (row not in rows) == (same and (before.char[row] == after.char[row]).all())
+    for row, first, count in changes:
+        for column in (first, first + count - 1):
+            assert (before.paper[row, column], before.ink[row, column]) != (
+                after.paper[row, column],
+                after.ink[row, column],
+            ) or before.char[row, column] != after.char[row, column]
+
+
+def test_without_colour_characters_tell_shapes_apart_and_no_colour_is_used():
+    world, picture = pictured("robot-boxes", colour=False)
+    world.spawn("circle", 1.5, 1.0, size=0.3)
+    picture = Picture(world.parts, picture.camera, colour=False)
+    cells = picture.draw(world.snapshot(), Overlay())
+    assert not cells.ink.any()
+    assert not cells.paper.any()
+    shown = text(cells)
+    assert "o" in shown
+    assert "#" in shown
+    assert "→" in shown  # the robot looks along x
+    world, picture = pictured("newtons-cradle", colour=False)
+    shown = text(picture.draw(world.snapshot(), Overlay()))
+    assert "▒" in shown  # the beam, which is fixed
+    assert "·" in shown  # rods
+    assert "1" in shown  # ball-1
+
+
+@pytest.mark.parametrize("colour", [True, False])
+def test_what_is_smaller_than_a_pixel_is_seen_nevertheless(colour: bool):
+    world, picture = pictured("bullet-wall", colour=colour)
+    assert 0.02 * picture.camera.scale < 0.5  # the wall is thin, the bullet small
+    cells = picture.draw(world.snapshot(), Overlay())
+    shot = world.snapshot()
+    for x, y in zip(shot.x, shot.y, strict=True):
+        column, row = picture.camera.cell(float(x), float(y))
+        near = (slice(max(0, row - 1), row + 2), slice(max(0, column - 1), column + 2))
+        seen = (cells.char[near] != ord(" ")).any() or (colour and (cells.paper[near] != PAPER).any())
+        assert seen
+
+
+def test_a_body_that_is_nowhere_or_far_away_is_left_out():
+    world, picture = pictured("head-on")
+    shot = world.snapshot()
+    x = shot.x.copy()
+    x[0], x[1] = np.nan, 1e300
+    cells = picture.draw(replace(shot, x=x, hand=(0.0, 0.0, np.inf, 0.0)), Overlay(names=True))
+    assert (cells.paper == PAPER).all()
+
+
+@pytest.mark.parametrize("colour", [True, False])
+def test_a_hand_a_pointer_and_a_flash_are_drawn(colour: bool):
+    world, picture = pictured("head-on", colour=colour)
+    bare = picture.draw(world.snapshot(), Overlay())
+    for over in (
+        Overlay(pointer=(0.0, 1.0)),
+        Overlay(pull=(0.0, 1.0, 0.5, 1.2)),
+        Overlay(sparks=(Spark(0.0, 1.0, 1.0),)),
+    ):
+        assert picture.draw(world.snapshot(), over).changes(bare)
+
+
+def test_labels_are_short_and_keep_the_number():
+    assert [label_of(name) for name in ("ball-12", "left-puck", "robot")] == ["12", "l", "r"]

@@ -1,0 +1,122 @@
+"""Numbers, curves and lines beside the terminal's picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course.sandbox.loading import choose
+from course.sandbox.views.terminal_pace import Pacer, speed_in_words
+from course.sandbox.views.terminal_words import bars, clean, head, keys_line, panel, shown, wrapped
+from course.sandbox.world import World
+
+
+def plain(line) -> str:
+    return "".join(text for text, _ in line)
+
+
+@pytest.mark.parametrize(
+    ("value", "scale", "text"),
+    [
+        (4.905, 5.0, "4.905"),
+        (-0.0003, 1.0, "-3.0e-4"),
+        (1e-12, 1.0, "0"),
+        (0.0, 0.0, "0"),
+        (12345.6, 1.0, "12346"),
+        (float("nan"), 1.0, "none"),
+        (-123456789.0, 1.0, "-1.2e8"),
+    ],
+)
+def test_numbers_are_short_and_a_rounding_error_is_nothing(value: float, scale: float, text: str):
+    assert shown(value, scale) == text
+
+
+def test_no_number_is_wider_than_its_column():
+    for exponent in range(-40, 40):
+        for mantissa in (-9.99999, -1.0, 1.0, 9.99999):
+            assert len(shown(mantissa * 10.0**exponent)) <= 7
+
+
+def test_bars_rise_with_what_they_show():
+    (line,) = bars(np.linspace(0.0, 1.0, 80), 8, 0.0, 1.0)
+    assert line == "".join(sorted(line))
+    assert (line[0], line[-1]) == ("▁", "█")
+    upper, lower = bars(np.array([0.0, 1.0]), 2, 0.0, 1.0, height=2)
+    assert (upper, lower) == (" █", "▁█")
+
+
+def test_bars_fill_their_width_however_few_values_there_are():
+    for count in (0, 1, 3, 200):
+        assert [len(line) for line in bars(np.ones(count), 12, 0.0, 0.0, height=2)] == [12, 12]
+
+
+def test_nothing_a_terminal_would_obey_gets_through():
+    assert clean("a\x1b[31mb\r\n\tc\u202ed\x9b2J") == "a [31mb c d 2J"
+
+
+def test_words_wrap_and_too_long_ones_are_cut():
+    assert wrapped("one two three", 8) == ["one two", "three"]
+    assert wrapped("abcdefghij", 4) == ["abcd", "efgh", "ij"]
+
+
+@pytest.mark.parametrize("width", [20, 40, 60, 80, 160])
+def test_lines_above_and_below_fit(width: int):
+    world = World(choose("newtons-cradle").scene)
+    world.speed = 1 / 1024
+    assert len(plain(head(world, "", 0.3, width))) <= width
+    assert len(plain(keys_line(width, paused=True))) <= width
+
+
+def test_a_slow_machine_is_named_and_a_quick_one_is_not():
+    world = World(choose("head-on").scene)
+    assert "manages 30 %" in plain(head(world, "", 0.3, 120))
+    assert "manages" not in plain(head(world, "", 1.0, 120))
+
+
+@pytest.mark.parametrize(("width", "height"), [(23, 10), (23, 19), (27, 19), (43, 40), (43, 60)])
+@pytest.mark.parametrize("scene", ["newtons-cradle", "robot-boxes"])
+def test_the_panel_fits_and_its_energies_add_up(scene: str, width: int, height: int):
+    world = World(choose(scene).scene)
+    world.run_until(0.3)
+    lines = panel(world, width, height)
+    assert len(lines) <= height
+    assert {len(plain(line)) for line in lines if len(line) == 3} == {width}
+    if height >= 19:
+        values = [
+            plain(line).split() for line in lines[: next(i for i, x in enumerate(lines) if "Mom" in plain(x))]
+        ]
+        parts = {"motion", "height", "contacts", "friction", "solver"}
+        named = {words[0]: float(words[-1]) for words in values if words and words[0] in {*parts, "="}}
+        assert named.keys() == {*parts, "="}
+        assert sum(named[name] for name in parts) == pytest.approx(named["="], abs=0.01)
+
+
+def test_speeds_are_said_in_words():
+    assert [speed_in_words(s) for s in (1.0, 0.125, 2.0)] == [
+        "real time",
+        "1/8 of real time",
+        "2 x real time",
+    ]
+
+
+def test_a_world_that_is_too_slow_for_its_budget_gives_way_and_says_so():
+    now = 0.0
+
+    def clock() -> float:
+        nonlocal now
+        now += 0.01
+        return now
+
+    world = World(choose("newtons-cradle").scene)
+    pacer = Pacer(world, budget=0.015, clock=clock)
+    pacer.advance(0.1)
+    assert 0 < world.steps < 200
+    assert pacer.pace < 1.0
+
+
+def test_a_run_stops_exactly_where_it_is_told_to():
+    world = World(choose("head-on").scene)
+    pacer = Pacer(world, budget=1e9, clock=lambda: 0.0)
+    for _ in range(20):
+        pacer.advance(0.06, until=0.5)
+    assert world.steps == 120

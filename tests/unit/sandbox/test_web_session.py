@@ -1,0 +1,419 @@
+"""A world behind a page: requests, time, predictions, and everything that may come over the wire."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from course.errors import MissingCapabilityError
+from course.sandbox.loading import choose
+from course.sandbox.running import run
+from course.sandbox.views.web_session import Page, Session
+from course.sandbox.world import World
+
+
+class Clock:
+    """Real time that passes only when somebody looks, or is told to."""
+
+    def __init__(self, each: float = 0.0) -> None:
+        self.now, self.each = 0.0, each
+
+    def __call__(self) -> float:
+        self.now += self.each
+        return self.now
+
+
+def make(name: str = "restitution-row", clock: Clock | None = None, **more) -> tuple[Session, Page]:
+    chosen = choose(name, more.pop("settings", None))
+    made = Session(World(chosen.scene, chosen.settings), chosen, clock=clock or Clock(), **more)
+    page = made.join()
+    assert page is not None
+    return made, page
+
+
+def told(page: Page) -> list[dict]:
+    """Every text a page was sent."""
+    messages = []
+    while (data := page.take()) is not None:
+        if isinstance(data, str):
+            messages.append(json.loads(data))
+    return messages
+
+
+def of(messages: list[dict], kind: str) -> list[dict]:
+    return [message for message in messages if message["type"] == kind]
+
+
+def send(made: Session, page: Page, do: str, **more) -> None:
+    made.receive(page, json.dumps({"do": do, **more}))
+
+
+def watch(made: Session, seconds: float) -> None:
+    """Real time passes in frames."""
+    for _ in range(round(seconds * 60)):
+        made.tick(1 / 60)
+
+
+# -- hands -----------------------------------------------------------------------------------------------
+
+
+def test_a_body_that_is_dragged_follows_the_hand_and_flies_on() -> None:
+    made, page = make("head-on")
+    send(made, page, "pause", on=False)
+    send(made, page, "grab", x=-1, y=0, reach=0.1)
+    assert made.world.held == "left-puck"
+    for i in range(30):
+        send(made, page, "drag", x=-1.0, y=i / 30)
+        made.tick(1 / 60)
+    send(made, page, "release")
+    row = [part.name for part in made.world.parts].index("left-puck")
+    shot = made.world.snapshot()
+    assert made.world.held is None
+    assert shot.y[row] > 0.5
+    assert shot.vy[row] > 1.0
+
+
+def test_only_the_page_that_holds_a_body_moves_it_and_leaving_lets_go() -> None:
+    made, page = make("head-on")
+    other = made.join()
+    assert other is not None
+    send(made, page, "grab", x=-1, y=0)
+    send(made, other, "drag", x=5, y=5)
+    send(made, other, "release")
+    assert made.world.held == "left-puck"
+    assert made.world.snapshot().hand[2:] == (-1.0, 0.0)
+    made.leave(page)
+    assert made.world.held is None
+
+
+def test_a_push_by_name_adds_to_the_velocity_and_fixed_bodies_do_not_move() -> None:
+    made, page = make()
+    names = [part.name for part in made.world.parts]
+    send(made, page, "push", name="ball-3", vx=1.5, vy=0.5)
+    send(made, page, "push", name="ball-3", vx=1.0, vy=0.0)
+    shot = made.world.snapshot()
+    assert (shot.vx[names.index("ball-3")], shot.vy[names.index("ball-3")]) == (2.5, 0.5)
+    told(page)
+    send(made, page, "push", name="floor", vx=1, vy=0)
+    send(made, page, "push", name="nobody", vx=1, vy=0)
+    assert [error["message"] for error in told(page)] == [
+        "There is no 'floor' that moves.",
+        "There is no 'nobody' that moves.",
+    ]
+
+
+def test_a_new_body_is_announced_before_the_frame_that_has_it() -> None:
+    made, page = make("head-on")
+    told(page)
+    send(made, page, "spawn", shape="box", x=0, y=1)
+    made.tick(0)
+    first = [json.loads(page.take()) for _ in range(2)]
+    bodies = of(first, "bodies") or of([json.loads(page.take())], "bodies")
+    data = None
+    while not isinstance(data, bytes):
+        data = page.take()
+    frame = np.frombuffer(data, "<f4")
+    assert bodies[0]["version"] == frame[1]
+    assert len(bodies[0]["bodies"]) == frame[4] == 3
+
+
+# -- time ------------------------------------------------------------------------------------------------
+
+
+def test_nothing_passes_while_nobody_looks() -> None:
+    async def go(watching: bool, pages: bool) -> int:
+        chosen = choose("head-on")
+        made = Session(World(chosen.scene), chosen)
+        made.world.paused = False
+        if pages:
+            page = made.join()
+            made.receive(page, json.dumps({"do": "watch", "on": watching}))
+        task = asyncio.create_task(made.run())
+        for _ in range(20):
+            await asyncio.sleep(0.005)
+            if made.world.ticks:
+                break
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+        return made.world.ticks
+
+    assert asyncio.run(go(watching=True, pages=True)) > 0
+    assert asyncio.run(go(watching=False, pages=True)) == 0
+    assert asyncio.run(go(watching=True, pages=False)) == 0
+
+
+def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
+    clock = Clock(each=0.002)
+    made, page = make("head-on", clock=clock, settings={"step": 1e-5})
+    send(made, page, "guess", value=None)
+    send(made, page, "speed", value=10)
+    for _ in range(40):
+        made.tick(1 / 60)
+    # A frame asks for 16,667 steps; about six looks at the clock fit into its time.
+    assert made.world.ticks < 40 * 200
+    data = page.take()
+    while not isinstance(data, bytes) or np.frombuffer(data, "<f4")[0] != 1:
+        data = page.take()
+    assert np.frombuffer(data, "<f4")[3] < 0.2
+
+
+def test_a_run_too_short_to_be_seen_starts_in_slow_motion() -> None:
+    made, _ = make("bullet-wall")
+    assert made.world.speed < 0.1
+    assert make("head-on")[0].world.speed == 1.0
+
+
+def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept() -> None:
+    made, page = make("head-on")
+    send(made, page, "guess", value=None)
+    told(page)
+    watch(made, 0.5)
+    frames = []
+    while (data := page.take()) is not None:
+        if isinstance(data, bytes):
+            frames.append(np.frombuffer(data, "<f4"))
+    assert len(frames) == 1
+    assert frames[0][2] == pytest.approx(made.world.t)
+
+
+def test_a_page_that_never_reads_is_let_go() -> None:
+    made, page = make("head-on")
+    for i in range(1000):
+        made.world.set("gravity", i % 2)
+        made.tick(0)
+    assert page.lost
+    assert asyncio.run(page.fetch()) is None
+
+
+def test_after_a_reload_a_page_knows_what_happened_before() -> None:
+    made, page = make("head-on")
+    send(made, page, "guess", value=2)
+    watch(made, 1.0)
+    send(made, page, "set", key="restitution", value=0.5)
+    made.leave(page)
+    again = made.join()
+    data = []
+    while (item := again.take()) is not None:
+        data.append(item)
+    scene = json.loads(data[0])
+    assert scene["status"]["settings"]["restitution"] == 0.5
+    assert scene["status"]["guess"] == 2
+    assert any("meets the right puck" in event["text"] for event in scene["events"])
+    past = np.frombuffer(data[2], "<f4")
+    table = past[4:].reshape(int(past[2]), int(past[3]))
+    assert table[-1, 0] == pytest.approx(made.world.t, abs=0.05)
+    assert table[0, 1] == pytest.approx(2.5)
+
+
+# -- predict, run, compare -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["head-on", "restitution-row", "free-fall", "robot-boxes", "bullet-wall"])
+def test_the_run_that_was_watched_gives_what_a_run_unseen_gives(name: str) -> None:
+    kept = []
+    made, page = make(name, keep=kept.append)
+    assert made.world.paused
+    send(made, page, "guess", value=1.5)
+    watch(made, 12)
+    wanted = run(choose(name), guess=1.5).comparison
+    assert kept == [wanted]
+    assert made.world.paused
+    assert made.world.t == pytest.approx(made.scene.duration)
+    last = of(told(page), "status")[-1]
+    assert (last["stage"], last["comparison"]["verdict"]) == ("done", wanted.verdict)
+
+
+def test_settings_from_before_the_first_step_count_for_theory_too() -> None:
+    made, page = make("free-fall")
+    send(made, page, "set", key="gravity", value=2)
+    send(made, page, "guess", value=1)
+    watch(made, 3)
+    got = of(told(page), "status")[-1]["comparison"]
+    wanted = run(choose("free-fall", {"gravity": 2})).comparison
+    assert (got["theory"], got["simulation"]) == (wanted.theory, wanted.simulation)
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        {"do": "grab", "x": -1, "y": 0},
+        {"do": "throw", "x": -1, "y": 0, "vx": 1, "vy": 0},
+        {"do": "push", "name": "left-puck", "vx": 1, "vy": 0},
+        {"do": "spawn", "shape": "box", "x": 0, "y": 1},
+        {"do": "set", "key": "restitution", "value": 0.2},
+    ],
+)
+def test_a_run_that_somebody_meddled_with_is_not_compared(request_: dict) -> None:
+    kept = []
+    made, page = make("head-on", keep=kept.append)
+    send(made, page, "guess", value=2)
+    watch(made, 0.1)
+    made.receive(page, json.dumps(request_))
+    watch(made, 3)
+    status = of(told(page), "status")[-1]
+    assert (status["stage"], status["comparison"]) == ("touched", None)
+    assert kept == []
+    send(made, page, "reset")
+    send(made, page, "pause", on=False)
+    watch(made, 3)
+    assert of(told(page), "status")[-1]["stage"] == "done"
+    assert len(kept) == 1
+
+
+def test_a_comparison_that_cannot_be_kept_is_still_shown() -> None:
+    def full(_) -> None:
+        raise MissingCapabilityError("The disk is full.")
+
+    made, page = make("head-on", keep=full)
+    send(made, page, "guess", value=2)
+    watch(made, 3)
+    messages = told(page)
+    assert [error["message"] for error in of(messages, "error")] == ["The disk is full."]
+    assert of(messages, "status")[-1]["stage"] == "done"
+    assert made.world.paused
+
+
+def test_a_guess_given_on_the_command_line_is_not_asked_for_again() -> None:
+    made, page = make("head-on", guess=1.0)
+    assert told(page)[0]["status"]["stage"] == "run"
+    assert not made.world.paused
+
+
+def test_a_probe_that_read_nothing_reaches_the_page_as_null() -> None:
+    made, page = make("head-on", settings={"speed": 0.1})
+    made.world.throw(1, 0, 5, 0)
+    send(made, page, "guess", value=2)
+    watch(made, 4)
+    texts = [message for message in told(page) if message["type"] == "status"]
+    assert texts[-1]["comparison"]["simulation"] is None
+
+
+# -- anything at all -------------------------------------------------------------------------------------
+
+NUMBERS = st.one_of(
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.integers(-(10**30), 10**30),
+    st.sampled_from([0, 1, -1, 0.5, 1e-300, 1e300]),
+)
+VALUES = st.one_of(NUMBERS, st.text(max_size=20), st.booleans(), st.none(), st.lists(NUMBERS, max_size=3))
+NAMES = ["x", "y", "vx", "vy", "reach", "name", "shape", "key", "value", "on", "count", "extra"]
+DOES = [
+    "grab",
+    "drag",
+    "release",
+    "throw",
+    "push",
+    "spawn",
+    "set",
+    "pause",
+    "speed",
+    "step",
+    "reset",
+    "guess",
+    "watch",
+]
+WORDS = st.sampled_from(
+    ["circle", "box", "gravity", "restitution", "step", "iterations", "left", "ball-1", "floor"]
+)
+SHAPED = st.fixed_dictionaries(
+    {"do": st.one_of(st.sampled_from(DOES), st.text(max_size=8))},
+    optional={name: st.one_of(VALUES, WORDS) for name in NAMES},
+).map(json.dumps)
+NEARLY = st.one_of(
+    st.builds(
+        lambda do, x, y, vx, vy: json.dumps(
+            {"do": do, "x": x, "y": y, **({"vx": vx, "vy": vy} if do == "throw" else {})}
+        ),
+        st.sampled_from(["grab", "drag", "throw"]),
+        *[st.floats(-1e6, 1e6)] * 4,
+    ),
+    st.builds(
+        lambda key, value: json.dumps({"do": "set", "key": key, "value": value}),
+        st.sampled_from(["gravity", "restitution", "friction", "step", "iterations"]),
+        st.floats(-1, 120),
+    ),
+    st.builds(lambda do: json.dumps({"do": do}), st.sampled_from(["release", "step", "reset"])),
+    st.builds(
+        lambda shape, x: json.dumps({"do": "spawn", "shape": shape, "x": x, "y": 1}),
+        st.sampled_from(["circle", "box"]),
+        st.floats(-5, 5),
+    ),
+)
+ANYTHING = st.one_of(SHAPED, NEARLY, st.text(max_size=60), st.binary(max_size=60), st.just("[" * 900))
+
+
+@settings(max_examples=120, deadline=None)
+@given(messages=st.lists(ANYTHING, max_size=12))
+def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> None:
+    made, page = make("head-on")
+    for message in messages:
+        told(page)
+        before = (made.world.ticks, dict(made.world.settings), made.world.state_hash(), made.world.held)
+        made.receive(page, message)
+        errors = of(told(page), "error")
+        if errors:
+            # What is answered with an error has changed nothing.
+            assert (
+                made.world.ticks,
+                dict(made.world.settings),
+                made.world.state_hash(),
+                made.world.held,
+            ) == before
+            assert len(errors[0]["message"]) < 400
+        made.tick(1 / 60)
+    assert not page.lost
+    assert np.isfinite(made.world.state()).all()
+    send(made, page, "reset")
+    send(made, page, "pause", on=False)
+    made.tick(1 / 60)
+    assert made.world.ticks > 0
+
+
+@settings(max_examples=60, deadline=None)
+@given(data=st.one_of(st.binary(max_size=200), st.text(max_size=200)))
+def test_what_is_no_request_is_answered_once_and_does_nothing(data: str | bytes) -> None:
+    made, page = make("head-on")
+    told(page)
+    made.receive(page, data)
+    assert [message["type"] for message in told(page)] == ["error"]
+
+
+def test_requests_beyond_the_rate_are_dropped_with_one_answer_and_a_flood_ends_the_page() -> None:
+    clock = Clock()
+    made, page = make("head-on", clock=clock)
+    told(page)
+    for _ in range(400):
+        send(made, page, "step")
+    assert made.world.ticks == 300
+    assert [error["message"] for error in of(told(page), "error")] == [
+        "Too many requests at once; some are dropped."
+    ]
+    clock.now += 1.0
+    for _ in range(400):
+        send(made, page, "step")
+    assert made.world.ticks == 500
+    for _ in range(2000):
+        send(made, page, "step")
+    assert page.lost
+
+
+def test_no_number_of_a_page_makes_a_request_too_large_to_be_refused() -> None:
+    made, page = make("head-on")
+    told(page)
+    for text in (
+        '{"do":"set","key":"gravity","value":1e999}',
+        '{"do":"set","key":"gravity","value":NaN}',
+        "1" * 1000,
+    ):
+        made.receive(page, text)
+    errors = of(told(page), "error")
+    assert len(errors) == 3
+    assert math.isfinite(made.world.settings["gravity"])

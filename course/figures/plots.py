@@ -13,6 +13,8 @@ from course.figures.style import PALETTE, house_style, new_figure, title
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.transforms import Bbox
 
     from course.figures.described import Panel, Plot, Series
 
@@ -60,6 +62,8 @@ def draw(plot: Plot) -> Figure:
     for ax in axes[len(plot.panels) :]:
         ax.set_visible(False)
     title(figure, plot.title)
+    for ax, panel in zip(axes, plot.panels, strict=False):
+        _legend(ax, panel)
     return figure
 
 
@@ -78,9 +82,34 @@ def _draw_panel(ax: Axes, panel: Panel) -> None:
         ax.set_title(panel.title)
     if panel.equal:
         ax.set_aspect("equal", adjustable="datalim")
+
+
+def _legend(ax: Axes, panel: Panel) -> None:
+    """A legend on empty ground. Where there is none, the vertical axis is made longer at the top."""
     named = sum(bool(series.name) for series in panel.series)
-    if named > 1 or (named and len(panel.series) > 1):
-        ax.legend(loc="best")
+    if not (named > 1 or (named and len(panel.series) > 1)):
+        return
+    ax.autoscale_view()  # matplotlib puts it off until it draws, and places are asked for before that
+    legend = ax.legend(loc="best")
+    if panel.equal:  # its limits follow from the scale
+        return
+    box = legend.get_window_extent().frozen()
+    if not any(_crosses(line, box) for line in ax.lines):
+        return
+    # Side by side, the entries take half the height.
+    columns = 2 if named > 2 and ax.get_window_extent().width > 2.5 * box.width else 1
+    legend = ax.legend(loc="best", ncols=columns)
+    taken = legend.get_window_extent().height / ax.get_window_extent().height + 0.06
+    wanted = ax.transAxes.transform((0.0, 1.0 / (1.0 - min(taken, 0.6))))
+    ax.set_ylim(top=ax.transData.inverted().transform(wanted)[1])
+
+
+def _crosses(line: Line2D, box: Bbox) -> bool:
+    """Whether a curve or one of its points lies in a box, in pixels."""
+    path = line.get_transform().transform_path(line.get_path())
+    if line.get_linestyle() in ("None", "none"):
+        return bool(box.count_contains(path.vertices))
+    return bool(path.intersects_bbox(box, filled=False))
 
 
 def _xy(series: Series) -> tuple[Any, Any]:
@@ -113,7 +142,9 @@ def _interval(ax: Axes, series: Series, look: Any, label: str | None) -> None:
     low = y if series.low is None else np.asarray(series.low, dtype=float)
     high = y if series.high is None else np.asarray(series.high, dtype=float)
     # A value outside its own interval is for the reader to see, not for matplotlib to refuse.
-    ax.vlines(x, low, high, color=look[0], linewidth=2.2, alpha=0.7)
+    # One broken line, because a legend keeps clear of lines but not of what vlines would draw.
+    ends = np.column_stack([low, high, np.full(len(x), np.nan)]).ravel()
+    ax.plot(np.repeat(x, 3), ends, color=look[0], linewidth=2.2, alpha=0.7)
     ax.plot(x, y, color=look[0], linestyle="none", marker=look[2], label=label)
 
 

@@ -94,6 +94,24 @@ def fail(
     )
 
 
+def _or_nan(diagnose: Diagnose) -> Diagnose:
+    """The diagnosis of a wrong value that is nan: a check's own, or else that it is nan."""
+
+    def look() -> Diagnosis | str | None:
+        found = attempt(diagnose) if callable(diagnose) else diagnose
+        return found or _NAN
+
+    return look
+
+
+_NAN = Diagnosis(
+    "NOT_A_NUMBER",
+    'There is a nan in it, which means "not a number".',
+    "nan comes from 0/0, inf - inf, 0 times inf, or the root or logarithm of a negative number, and spoils "
+    "whatever is computed from it. Print the intermediate results: where does it appear first?",
+)
+
+
 def expect_true(condition: Any, message: str, **finding: Any) -> None:
     """``condition`` is True itself; a truthy object is not."""
     if condition is not True and not (isinstance(condition, np.bool_) and bool(condition)):
@@ -133,6 +151,8 @@ def expect_close(
         met = math.fabs(number - expected) <= abs + rel * math.fabs(expected)
     if not met:
         limits = Tolerance(rel=rel or None, abs=abs or None, source=source)
+        if math.isnan(number):
+            finding["diagnose"] = _or_nan(finding.get("diagnose"))
         fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
 
 
@@ -169,6 +189,8 @@ def expect_array(
         finding.setdefault(
             "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
         )
+    if np.isnan(array[first]):
+        finding["diagnose"] = _or_nan(finding.get("diagnose"))
     short = wanted.size <= 6
     fail(
         message,
@@ -249,7 +271,12 @@ def expect_bounded(
     number = as_number(actual, quantity)
     if not low <= number <= high:
         limits = Tolerance(source=source)
-        fail(message, expected=[low, high], actual=number, units=units, tolerance=limits, **finding)
+        if math.isnan(number):
+            finding["diagnose"] = _or_nan(finding.get("diagnose"))
+        expected: Any = [low, high]
+        if math.isinf(low) or math.isinf(high):
+            expected = {"at most": high} if math.isinf(low) else {"at least": low}
+        fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
 
 
 def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **finding: Any) -> None:

@@ -65,6 +65,13 @@ def _error_finding(failure: StudentFailure) -> Finding:
             help="Replace the `raise` line by your code; the docstring above it says what to return.",
             diagnosis="NOT_IMPLEMENTED",
         )
+    if failure.type == "ImportNotDeclaredError":
+        return Finding(
+            message="Your code imports a module that this exercise does not allow.",
+            help="Do without it. Plots and experiments belong in a file of your own that imports this one.",
+            diagnosis="IMPORT_NOT_ALLOWED",
+            actual=failure.message,
+        )
     # A class name is the student's to choose and could spell out a hidden input: only known ones are said.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception of its own"

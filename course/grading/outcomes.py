@@ -36,7 +36,7 @@ def found(check: Check, status: Status, finding: Finding, duration_ms: float, **
         message=finding.message,
         help=finding.help,
         diagnosis=finding.diagnosis,
-        input=plain(finding.input),
+        input=plain(finding.input, 4),  # a dict of arrays, such as one of matrices
         expected=plain(finding.expected),
         actual=plain(finding.actual),
         units=finding.units,
@@ -74,6 +74,12 @@ def load_problem(refused: LoadRefusedError, module: str) -> Problem:
         message = f"{module} did not finish loading in time."
         return Problem(
             "import_timeout", message, "Move work out of the top level of the file, into functions."
+        )
+    if refused.stage == "import" and failure.type == "ImportNotDeclaredError":
+        return Problem(
+            "import_error",
+            f"{where}: {failure.message}.",
+            "Take that import out. Plots and experiments belong in a file of your own that imports this one.",
         )
     if refused.stage == "import":
         return Problem(

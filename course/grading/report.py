@@ -6,12 +6,14 @@ the student's functions through the same boundary as the checks do.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.errors import NotFoundError, UngradableError
 from course.grading.failures import CheckFailed, finding_of
+from course.grading.verdict import Finding
 from course.isolation.failures import StudentFailure
 
 if TYPE_CHECKING:
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.figures.described import Plot
-    from course.grading.verdict import Finding
 
 __all__ = ["Report", "Section", "guarded_section", "has_report", "report_of"]
 
@@ -105,4 +106,19 @@ def report_of(
 
 
 def _finding(failure: StudentFailure | CheckFailed) -> Finding:
-    return finding_of(failure) if isinstance(failure, StudentFailure) else failure.finding
+    """The failure in words; a function that is still to be written is named.
+
+    A check does not name it, because hidden inputs could leave in a name. A report has none.
+    """
+    if isinstance(failure, CheckFailed):
+        return failure.finding
+    finding = finding_of(failure)
+    functions = _FRAME.findall(failure.traceback)
+    if failure.is_a("NotImplementedError") and functions:
+        message = f"`{functions[-1]}` is not written yet: it still raises NotImplementedError."
+        return Finding(message=message, help=finding.help, diagnosis=finding.diagnosis)
+    return finding
+
+
+#: The function of a line of a traceback, as ``StudentFailure`` has it: "file.py:12 in name".
+_FRAME = re.compile(r"^\S+:\d+ in ([A-Za-z_]\w{0,60})$", re.MULTILINE)

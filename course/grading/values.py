@@ -99,9 +99,17 @@ def as_list(value: Any, name: str = "the result", length: int | None = None) -> 
     """A list or tuple (or the rows of an array), of the given length if one is given."""
     if isinstance(value, np.ndarray) and value.ndim:
         value = list(value)
-    if not isinstance(value, list | tuple) or (length is not None and len(value) != length):
-        _refuse(
-            value, name, "a list of the right length", "a list" if length is None else f"a list of {length}"
+    if not isinstance(value, list | tuple):
+        _refuse(value, name, "a list", "a list" if length is None else f"a list of {length}")
+    if length is not None and len(value) != length:
+        raise CheckFailed(
+            Finding(
+                message=f"{_capital(name)} has the wrong length.",
+                help="Print its `len` and compare it with what the README asks for.",
+                diagnosis="WRONG_TYPE",
+                expected=f"a list of {length}",
+                actual=plain(value),
+            )
         )
     return list(value)
 
@@ -140,10 +148,22 @@ def as_matrix(value: Any, shape: tuple[int | None, int | None], name: str = "the
 
 def as_tuple(value: Any, names: Sequence[str]) -> list[Any]:
     """What a function that returns several things returned: exactly as many as there are names."""
-    if isinstance(value, np.ndarray) and value.ndim:
+    wanted = f"({', '.join(names)})"
+    if isinstance(value, np.ndarray) and value.shape[:1] == (len(names),):
         value = list(value)
-    if not isinstance(value, list | tuple) or len(value) != len(names):
-        _refuse(value, "the result", f"({', '.join(names)})")
+    if not isinstance(value, list | tuple):
+        _refuse(value, "the result", wanted)
+    if len(value) != len(names):
+        few = "too few" if len(value) < len(names) else "too many"
+        raise CheckFailed(
+            Finding(
+                message=f"The result has {few} parts: it should be {wanted}.",
+                help="Return exactly these, in this order, separated by commas.",
+                diagnosis="WRONG_TYPE",
+                expected=wanted,
+                actual=plain(value),
+            )
+        )
     return list(value)
 
 
@@ -241,14 +261,21 @@ def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
     raise CheckFailed(
         Finding(
             message=f"{_capital(name)} is {_kind(value)}, not {wanted}.",
-            help=_NO_RETURN
-            if nothing
-            else "The README's contract says what to return, and what each part is.",
+            help=_NO_RETURN if nothing else _advice(value, wanted),
             diagnosis="RETURNS_NOTHING" if nothing else "WRONG_TYPE",
             expected=expected or wanted,
             actual=plain(value),
         )
     )
+
+
+def _advice(value: Any, wanted: str) -> str:
+    """What to do about a value of the wrong kind."""
+    if wanted == "a number" and isinstance(value, list | tuple | np.ndarray):
+        return "Return one plain number: no brackets around it, and no array, not even of one element."
+    if wanted.startswith("an array of numbers") and isinstance(value, list | tuple):
+        return "Every element must be a number, and all rows equally long: is there a None, or text, in it?"
+    return "The README's contract says what to return, and what each part is."
 
 
 def _kind(value: Any) -> str:
@@ -262,10 +289,10 @@ _KINDS = {
     int: "a number",
     float: "a number",
     str: "a str",
-    list: "a list that does not fit",
-    tuple: "a tuple that does not fit",
+    list: "a list",
+    tuple: "a tuple",
     dict: "a dict",
-    np.ndarray: "an array that does not fit",
+    np.ndarray: "an array",
 }
 
 

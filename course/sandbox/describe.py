@@ -26,10 +26,15 @@ def sentence(event: Event) -> str:
     if event.kind == "contact":
         return when + _contact(event)
     if event.kind == "rest":
-        return f"{when}{_the(event.a)} comes to rest at x = {event.x:.2f} m, y = {event.y:.2f} m."
+        return f"{when}{_the(event.a)} comes to rest at x = {_place(event.x)} m, y = {_place(event.y)} m."
     if event.kind == "gone":
         return f"{when}{_the(event.a)} has left the scene."
     return f"{when}{event.text}."
+
+
+def _place(value: float) -> str:
+    """To the centimetre, and never minus nothing."""
+    return f"{round(value, 2) + 0.0:.2f}"
 
 
 def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:

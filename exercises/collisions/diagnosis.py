@@ -305,6 +305,10 @@ WORDS: dict[str, tuple[str, str]] = {
         "Where both bodies have the same velocity it divides by zero.",
         "Two bodies at rest relative to each other never meet: return None before you divide.",
     ),
+    "ROOT_OF_A_NEGATIVE": (
+        "Where the two pass beside each other the number under the root is negative, and its root is nan.",
+        "Look at that number before you take its root: if it is negative they never touch, so return None.",
+    ),
     # -- simulations
     "PASSES_THROUGH": (
         "The bodies go through each other as if there were no contact in it: this program shows straight "

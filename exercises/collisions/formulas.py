@@ -359,3 +359,6 @@ WRONG = {
         ("RETURNS_TIME_LEFT", _moment(unit=lambda t, dt: dt - t)),
     ],
 }
+
+#: The later root, whether or not it lies within the step.
+later_root = _moment(root=1.0, limit=False)

@@ -36,7 +36,12 @@ def of_calls(task, calls, values):
     for code, wrong in WRONG[task]:
         if _all_agree(wrong, calls, values):
             return named(code)
-    special = _part(task, calls, values) or _unmoved(task, calls, values) or _by_law(task, calls, values)
+    special = (
+        _moment(task, calls, values)
+        or _part(task, calls, values)
+        or _unmoved(task, calls, values)
+        or _by_law(task, calls, values)
+    )
     return named(special) if special else None
 
 
@@ -62,12 +67,22 @@ def _not_a_number(task, calls, values):
     if task == "detect_sphere_sphere":
         return "NORMAL_UNDEFINED"
     if task == "time_of_impact":
-        return "NO_RELATIVE_MOTION"
+        return _moment_not_a_number(calls, values)
     if task in ("impulse_1d", "resolve", "resolve_with_friction"):
         if all(math.inf in call[:2] for call in spoiled):
             return "INFINITE_MASS_NAN"
         if task == "resolve_with_friction":
             return "NO_SLIDING_NAN"
+    return None
+
+
+def _moment_not_a_number(calls, values):
+    """Which division or root gives nan, if nan is what is wrong with the first answer that is."""
+    for call, value in zip(calls, values, strict=True):
+        if _has_nan(value):
+            return "NO_RELATIVE_MOTION" if np.array_equal(call[1], call[4]) else "ROOT_OF_A_NEGATIVE"
+        if not _agrees(RIGHT["time_of_impact"], call, value):
+            return None
     return None
 
 
@@ -152,6 +167,24 @@ def _momentum_lost(call, value):
     return np.abs(off).max() > 1e-8 * (1 + momentum(*call[:2], *map(np.abs, call[2:4])).max())
 
 
+def _moment(task, calls, values):
+    """With several mistakes in a time of impact: the one that spoils the first answer that is wrong."""
+    if task != "time_of_impact":
+        return None
+    for call, value in zip(calls, values, strict=True):
+        right = RIGHT[task](*call)
+        if value is None or _has_nan(value) or _same(right, value):
+            continue
+        if value < 0.0:
+            return "IMPACT_IN_THE_PAST"
+        if right is None:
+            return "IMPACT_BEYOND_STEP" if value > call[-1] else None
+        # The later root may lie beyond the step, where the formula of the mistake alone gives None.
+        late = _formulas.later_root(*call)
+        return "TIME_OF_IMPACT_LATE_ROOT" if _same(late, value) else None
+    return None
+
+
 def _coarse(calls, values):
     """Contacts that are missed, or found at about the right time."""
     pairs = [(RIGHT["time_of_impact"](*call), v, call[-1]) for call, v in zip(calls, values, strict=True)]
@@ -217,6 +250,9 @@ def _head_on_mistakes(scene, h):
 
 def _of_speeds(scene, v):
     """The velocities at the end are wrong ones: which?"""
+    blows = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
+    if len(blows) > 1 and v[blows[1], 0] <= v[blows[1], 1]:  # the second one while they move apart
+        return named("IMPULSE_ON_SEPARATING")
     for code, factor in _formulas.FACTORS:
         if np.allclose(v[-1], scene.after(factor=factor), atol=1e-8):
             return named(code)
@@ -227,8 +263,7 @@ def _of_speeds(scene, v):
         return named("INFINITE_MASS_NAN") if math.inf in scene.m else None
     if math.inf not in scene.m and energy(*scene.m, *v[-1]) > energy(*scene.m, *scene.v0) * (1 + 1e-9):
         return named("ENERGY_CREATED")
-    changes = np.count_nonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
-    return named("IMPULSE_ON_SEPARATING") if changes > 1 else None
+    return named("IMPULSE_ON_SEPARATING") if len(blows) > 1 else None
 
 
 def _of_timing(scene, x, v, h):

@@ -64,7 +64,7 @@ def _head_on(submission, title):
         panels.append(
             kit.Panel(
                 x_label="time / s",
-                y_label="x / m",
+                y_label="" if panels else "x / m",
                 title=f"e = {e:g}",
                 series=(
                     kit.Series("exact" * legend, exact, true[:, 0], quiet=True),
@@ -79,7 +79,7 @@ def _head_on(submission, title):
                 f"{e:g}",
                 f"{x[-1, 0]:.6f} m",
                 f"{true[-1, 0]:.6f} m",
-                f"{np.max(np.abs(v.sum(axis=1))):.1e} kg m/s",
+                f"{np.max(np.abs(v.sum(axis=1))):.2g} kg m/s",
                 f"{0.5 * float(v[-1] @ v[-1]):.6f} J",
                 f"{4 * e * e:.6f} J",
             )
@@ -122,7 +122,7 @@ def _drop(submission, title):
         text=f"A ball of radius 0.1 m falls from 1 m with e = 0.7. Each hop is e squared, 0.49, of "
         "the one before. "
         f"With g h for the slowest bounce it comes to rest at about {rest}; at the end yours is "
-        f"{z[-1] - scene.radius:.1e} m above the floor, at {v[-1]:.1e} m/s.",
+        f"{z[-1] - scene.radius + 0.0:.2g} m above the floor, at {v[-1] + 0.0:.2g} m/s.",
         columns=("hop", "starts at", "your top above the floor", "exact"),
         rows=tuple(rows),
         plot=kit.Plot(
@@ -151,7 +151,7 @@ def _drop(submission, title):
 def _pymunk_head_on(submission, title):
     scene = paths.HeadOn((1.0, 3.0), (-5.0, 5.0), (2.0, -2.0), 0.5, 0.6)
     series, rows = [], []
-    for h in (0.016, 0.008, 0.004):
+    for h in (0.02, 0.008, 0.004):
         t_end = 4.8
         t, x, _ = _head_on_samples(submission, scene, t_end, h)
         off = engine.head_on(scene, t_end, h)[:, 0] - x[:, 0]

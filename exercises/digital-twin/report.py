@@ -169,7 +169,7 @@ def _at_rest(submission):
     units = ("rad/s/√Hz", "rad/s/√s", "rad/s")
     t, every = dt * np.arange(12000), slice(None, None, 20)
     series = (
-        kit.Series("measured, each 20th", t[every], still[every], "points"),
+        kit.Series("measured, each 20th", t[every], still[every], "points", quiet=True),
         kit.Series("bias", t[every], bias[every]),
     )
     return kit.Section(
@@ -177,7 +177,7 @@ def _at_rest(submission):
         text="Two minutes of your imu, lying still, and what your fit_noise makes of it.",
         columns=("quantity", "made with", "found"),
         rows=tuple(
-            (key, f"{made[key]:g} {unit}", f"{kit.as_number(found[key], key):.2g} {unit}")
+            (key, f"{made[key]:g} {unit}", f"{kit.as_number(found[key], key):.3g} {unit}")
             for key, unit in zip(made, units, strict=True)
         ),
         plot=kit.Plot(

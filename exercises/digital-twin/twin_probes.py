@@ -103,8 +103,11 @@ def _learning(submission):
     friction = states(twins)[:, 3]
     if np.ptp(friction) < 1e-9:
         return "FRICTION_NOT_LEARNED"
-    if friction[-1] < 0.45:
+    left = friction[np.abs(friction - 0.5) > 0.1]  # where it goes first; it may blow up later
+    if not friction[-1] >= 0.45 and len(left) and left[0] < 0.5:
         return "FRICTION_LEARNS_BACKWARDS"
+    if not np.all(np.isfinite(friction)):
+        return None
     if isinstance(twins[-1]["memory"], dict) and not twins[-1]["memory"]:
         return "MEMORY_DROPPED"
     twins, _ = _run(submission, 0.5, ((0.0, 0.5), (30.0, 0.8)), 42.0)

@@ -21,7 +21,7 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
     answers = submission.call_each(TASK, [(reports, needs) for reports, needs, _ in questions])
     everything = list(zip(questions, answers, strict=True))
     for (reports, needs, expected), answer in everything:
-        given = {"reports": reports, "requirements": needs}
+        given = {"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)}
         if answer is not None and not (isinstance(answer, str) and answer in reports):
             kit.fail(
                 "choose_engine returns something that is neither one of the names nor None.",
@@ -41,6 +41,12 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
                 expected=expected,
                 actual=answer,
             )
+
+
+def _what_decides(reports: Any, needs: Any) -> Any:
+    """Of each report the required keys and the cost: the answer depends on nothing else."""
+    keys = [*dict.fromkeys(need["key"] for need in needs), "cost"]
+    return {name: {key: report[key] for key in keys if key in report} for name, report in reports.items()}
 
 
 def choose(reports: Any, needs: Any, *, met: Any = None, enough: Any = all, cost: float = 1.0) -> Any:
@@ -124,6 +130,8 @@ SLIPS: list[tuple[str, Any]] = [
 
 def of_choices(everything: list[tuple[Any, Any]]) -> Any:
     """The slip that would have given every one of the answers, or the likeliest from the wrong ones."""
+    if all(answer is None for _, answer in everything):
+        return diagnosis.named("NEVER_CHOOSES")
     for code, slip in SLIPS:
         if all(slip(reports, needs) == answer for (reports, needs, _), answer in everything):
             return diagnosis.named(code)

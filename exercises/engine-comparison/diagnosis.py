@@ -246,6 +246,11 @@ WORDS: dict[str, tuple[str, str]] = {
         "An engine whose report lacks a key, or has None there, counts as if it met the requirement.",
         "What was not measured was not met: test `report.get(key) is None` first and call it a failure.",
     ),
+    "NEVER_CHOOSES": (
+        "It returns None every time, as if no engine ever met the requirements.",
+        "Return the name of the cheapest that fits. Does a return inside the loop come too early, or is only "
+        "one engine looked at?",
+    ),
     "COST_BEFORE_REQUIREMENTS": (
         "It takes the cheapest of all engines first and looks at the requirements afterwards.",
         "Filter first: keep the engines that meet every requirement. Then take the cheapest of those.",

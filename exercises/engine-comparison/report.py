@@ -45,12 +45,15 @@ def _table(submission):
         cells = []
         for case in judged:
             value = case.measured(key)
-            mark = "" if _right(key, case) else " (!)"
-            cells += [_shown(value) + mark, _shown(case.truth[key])]
+            mark = "" if value is None or _right(key, case) else " (!)"
+            cells.append(f"{_shown(value)}{mark} / {_shown(case.truth[key])}")
         rows.append((key, *cells))
     runs = ", ".join(f"{len(case.runs)} for {case.name}" for case in judged)
-    names = [column for case in judged for column in (f"{case.name}: yours", "truth")]
-    text = f"A (!) marks what differs by more than a check allows. Runs it took you: {runs}."
+    names = [case.name for case in judged]
+    text = (
+        "For each engine: what you found / what is true. A (!) marks what differs by more than a check "
+        f"allows. Runs it took you: {runs}."
+    )
     return kit.Section("Your reports beside the truth", text, columns=("key", *names), rows=tuple(rows))
 
 
@@ -63,7 +66,7 @@ def _right(key, case):
 
 def _shown(value):
     if value is None:
-        return "-"
+        return "not yet"
     if isinstance(value, bool | str):
         return str(value)
     return f"{value + 0.0:.4g}" if isinstance(value, int | float) else "?"  # no "-0"

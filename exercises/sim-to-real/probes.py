@@ -72,10 +72,23 @@ def estimate_of(value):
         CheckFailed: it is none.
     """
     record = kit.as_record(value, ALL)
-    found = {k: tuple(kit.as_vector(record[k], 3, f"the entry {k}").tolist()) for k in ALL}
+    found = {k: _entry(k, record[k]) for k in ALL}
     if not all(math.isfinite(x) for entry in found.values() for x in entry):
         kit.fail("An estimate is not a finite number.", diagnose=named("NOT_FINITE"), actual=found)
     return found
+
+
+def _entry(name, value):
+    """One entry as (value, low, high)."""
+    if not isinstance(value, list | tuple | np.ndarray) or np.ndim(value) == 0 or len(value) != 3:
+        kit.fail(
+            f"The entry `{name}` is not [value, low, high].",
+            help="Each entry has three numbers: the estimate, and the two ends of its 95 % interval.",
+            diagnose="WRONG_SHAPE",
+            expected="[value, low, high]",
+            actual=value,
+        )
+    return tuple(kit.as_vector(value, 3, f"the entry {name}").tolist())
 
 
 def gains_of(value):

@@ -94,7 +94,8 @@ def test_consistency_band_table(submission):
                 quantity=name,
                 input={"dof": dof, "runs": count, "alpha": 0.05},
                 message="The band is not that of an average of chi-square numbers.",
-                help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
+                help="The sum over the runs is chi-square with dof * runs degrees of freedom: take its "
+                "quantiles at alpha/2 and 1 - alpha/2, and divide both by runs.",
                 diagnose=lambda lo=lo, hi=hi, dof=dof, count=count: probes.of_band(
                     lo, hi, dof, count, 0.05, _tabulated, _NORMAL.get
                 ),
@@ -166,14 +167,14 @@ def test_bootstrap_width(submission):
         source="correct variants were seen between 0.65 and 0.86; resampling one by one gives 0.22",
         quantity="mean width over true width",
         input={
-            "series": "20, each sample keeps 0.9 of the one before",
+            "series": "30, each sample keeps 0.9 of the one before",
             "N": n,
             "block": block,
             "alpha": 0.05,
         },
         message="The intervals do not have the width that the scatter of the mean asks for.",
         help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
-        diagnose=lambda: runs.of_interval(submission, 1),
+        diagnose=lambda: runs.of_width(submission, ends, np.array([np.mean(call[0]) for call in calls])),
     )
 
 
@@ -191,7 +192,7 @@ def test_energy_error_falling(submission):
 def test_contact_force_late(submission):
     """An impact that comes late, is a little too hard and a little too short"""
     t = 0.001 * np.arange(61)
-    pair = shared.pulse(t, 0.021, 0.016, 110.0), shared.pulse(t, 0.012, 0.02, 100.0), 0.001
+    pair = shared.pulse(t, 0.021, 0.016, 88.0), shared.pulse(t, 0.012, 0.02, 80.0), 0.001
     shared.expect_forces(submission, [pair])
 
 

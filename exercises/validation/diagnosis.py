@@ -69,7 +69,8 @@ WORDS: dict[str, tuple[str, str]] = {
     # -- angles
     "NOT_WRAPPED": (
         "It returns the angles as they came.",
-        "Take off whole turns until each lies between minus half a turn and half a turn.",
+        "Take off whole turns until each lies between minus half a turn and half a turn. The angles are in "
+        "radians: half a turn is pi.",
     ),
     "WRAPPED_ONCE": (
         "It takes off one turn at most, and an error may be many turns away.",
@@ -205,6 +206,11 @@ WORDS: dict[str, tuple[str, str]] = {
     "FIXED_SEED": (
         "Another generator gives the very same interval.",
         "Take every draw from rng; do not make a generator of your own with a fixed seed.",
+    ),
+    "ENDS_ON_ONE_SIDE": (
+        "Both ends lie on the same side of the statistic of the series.",
+        "One quantile belongs at alpha/2 and one at 1 - alpha/2. np.quantile counts from 0 to 1, "
+        "np.percentile from 0 to 100.",
     ),
     "NOT_CENTRED": (
         "The interval does not lie around the statistic of the series.",

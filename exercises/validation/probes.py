@@ -177,15 +177,16 @@ def of_band(lo, hi, dof, runs, alpha, quantile, normal):
 def of_coverage(value, y, lo, hi):
     """What a wrong coverage(y, lo, hi) is."""
     inside = (lo <= y) & (y <= hi)
+    narrow = [np.mean((lo < y) & (y < hi)), np.mean((lo <= y) & (y < hi)), np.mean((lo < y) & (y <= hi))]
     return match(
         value,
         [
-            ("COVERAGE_OPEN_BOUNDS", np.mean((lo < y) & (y < hi))),
-            ("COVERAGE_OPEN_BOUNDS", np.mean((lo <= y) & (y < hi))),
-            ("COVERAGE_OPEN_BOUNDS", np.mean((lo < y) & (y <= hi))),
+            *(("COVERAGE_OPEN_BOUNDS", share) for share in narrow),
             ("OUTSIDE_COUNTED", np.mean(~inside)),
             ("IN_PER_CENT", 100 * np.mean(inside)),
             ("COUNTED", float(np.sum(inside))),
+            *(("IN_PER_CENT", 100 * share) for share in narrow),
+            *(("COUNTED", len(y) * share) for share in narrow),
         ],
     )
 

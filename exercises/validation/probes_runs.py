@@ -60,6 +60,13 @@ def of_interval(submission, seed):
     return named(code) if code else None
 
 
+def of_width(submission, ends, statistics):
+    """The mistake behind intervals of the wrong width around the statistics of their series."""
+    beside = (ends[:, 1] < statistics) | (ends[:, 0] > statistics)
+    found = of_interval(submission, 1)
+    return found or (named("ENDS_ON_ONE_SIDE") if np.mean(beside) > 0.8 else None)
+
+
 # -- cross-validation -----------------------------------------------------------------------------------
 
 

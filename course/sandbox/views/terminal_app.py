@@ -19,7 +19,7 @@ from course.sandbox.views.terminal_lines import Canvas, Lines
 from course.sandbox.views.terminal_pace import Pacer
 from course.sandbox.views.terminal_scene import Stage
 from course.sandbox.views.terminal_words import clean, head, keys_line, panel, wrapped
-from course.sandbox.views.web_story import Experiment, Teller
+from course.sandbox.views.story import Experiment, Teller
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from course.sandbox.views.terminal_hand import Pointer
     from course.sandbox.views.terminal_lines import Canvas
     from course.sandbox.views.terminal_scene import Stage
-    from course.sandbox.views.web_story import Experiment
+    from course.sandbox.views.story import Experiment
     from course.sandbox.world import World
 
 __all__ = ["Controls"]

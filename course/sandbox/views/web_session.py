@@ -16,7 +16,7 @@ import msgspec
 from course.errors import CourseError, UsageError
 from course.sandbox.settings import SETTINGS
 from course.sandbox.views import web_messages as messages
-from course.sandbox.views.web_story import Experiment, Teller
+from course.sandbox.views.story import Experiment, Teller
 
 if TYPE_CHECKING:
     from collections.abc import Callable

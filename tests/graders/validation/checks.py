@@ -209,7 +209,7 @@ def test_bootstrap_width_drawn(submission, rng):
         input=shown,
         message="The intervals do not have the width that the scatter of the mean asks for.",
         help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
-        diagnose=lambda: runs.of_interval(submission, 1),
+        diagnose=lambda: runs.of_width(submission, ends, np.mean(series, axis=1)),
     )
     cases.expect_centred(submission, ends, np.mean(series, axis=1), shown)
 

@@ -312,9 +312,10 @@ def test_help_names_every_key_and_time_stands_still_meanwhile():
         for key in keys - silent - arrows - {"a", "A", "d", "D"}:
             assert named.get(key, key) in words, key
         steps = app.world.steps
-        await pilot.press("g", "r")
+        await pilot.press("g", "r", "tab")
         app.frames(5)
         assert app.world.steps == steps
+        assert app.panel.display
         await pilot.press("escape")
         app.frames(5)
         assert app.world.steps > steps

@@ -120,3 +120,9 @@ def test_a_run_stops_exactly_where_it_is_told_to():
     for _ in range(20):
         pacer.advance(0.06, until=0.5)
     assert world.steps == 120
+
+
+def test_where_room_is_short_every_setting_is_still_there():
+    lines = [plain(line) for line in panel(World(choose("newtons-cradle").scene), 23, 15)]
+    for name in ("gravity", "restitution", "friction", "step h", "iterations", "along y"):
+        assert any(name in line for line in lines), name

@@ -1,4 +1,4 @@
-"""What a page is told in words: events as they happen, and how the prediction came out."""
+"""What a view tells in words: events as they happen, and how the prediction came out."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Experiment", "Teller"]
 
-#: Sentences that a page opened later still gets.
+#: Sentences that a view opened later still gets.
 _KEPT = 60
 #: A pair that touches again within this long, in s, is not told about again.
 _PATIENCE = 0.05

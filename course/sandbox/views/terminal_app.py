@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from textual.containers import Horizontal
 from textual.geometry import Size
 
+from course.sandbox.views.story import Experiment, Teller
 from course.sandbox.views.terminal_asking import Ask, Told, comparison, help_pages
 from course.sandbox.views.terminal_controls import Controls
 from course.sandbox.views.terminal_hand import Pointer
@@ -19,7 +20,6 @@ from course.sandbox.views.terminal_lines import Canvas, Lines
 from course.sandbox.views.terminal_pace import Pacer
 from course.sandbox.views.terminal_scene import Stage
 from course.sandbox.views.terminal_words import clean, head, keys_line, panel, wrapped
-from course.sandbox.views.story import Experiment, Teller
 
 if TYPE_CHECKING:
     from collections.abc import Callable

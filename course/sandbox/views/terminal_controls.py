@@ -15,10 +15,10 @@ from course.sandbox.views.terminal_words import KEYS, setting
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from course.sandbox.views.story import Experiment
     from course.sandbox.views.terminal_hand import Pointer
     from course.sandbox.views.terminal_lines import Canvas
     from course.sandbox.views.terminal_scene import Stage
-    from course.sandbox.views.story import Experiment
     from course.sandbox.world import World
 
 __all__ = ["Controls"]

@@ -12,11 +12,12 @@ from course.cli.console import Console, current
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from contextlib import AbstractContextManager
 
     from course.catalog.load import Catalog
     from course.grading.gradebook import Result
     from course.grading.results import Effective
-    from course.grading.run import RunOptions, Summary
+    from course.grading.run import GradeAll, RunOptions, Summary
 
 __all__ = ["app", "explain", "in_days", "levels", "run", "score_of"]
 
@@ -66,6 +67,14 @@ def run(
             help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
         ),
     ] = "auto",
+    local_cluster: Annotated[
+        int | None,
+        typer.Option("--local-cluster", metavar="N", min=1, max=256, help="On N Dask workers started here."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="On the Dask cluster whose scheduler is there."),
+    ] = None,
 ) -> int:
     """Grade a folder of submissions.
 
@@ -77,15 +86,48 @@ def run(
     from course.grading.run import RunOptions, grade_class
 
     console = current()
+    _only_one_way(jobs, local_cluster, scheduler)
     level, at_least = levels(isolation)
     options = RunOptions(
         tuple(exercise or ()), tuple(only or ()), jobs, level, at_least, timeout, seed, resume, layout
     )
     catalog = load_catalog()
-    with _progress(console) as report:
-        summary = grade_class(submissions, out, catalog, options, report)
+    with _graders(catalog, local_cluster, scheduler) as grade, _progress(console) as report:
+        summary = grade_class(submissions, out, catalog, options, report, grade=grade)
     _show_summary(console, summary, out, options)
     return summary.exit_code
+
+
+def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
+    from course.errors import UsageError
+
+    if local_cluster is not None and scheduler is not None:
+        raise UsageError(
+            "--local-cluster and --scheduler are two clusters.", help="Name one of them.", code="two_clusters"
+        )
+    if jobs > 1 and (local_cluster is not None or scheduler is not None):
+        raise UsageError(
+            "-j is for a run without a cluster.",
+            help="--local-cluster N says how many; a cluster elsewhere grades on all the workers it has.",
+            code="jobs_and_cluster",
+        )
+
+
+def _graders(
+    catalog: Catalog, local_cluster: int | None, scheduler: str | None
+) -> AbstractContextManager[GradeAll]:
+    """Who grades: processes of this machine, or a cluster."""
+    from contextlib import nullcontext
+
+    from course.grading.batch import grade_all
+
+    if local_cluster is None and scheduler is None:
+        return nullcontext(grade_all)
+    from course.grading.cluster import connect
+
+    if scheduler is not None:
+        return connect.remote_cluster(scheduler, catalog)
+    return connect.local_cluster(local_cluster or 1, catalog)
 
 
 @app.command("explain", epilog="Example: course grade explain grades ada integrators")
@@ -230,7 +272,8 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
         console.note(f"Protection: {levels}.")
     if options.at_least == "L1":
         console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
-    console.note(f"Written: {out}/gradebook.sqlite, grades.csv, results.jsonl. Seed {summary.seed}.")
+    files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
+    console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
 
 
 def _show_result(console: Console, catalog: Catalog, found: Effective, history: list[Result]) -> None:

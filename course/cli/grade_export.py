@@ -26,7 +26,9 @@ def export(
     ] = None,
     format: Annotated[  # noqa: A002 - the option's name
         str,
-        typer.Option("--format", metavar="csv|jsonl|junit|gradescope|gradescope-autograder|canvas|moodle"),
+        typer.Option(
+            "--format", metavar="csv|jsonl|junit|gradescope|gradescope-autograder|canvas|moodle|html"
+        ),
     ] = "csv",
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="PATH", help="Where; in OUT if left out.")

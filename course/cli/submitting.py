@@ -20,7 +20,7 @@ from course.grading.numbers import format_points
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from course.catalog.models import Exercise
+    from course.cli.handing_in import Work
     from course.cli.here import Here
     from course.cli.schemas import FileReply, SubmitFile
 
@@ -41,27 +41,28 @@ def submit(
 ) -> int:
     """Write the file to hand in.
 
-    Shows what goes in first. An exercise whose file is still the stub is left out. If the output exists, a
-    copy of it is kept.
+    Shows what goes in first. An exercise whose file is still the stub is left out; if its notebook was worked
+    in instead, that is handed in, without its outputs. If the output exists, a copy of it is kept.
     """
+    from course.cli.handing_in import work_of
     from course.cli.here import Here
     from course.cli.schemas import Submit
     from course.progress.workspace import write_atomically
 
     console, here = current(), Here.load()
     target = _target(here, output)
-    sources, left_out = _collect(here)
-    files = tuple(_describe(here, exercise, source) for exercise, source in sources)
+    works, left_out = work_of(here)
+    files = tuple(_describe(here, work) for work in works)
     quiz = _quiz_records(here)
     _show(console, here, files, left_out, quiz)
-    if not sources and not quiz:
+    if not works and not quiz:
         raise UngradableError(
             "There is nothing to hand in yet.",
             help="Write an exercise first, or take the quiz.",
             code="nothing_to_submit",
         )
-    notes = [note for exercise, source in sources if (note := _syntax_note(exercise, source))]
-    data = _packed(here, sources, quiz)
+    notes = [note for work in works if (note := _syntax_note(work))]
+    data = _packed(here, works, quiz)
     backup = _keep_old(here, target, data)
     write_atomically(target, data)
     here.record("submit", "", {"output": str(target), "sha256": hashlib.sha256(data).hexdigest()})
@@ -110,14 +111,12 @@ def archive(
     return buffer.getvalue()
 
 
-def _packed(
-    here: Here, sources: Sequence[tuple[Exercise, bytes]], quiz: Sequence[Mapping[str, object]]
-) -> bytes:
+def _packed(here: Here, works: Sequence[Work], quiz: Sequence[Mapping[str, object]]) -> bytes:
     """The archive's bytes; refused if no grading run would take them."""
     data = archive(
         here.catalog.course_id,
         here.catalog.version,
-        {f"{exercise.id}/{exercise.module}": source for exercise, source in sources},
+        {work.path: work.data for work in works},
         quiz,
     )
     if len(data) > MAX_TOTAL_BYTES:
@@ -148,39 +147,19 @@ def _target(here: Here, output: Path | None) -> Path:
     return path
 
 
-def _collect(here: Here) -> tuple[list[tuple[Exercise, bytes]], list[FileReply]]:
-    """What goes in, and what does not and why."""
-    from course.cli.schemas import FileReply
-
-    sources: list[tuple[Exercise, bytes]] = []
-    left_out: list[FileReply] = []
-    for exercise in here.catalog.exercises():
-        path = here.workspace.path(exercise.id, exercise.module)
-        if not path.exists():
-            if exercise.id in here.workspace.started():
-                left_out.append(FileReply(path=f"{exercise.id}/{exercise.module}", action="not there"))
-            continue
-        source = here.source(exercise)
-        if here.workspace.is_edited(exercise.id, exercise.module, source):
-            sources.append((exercise, source))
-        else:
-            left_out.append(FileReply(path=f"{exercise.id}/{exercise.module}", action="still the stub"))
-    return sources, left_out
-
-
-def _describe(here: Here, exercise: Exercise, source: bytes) -> SubmitFile:
+def _describe(here: Here, work: Work) -> SubmitFile:
     from course.cli.schemas import SubmitFile
     from course.progress.history import fingerprint
 
     try:
-        last = here.history(exercise).last_graded
+        last = here.history(work.exercise).last_graded
     except CourseError:
         last = None
-    current_one = last if last is not None and last.fingerprint == fingerprint(source) else None
+    current_one = last if last is not None and last.fingerprint == fingerprint(work.source) else None
     return SubmitFile(
-        path=f"{exercise.id}/{exercise.module}",
-        sha256=hashlib.sha256(source).hexdigest(),
-        bytes=len(source),
+        path=work.path,
+        sha256=hashlib.sha256(work.data).hexdigest(),
+        bytes=len(work.data),
         last_score=current_one.score if current_one else None,
         max_score=current_one.max_score if current_one else None,
     )
@@ -229,17 +208,18 @@ def _show(
         console.line(f"Left out: {item.path} ({item.action}).")
 
 
-def _syntax_note(exercise: Exercise, source: bytes) -> str:
+def _syntax_note(work: Work) -> str:
     """A warning about a file that Python cannot read; it goes in all the same."""
-    path = f"{exercise.id}/{exercise.module}"
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            ast.parse(source)
+            ast.parse(work.source)
     except SyntaxError as error:
-        return f"{path} does not parse (line {error.lineno}: {error.msg}); it could not be graded as it is."
+        return (
+            f"{work.path} does not parse (line {error.lineno}: {error.msg}); it could not be graded as it is."
+        )
     except (ValueError, RecursionError, MemoryError):
-        return f"{path} does not parse; it could not be graded as it is."
+        return f"{work.path} does not parse; it could not be graded as it is."
     return ""
 
 

@@ -29,9 +29,20 @@ if TYPE_CHECKING:
 
     from course.grading.intake import Entry
 
-__all__ = ["BatchOptions", "Graded", "grade_all"]
+__all__ = [
+    "MAX_TRIES",
+    "BatchOptions",
+    "Graded",
+    "as_error",
+    "grade_all",
+    "hang_s",
+    "killed_its_grader",
+    "start_grader",
+    "without_grading",
+]
 
-_MAX_TRIES = 3
+#: Deaths of graders after which a submission is our fault and no longer tried.
+MAX_TRIES = 3
 _TICK_S = 0.5
 
 
@@ -91,6 +102,28 @@ def grade_all(entries: Iterable[Entry], options: BatchOptions) -> Iterator[Grade
         coordinator.close()
 
 
+def start_grader(config: Config) -> subprocess.Popen[bytes]:
+    """A grader process, told how to grade. Its first answer says that it has started."""
+    # -P: the folder the command is run in, which may be a student's, never becomes importable.
+    command = [sys.executable, "-P", "-m", "course.grading.grader"]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    # The graders run the course that this process runs, however it came to be importable here.
+    package = str(Path(__file__).resolve().parents[2])
+    environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
+    process = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
+    )
+    assert process.stdin is not None
+    with contextlib.suppress(BrokenPipeError):
+        write_frame(process.stdin, config)
+    return process
+
+
+def hang_s(timeout: float) -> float:
+    """Seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
+    return BUDGET_S + timeout + 30.0
+
+
 class _Coordinator:
     def __init__(self, entries: Iterable[Entry], options: BatchOptions) -> None:
         self._entries = iter(entries)
@@ -99,8 +132,7 @@ class _Coordinator:
         self._done: deque[Graded] = deque()
         self._graders: dict[int, _Grader] = {}
         self._selector = selectors.DefaultSelector()
-        # Longer than a submission may take by its own deadlines: only a fault of ours gets here.
-        self._hang_s = BUDGET_S + options.timeout + 30.0
+        self._hang_s = hang_s(options.timeout)  # only a fault of ours gets here
 
     def run(self) -> Iterator[Graded]:
         for number in range(self._options.graders):
@@ -143,7 +175,7 @@ class _Coordinator:
             if entry.submission is not None:
                 return _Work(entry)
             if entry.problem is not None:
-                self._done.append(Graded(entry, _without_grading(entry, "ungradable", entry.problem)))
+                self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
         return None
 
     def _feed(self, number: int) -> bool:
@@ -162,21 +194,9 @@ class _Coordinator:
         return True
 
     def _start(self, number: int) -> _Grader:
-        # -P: the folder the command is run in, which may be a student's, never becomes importable.
-        command = [sys.executable, "-P", "-m", "course.grading.grader"]
-        environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-        # The graders run the course that this process runs, however it came to be importable here.
-        package = str(Path(__file__).resolve().parents[2])
-        environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
-        process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
-        )
-        assert process.stdin is not None
-        assert process.stdout is not None
         options = self._options
-        config = Config(options.level, options.at_least, options.timeout, options.seed, number)
-        with contextlib.suppress(BrokenPipeError):
-            write_frame(process.stdin, config)
+        process = start_grader(Config(options.level, options.at_least, options.timeout, options.seed, number))
+        assert process.stdout is not None
         grader = _Grader(number, process)
         self._graders[number] = grader
         self._selector.register(process.stdout, selectors.EVENT_READ, number)
@@ -199,7 +219,7 @@ class _Coordinator:
         else:
             answer = msgspec.msgpack.decode(frame, type=Answer)
             if answer.error is not None:
-                raise _as_error(answer)
+                raise as_error(answer.error, answer.exit_code)
             assert work is not None
             assert answer.verdict is not None
             self._done.append(Graded(work.entry, answer.verdict))
@@ -207,15 +227,12 @@ class _Coordinator:
 
     def _retry(self, work: _Work) -> None:
         work.tries += 1
-        if work.tries < _MAX_TRIES:
+        if work.tries < MAX_TRIES:
             self._again.append(work)
             return
-        problem = Problem(
-            "grader_died",
-            f"The grader died {_MAX_TRIES} times on this submission.",
-            "Report this; the submission is marked for regrading.",
+        self._done.append(
+            Graded(work.entry, without_grading(work.entry, "grader_error", killed_its_grader()))
         )
-        self._done.append(Graded(work.entry, _without_grading(work.entry, "grader_error", problem)))
 
     def _bury(self, grader: _Grader) -> None:
         assert grader.process.stdout is not None
@@ -235,15 +252,24 @@ class _Coordinator:
                 grader.process.kill()  # its pipe closes, and the next round finds it dead
 
 
-def _as_error(answer: Answer) -> CourseError:
+def as_error(problem: Problem, exit_code: int) -> CourseError:
     """A grader's complaint, as the error it was over there."""
-    assert answer.error is not None
-    error = CourseError(answer.error.message, help=answer.error.help, code=answer.error.code)
-    error.exit_code = answer.exit_code
+    error = CourseError(problem.message, help=problem.help, code=problem.code)
+    error.exit_code = exit_code
     return error
 
 
-def _without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:
+def killed_its_grader() -> Problem:
+    """What is said of a submission that no grader survived."""
+    return Problem(
+        "grader_died",
+        f"The grader died {MAX_TRIES} times on this submission.",
+        "Report this; the submission is marked for regrading.",
+    )
+
+
+def without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:
+    """The verdict on what no grader had a say in."""
     return Verdict(
         exercise=entry.exercise.id,
         scope="full",

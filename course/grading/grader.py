@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import msgspec
 
-from course.errors import CourseError
+from course.errors import CourseError, MissingCapabilityError
 from course.grading.verdict import Problem, Verdict
 
 if TYPE_CHECKING:
@@ -41,10 +41,15 @@ class Config(msgspec.Struct, frozen=True):
 
 
 class Job(msgspec.Struct, frozen=True):
-    """One submission to grade."""
+    """One submission to grade.
+
+    Attributes:
+        version: the ``grader_version`` it must be graded by; empty takes whatever is here.
+    """
 
     exercise: str
     files: dict[str, bytes]
+    version: str = ""
 
 
 class Answer(msgspec.Struct, frozen=True):
@@ -82,11 +87,13 @@ class _Grader:
         self._config = config
         self._catalog = Catalog()
         self._sessions: dict[str, GradingSession] = {}
+        self._versions: dict[str, str] = {}
 
     def answer(self, job: Job) -> Answer:
         from course.grading.session import Submission
 
         try:
+            self._check_version(job)
             verdict = self._session(job.exercise).grade(Submission(job.files))
             if verdict.error is not None and verdict.error.code == "isolation_failed":
                 # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
@@ -96,6 +103,29 @@ class _Grader:
         except CourseError as error:
             problem = Problem(error.code, error.message, error.help)
             return Answer(error=problem, exit_code=error.exit_code)
+
+    def _check_version(self, job: Job) -> None:
+        """Refuse work of a coordinator that has other graders.
+
+        Raises:
+            MissingCapabilityError: its scores would not be comparable.
+        """
+        from course.grading.session import grader_version
+
+        if not job.version:
+            return
+        if job.exercise not in self._versions:
+            known = job.exercise in self._catalog.exercise_ids()
+            self._versions[job.exercise] = (
+                grader_version(self._catalog.exercise(job.exercise), self._catalog) if known else "none"
+            )
+        mine = self._versions[job.exercise]
+        if mine != job.version:
+            raise MissingCapabilityError(
+                f"The graders of {job.exercise} are version {mine} here, {job.version} where the run began.",
+                help="Install the same checkout of the course on every machine, and restart the workers.",
+                code="version_mismatch",
+            )
 
     def _session(self, exercise: str) -> GradingSession:
         from course.grading.session import GradingSession

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import re
+import symtable
 from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -113,8 +114,7 @@ def _counts(cell: CodeCell, exercise: str, functions: set[str]) -> bool:
     """Whether a cell is part of the solution as a whole."""
     if cell.tags.get("exercise") == exercise and cell.tags.get("role") in (SOLUTION, SETUP):
         return bool(cell.text.strip())
-    if cell.tags.get("role") not in (None, SOLUTION, SETUP):
-        return False  # generated to show or to check something
+    # Also in a cell that was generated to check something: two cells that are merged keep the marks of one.
     if cell.tree is None:
         # Not Python: what it would have defined decides, so that it is refused as the module would be.
         found = re.findall(r"^(?:async )?def\s+(\w+)", cell.text, re.MULTILINE)
@@ -132,8 +132,9 @@ def _blocks(cells: list[CodeCell], chosen: list[CodeCell]) -> list[tuple[CodeCel
     others = [
         (cell, node)
         for cell in cells
-        if cell.number not in whole and cell.tree and cell.tags.get("role") in (None, SOLUTION, SETUP)
+        if cell.number not in whole and cell.tree
         for node in cell.tree.body
+        if not _is_tool(cell, node)
     ]
     kept: set[int] = set()
     grown = True
@@ -152,6 +153,13 @@ def _blocks(cells: list[CodeCell], chosen: list[CodeCell]) -> list[tuple[CodeCel
         for cell in cells
         if cell.number in whole or cell.number in nodes
     ]
+
+
+def _is_tool(cell: CodeCell, node: ast.stmt) -> bool:
+    """Whether a statement is there because a generated cell that checks something needs it."""
+    if cell.tags.get("role") in (None, SOLUTION, SETUP):
+        return False
+    return isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "course"
 
 
 def _bound(node: ast.AST) -> Iterator[str]:
@@ -184,16 +192,34 @@ def _base(node: ast.expr) -> Iterator[str]:
 
 
 def _loaded(node: ast.AST) -> Iterator[str]:
-    """Every name that is read anywhere in a piece of code."""
-    for child in ast.walk(node):
-        if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load):
-            yield child.id
-        elif isinstance(child, ast.Global | ast.Nonlocal):
-            yield from child.names
-        elif isinstance(child, ast.AugAssign):
-            yield from _base(child.target)
-            if isinstance(child.target, ast.Name):
-                yield child.target.id
+    """Every name of the module that a piece of code reads; parameters and other local names are none."""
+    yield from _augmented(node)
+    try:
+        table = symtable.symtable(ast.unparse(node), "cell", "exec")
+    except SyntaxError:  # such as a return outside of a function: what it would read cannot be told
+        yield from (child.id for child in ast.walk(node) if isinstance(child, ast.Name))
+    else:
+        yield from _global(table)
+
+
+def _global(table: symtable.SymbolTable) -> Iterator[str]:
+    """Names that a scope and those within it take from the module."""
+    outermost = table.get_type() == "module"
+    for symbol in table.get_symbols():
+        if symbol.is_referenced() if outermost else symbol.is_global():
+            yield symbol.get_name()
+    for child in table.get_children():
+        yield from _global(child)
+
+
+def _augmented(node: ast.AST) -> Iterator[str]:
+    """Names that are changed from what they were, at the level of the module: x += 1."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+        return
+    if isinstance(node, ast.AugAssign):
+        yield from _base(node.target)
+    for child in ast.iter_child_nodes(node):
+        yield from _augmented(child)
 
 
 def _only(text: str, nodes: list[ast.stmt]) -> str:

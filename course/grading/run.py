@@ -15,6 +15,7 @@ from course.catalog.questions import read_questions
 from course.errors import MissingCapabilityError, UngradableError, UsageError
 from course.grading.batch import BatchOptions, grade_all
 from course.grading.downloads import class_list
+from course.grading.exports.html_report.write import write_pages
 from course.grading.exports.lines import write_csv, write_jsonl
 from course.grading.gradebook import Gradebook, GradedExercise, Key, Result, SubmittedAt
 from course.grading.intake import Entry, read_quiz, read_student, witnesses
@@ -292,6 +293,7 @@ def export_all(out: Path, results: Results) -> None:
     """The files that lie beside a gradebook after every run."""
     write_jsonl(out / "results.jsonl", results.all(), results.course)
     write_csv(out / "grades.csv", results)
+    write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
 
 
 @contextlib.contextmanager

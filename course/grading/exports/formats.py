@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from course.errors import UsageError
 from course.grading.exports.gradescope import write_gradescope
+from course.grading.exports.html_report.write import write_html
 from course.grading.exports.junit import write_junit
 from course.grading.exports.lines import write_csv, write_jsonl
 from course.grading.exports.platforms import write_canvas, write_moodle
@@ -47,6 +48,7 @@ FORMATS: dict[str, tuple[str, Writer]] = {
     "gradescope": ("gradescope", write_gradescope),
     "canvas": ("canvas.csv", write_canvas),
     "moodle": ("moodle.csv", write_moodle),
+    "html": ("report.html", write_html),
 }
 
 

@@ -45,8 +45,12 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
-def test_a_run_leaves_a_gradebook_and_two_exports(graded: Path) -> None:
-    assert {path.name for path in graded.iterdir()} == {"gradebook.sqlite", "grades.csv", "results.jsonl"}
+def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None:
+    assert {path.name for path in graded.iterdir()} == {
+        "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html", "students.html", "students.csv",
+        "students",
+    }  # fmt: skip
+    assert {path.name for path in (graded / "students").iterdir()} == {"1.html", "2.html", "3.html"}
     rows = list(csv.DictReader(io.StringIO((graded / "grades.csv").read_text("utf-8-sig"))))
     assert {row["student"]: row["score"] for row in rows} == {"'=bob": "6", "ada": "10", "cy": "0"}
 
@@ -89,13 +93,13 @@ def test_wrong_calls_are_named_and_touch_nothing(
         "NOWHERE": graded / "no",
         "NEW": graded.parent / "new",
     }
-    before = {path: path.read_bytes() for path in graded.iterdir()}
+    before = {path: path.read_bytes() for path in graded.rglob("*.*") if path.is_file()}
     done = course("grade", *[places.get(word, word) for word in arguments], "--json")
     assert done.returncode == code, done.stdout + done.stderr
     body = json.loads(done.stdout)
     assert (body["ok"], body["exit_code"], body["error"]["code"]) == (False, code, error)
     assert body["error"]["help"]
-    assert before == {path: path.read_bytes() for path in graded.iterdir()}
+    assert before == {path: path.read_bytes() for path in graded.rglob("*.*") if path.is_file()}
 
 
 def test_a_damaged_gradebook_is_an_integrity_error(graded: Path, tmp_path: Path) -> None:

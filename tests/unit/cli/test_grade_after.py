@@ -75,11 +75,11 @@ def test_an_override_is_in_every_file_at_once_and_can_be_lifted(course, out: Pat
     ],
 )
 def test_what_cannot_be_done_is_said_and_changes_nothing(course, out: Path, words, code, error) -> None:
-    before = {path: path.read_bytes() for path in out.iterdir()}
+    before = {path: path.read_bytes() for path in out.rglob("*.*") if path.is_file()}
     ran = course("grade", *words, "--json")
     assert (ran.code, ran.json["error"]["code"]) == (code, error)
     assert ran.json["error"]["help"]
-    assert {path: path.read_bytes() for path in out.iterdir()} == before
+    assert {path: path.read_bytes() for path in out.rglob("*.*") if path.is_file()} == before
 
 
 def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) -> None:

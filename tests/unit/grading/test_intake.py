@@ -91,9 +91,61 @@ def test_two_candidates_are_never_guessed_between(tmp_path: Path, doubling: Exer
     assert reason(tmp_path, doubling) == "ambiguous_files"
 
 
-def test_a_notebook_is_refused_with_a_reason(tmp_path: Path, doubling: Exercise) -> None:
-    (tmp_path / "doubling.ipynb").write_text("{}", "utf-8")
-    assert reason(tmp_path, doubling) == "notebook"
+def notebook(*sources: str) -> bytes:
+    """Of code cells."""
+    cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells}).encode()
+
+
+def test_a_notebook_is_the_module_that_it_stands_for(tmp_path: Path, doubling: Exercise) -> None:
+    (tmp_path / "doubling.ipynb").write_bytes(notebook("print(1)", SOURCE.decode()))
+    found = entry(tmp_path, doubling)
+    assert found.submission is not None
+    assert found.submission.files["doubling.py"].strip() == SOURCE.strip()
+
+
+def test_a_notebook_may_come_in_a_zip(tmp_path: Path, doubling: Exercise) -> None:
+    archive(tmp_path / "mine.zip", {"doubling/doubling.ipynb": notebook(SOURCE.decode())})
+    found = entry(tmp_path, doubling)
+    assert found.submission is not None
+    assert found.submission.files["doubling.py"].strip() == SOURCE.strip()
+
+
+def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    large = json.loads(notebook(SOURCE.decode()))
+    large["cells"][0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * 2 * MAX_FILE}]
+    (tmp_path / "doubling.ipynb").write_text(json.dumps(large), "utf-8")
+    assert entry(tmp_path, doubling).submission is not None
+    (tmp_path / "doubling.ipynb").write_bytes(notebook(SOURCE.decode(), f"def double(): '{'x' * MAX_FILE}'"))
+    assert reason(tmp_path, doubling) == "too_large"
+
+
+@pytest.mark.parametrize(
+    ("content", "code"),
+    [
+        (b"{}", "not_a_notebook"),
+        (b" ", "empty_file"),
+        (notebook("x = 1"), "no_declared_functions"),
+    ],
+)
+def test_a_notebook_that_cannot_be_graded_is_refused_with_a_reason(
+    tmp_path: Path, doubling: Exercise, content: bytes, code: str
+) -> None:
+    (tmp_path / "doubling.ipynb").write_bytes(content)
+    assert reason(tmp_path, doubling) == code
+
+
+def test_a_module_and_a_notebook_are_never_guessed_between(tmp_path: Path, doubling: Exercise) -> None:
+    (tmp_path / "doubling.ipynb").write_bytes(notebook(SOURCE.decode()))
+    (tmp_path / "doubling.py").write_bytes(SOURCE)
+    assert reason(tmp_path, doubling) == "ambiguous_files"
+    packed = tmp_path / "packed"
+    packed.mkdir()
+    both = {"doubling/doubling.py": SOURCE, "doubling/doubling.ipynb": notebook(SOURCE.decode())}
+    archive(packed / "mine.zip", both)
+    assert reason(packed, doubling) == "ambiguous_files"
 
 
 def test_what_is_not_a_plain_file_of_reasonable_size_is_refused(tmp_path: Path, doubling: Exercise) -> None:

@@ -93,9 +93,37 @@ def test_a_statement_that_changes_what_is_used_counts(statement: str) -> None:
 
 
 def test_generated_check_cells_never_count() -> None:
-    source = source_of(code(FORCE, SOLUTION), code("%course_check springs\ndef force(): pass", CHECK))
-    assert "course_check" not in source.source.decode()
+    check = "from course.notebooks.nbgrader import points\npoints('springs', 'force')"
+    source = source_of(
+        code("def force(k, x):\n    return points(k, x)", SOLUTION), code("%course_check springs", CHECK),
+        code(check, CHECK),
+    )  # fmt: skip
+    assert "course" not in source.source.decode()
+
+
+def test_a_function_merged_into_a_check_cell_still_counts() -> None:
+    source = source_of(code(f"%course_check springs\n{FORCE}", CHECK))
     assert run(source)["force"](1, 1) == -1
+
+
+@pytest.mark.parametrize(
+    "experiment", ["x = undefined_name", "k: int = nowhere()", "total = force(1, 2) / 0"]
+)
+def test_an_experiment_may_use_the_names_of_parameters_and_local_variables(experiment: str) -> None:
+    text = (
+        "def force(k, x):\n    total = 0\n    for each in [k]:\n        total += each\n    return -total * x"
+    )
+    source = source_of(code(text, SOLUTION), code(experiment))
+    assert run(source)["force"](2, 3) == -6
+
+
+def test_what_only_inner_functions_and_defaults_use_counts_too() -> None:
+    source = source_of(
+        code("A = 1\nB = 2\nC = 3\nD = 4"),
+        code("def force(k=A):\n    def inner():\n        return B\n    return [inner() + C for _ in [k]]"),
+    )
+    assert run(source)["force"]() == [5]
+    assert "D = 4" not in source.source.decode()
 
 
 @pytest.mark.parametrize(

@@ -212,7 +212,10 @@ def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
     options = RunOptions(exercises=("doubling",), resume=True)
     grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right)
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"gradebook.sqlite", "grades.csv", "results.jsonl"}
+    assert names == {
+        "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html", "students.html", "students.csv",
+        "students",
+    }  # fmt: skip
 
 
 def right(entries: Iterable[Entry], _: BatchOptions) -> Iterator[Graded]:

@@ -1,0 +1,7 @@
+"""The same grading run on many machines: Dask carries batches out and verdicts back.
+
+messages     what crosses the wire: bytes, in a shape both sides check
+worker       what a Dask worker does with a batch: a warm grader process of its own grades it
+coordinator  who gets what, and what becomes of the work of a worker that is lost; knows nothing of Dask
+connect      Dask itself: a cluster here or somewhere else, as something ``grade_class`` can use
+"""

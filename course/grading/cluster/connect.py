@@ -1,0 +1,254 @@
+"""Dask, as something that grades a class: a cluster on this machine, or one that runs somewhere.
+
+    with local_cluster(4, catalog) as grade:
+        grade_class(folder, out, catalog, options, report, grade=grade)
+
+Nothing is started before there is something to grade. A local cluster speaks TLS with a key of its own that
+is never on disk: whoever can speak to a scheduler can have its workers run anything, and on a machine with
+several users everyone can reach a port on it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import logging
+import tempfile
+from concurrent.futures import CancelledError
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from course.errors import InternalError, MissingCapabilityError, UsageError
+from course.grading.cluster.coordinator import Lost, grade_on
+from course.grading.cluster.worker import grade_batch
+from course.grading.session import grader_version
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+    from course.grading.batch import BatchOptions, Graded
+    from course.grading.cluster.coordinator import Outcome
+    from course.grading.intake import Entry
+
+__all__ = ["Cluster", "DaskWorkers", "local_cluster", "remote_cluster", "start_cluster"]
+
+#: Wall seconds for a scheduler to answer, and for its first worker to be there.
+_ANSWER_S = 20.0
+_WANTED = {"distributed": "distributed>=2026.8", "cryptography": "cryptography>=46"}
+
+
+class Cluster:
+    """What turns entries into verdicts, for ``grade_class``; a context manager that ends what it started.
+
+    Args:
+        catalog: the course that the coordinator has.
+        connect: gives a client, and says by the stack what must be closed.
+        remote: whether others may use the same scheduler.
+
+    Raises:
+        MissingCapabilityError: Dask is not installed.
+    """
+
+    def __init__(
+        self,
+        catalog: Catalog,
+        connect: Callable[[contextlib.ExitStack], Any],
+        *,
+        remote: bool,
+    ) -> None:
+        _needs_dask()
+        self._catalog = catalog
+        self._connect = connect
+        self._remote = remote
+        self._stack = contextlib.ExitStack()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def __call__(self, entries: Iterable[Entry], options: BatchOptions) -> Iterator[Graded]:
+        """Verdicts on all entries that have a submission or a problem.
+
+        Raises:
+            UsageError: unprotected submissions may not run beside a scheduler that they could command.
+            CourseError: there is no scheduler, or its workers cannot grade.
+        """
+        if self._remote and options.at_least == "L1":
+            raise UsageError(
+                "--isolation process leaves the network open, and a submission could give orders to the whole"
+                " cluster.",
+                help="Leave it out, or grade on one machine.",
+                code="unprotected_cluster",
+            )
+        workers = DaskWorkers(self._connect(self._stack))
+
+        @cache
+        def version(exercise_id: str) -> str:
+            return grader_version(self._catalog.exercise(exercise_id), self._catalog)
+
+        def version_of(exercise: Exercise) -> str:
+            return version(exercise.id)
+
+        yield from grade_on(workers, entries, options, version_of)
+
+
+def local_cluster(workers: int, catalog: Catalog) -> Cluster:
+    """A cluster of ``workers`` processes on this machine, for one run."""
+    return Cluster(catalog, lambda stack: start_cluster(stack, workers), remote=False)
+
+
+def remote_cluster(address: str, catalog: Catalog) -> Cluster:
+    """The cluster whose scheduler is at ``address``, or is described by the scheduler file of that name."""
+    return Cluster(catalog, lambda stack: _reach(stack, address), remote=True)
+
+
+def _needs_dask() -> None:
+    missing = [name for name in _WANTED if importlib.util.find_spec(name) is None]
+    if missing:
+        verb = "is" if len(missing) == 1 else "are"
+        raise MissingCapabilityError(
+            f"Grading on a cluster needs {' and '.join(missing)}, which {verb} not installed.",
+            help="Install what it needs: pip install " + " ".join(f"'{_WANTED[name]}'" for name in missing),
+            code="missing_extra",
+        )
+
+
+def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:
+    """A client of a new cluster on this machine."""
+    import dask
+    from distributed import Client, LocalCluster, Security
+
+    scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="course-cluster-"))
+    settings = {
+        # A worker that dies with a batch is reported at once: who is tried again, and where, is decided here.
+        "distributed.scheduler.allowed-failures": 0,
+        # The folder the command is run in, which may be a student's, never becomes importable.
+        "distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": "1",
+        # The pages Dask serves beside its own protocol are not encrypted; there are none.
+        "distributed.scheduler.http.routes": [],
+        "distributed.worker.http.routes": [],
+    }
+    stack.enter_context(dask.config.set(settings))
+    cluster = stack.enter_context(
+        LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            memory_limit=0,  # what takes memory is the graders, which have limits of their own
+            scheduler_kwargs={"dashboard": False, "dashboard_address": "127.0.0.1:0"},
+            security=Security.temporary(),
+            local_directory=scratch,
+            preload="course.grading.cluster.worker",
+            silence_logs=logging.CRITICAL,
+        )
+    )
+    return stack.enter_context(Client(cluster, set_as_default=False))
+
+
+def _reach(stack: contextlib.ExitStack, address: str) -> Any:
+    """A client of a cluster that runs somewhere, when it has a worker."""
+    from distributed import Client
+
+    file = Path(address)
+    where = {"scheduler_file": address} if file.suffix == ".json" else {"address": address}
+    try:
+        if file.suffix == ".json" and not file.is_file():
+            raise FileNotFoundError(2, "no such file", address)
+        client = Client(**where, timeout=_ANSWER_S, set_as_default=False)
+    except (OSError, TimeoutError) as error:
+        raise MissingCapabilityError(
+            f"No Dask scheduler answers at {address}: {error}.",
+            help="Is it running, can this machine reach it, and has this command the same TLS settings?",
+            code="no_scheduler",
+        ) from None
+    except ValueError as error:
+        raise UsageError(
+            f"--scheduler {address} is no address: {error}.", help="It looks like tls://name:8786."
+        ) from None
+    stack.enter_context(client)
+    try:
+        client.wait_for_workers(1, timeout=_ANSWER_S)
+    except TimeoutError:
+        raise MissingCapabilityError(
+            f"The scheduler at {address} has no workers.", help="Start some first.", code="no_workers"
+        ) from None
+    return client
+
+
+class DaskWorkers:
+    """The workers of a Dask cluster, as the coordinator sees them.
+
+    Args:
+        client: of ``distributed``.
+        task: what is run over there, bytes to bytes; known there by the same name.
+    """
+
+    def __init__(self, client: Any, task: Callable[[bytes], bytes] = grade_batch) -> None:
+        self._client = client
+        self._task = task
+        self._futures: set[Any] = set()
+
+    def places(self) -> int:
+        """Threads of all workers there are."""
+        try:
+            return sum(self._client.nthreads().values())
+        except (OSError, TimeoutError, RuntimeError):
+            return 0  # the scheduler is gone; what was sent to it will say so
+
+    def send(self, payload: bytes, done: Callable[[Outcome], None]) -> None:
+        """Have a batch graded by the first worker that is free."""
+        try:
+            future = self._client.submit(self._task, payload, pure=False)
+        except (OSError, RuntimeError):
+            done(_scheduler_gone())
+            return
+        self._futures.add(future)
+        future.add_done_callback(lambda it: self._finished(it, done))
+
+    def _finished(self, future: Any, done: Callable[[Outcome], None]) -> None:
+        self._futures.discard(future)
+        done(_outcome(future))
+
+
+def _outcome(future: Any) -> Outcome:
+    from distributed import CancelledError as DaskCancelledError
+    from distributed import KilledWorker
+
+    try:
+        if future.status in {"cancelled", "lost"}:
+            return _scheduler_gone()
+        error = future.exception() if future.status == "error" else None
+        if error is None:
+            reply = future.result()
+            return reply if isinstance(reply, bytes) else InternalError("A worker answered with no bytes.")
+    except (CancelledError, DaskCancelledError, OSError, TimeoutError, RuntimeError):
+        return _scheduler_gone()
+    if isinstance(error, KilledWorker):
+        return Lost(int(getattr(error, "allowed_failures", 0)) + 1)
+    cause = next((e for e in _chain(error) if isinstance(e, ImportError | AttributeError)), None)
+    if cause is not None:
+        return MissingCapabilityError(
+            f"The cluster's scheduler or a worker has no such course: {cause}.",
+            help="Install the same checkout of the course where the scheduler and the workers run.",
+            code="version_mismatch",
+        )
+    return InternalError(f"A worker of the cluster failed: {type(error).__name__}: {error}.")
+
+
+def _scheduler_gone() -> MissingCapabilityError:
+    return MissingCapabilityError(
+        "The cluster's scheduler is gone; what was graded is kept.",
+        help="Start it again, then run the same command with --resume.",
+        code="no_scheduler",
+    )
+
+
+def _chain(error: BaseException | None) -> Iterator[BaseException]:
+    while error is not None:
+        yield error
+        error = error.__cause__ or error.__context__

@@ -1,0 +1,255 @@
+"""Deals out batches of submissions to workers somewhere else, and takes the verdicts back.
+
+A batch that is lost with its worker is given to others one submission at a time, so that one which ends
+whatever grades it is soon alone. A worker grades other things beside, and may die for reasons of its own:
+before a submission is blamed, it is graded while nothing else is, and the rest of the class comes first.
+"""
+
+from __future__ import annotations
+
+import itertools
+import queue
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TypeAlias
+
+from course.errors import InternalError, MissingCapabilityError
+from course.grading.batch import MAX_TRIES, Graded, as_error, killed_its_grader, without_grading
+from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, encode
+from course.grading.grader import Job
+from course.grading.verdict import Problem
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from course.catalog.models import Exercise
+    from course.errors import CourseError
+    from course.grading.batch import BatchOptions
+    from course.grading.intake import Entry
+
+__all__ = ["Lost", "Outcome", "Workers", "grade_on"]
+
+#: Submissions in a batch. Sending one costs some milliseconds, grading one some tens.
+_MOST = 8
+#: Bytes of files in a batch; Dask takes more, and warns.
+_MOST_BYTES = 1_000_000
+_TICK_S = 1.0
+#: Seconds a run waits for a worker when there is none; a queue of a computing centre has been asked for more.
+_PATIENCE_S = 600.0
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A batch did not come back: its worker died.
+
+    Attributes:
+        deaths: how many workers died with the batch in hand, one after the other.
+    """
+
+    deaths: int = 1
+
+
+#: What became of a batch: the answers, its loss, or why none can be given at all.
+Outcome: TypeAlias = "bytes | Lost | CourseError"
+
+
+class Workers(Protocol):
+    """Whatever grades batches."""
+
+    def places(self) -> int:
+        """How many batches can be graded at once; 0 if there is no worker."""
+
+    def send(self, payload: bytes, done: Callable[[Outcome], None]) -> None:
+        """Have a batch graded. ``done`` is called once, from any thread."""
+
+
+def grade_on(
+    workers: Workers,
+    entries: Iterable[Entry],
+    options: BatchOptions,
+    version: Callable[[Exercise], str],
+    *,
+    patience_s: float = _PATIENCE_S,
+) -> Iterator[Graded]:
+    """Verdicts on all entries that have a submission or a problem, in the order they arrive.
+
+    Args:
+        workers: who grades.
+        version: the version of an exercise's graders here, which workers must have too.
+        patience_s: wall seconds to wait for a worker when there is none.
+
+    Raises:
+        CourseError: the workers cannot grade (version, protection level, content), or there are none left.
+    """
+    yield from _Coordinator(workers, entries, options, version, patience_s).run()
+
+
+@dataclass(eq=False)
+class _Work:
+    entry: Entry
+    job: Job
+    deaths: int = 0
+    alone: bool = False
+
+
+class _Coordinator:
+    def __init__(
+        self,
+        workers: Workers,
+        entries: Iterable[Entry],
+        options: BatchOptions,
+        version: Callable[[Exercise], str],
+        patience_s: float,
+    ) -> None:
+        self._workers = workers
+        self._entries = iter(entries)
+        self._options = options
+        self._version = version
+        self._patience_s = patience_s
+        self._numbers = itertools.count()
+        self._waiting: deque[_Work] = deque()
+        self._again: deque[_Work] = deque()
+        self._suspects: deque[_Work] = deque()
+        self._failure: CourseError | None = None
+        self._flying: dict[int, list[_Work]] = {}
+        self._arrived: queue.SimpleQueue[tuple[int, Outcome]] = queue.SimpleQueue()
+        self._done: deque[Graded] = deque()
+        self._places = 1
+        self._asked_at = self._seen_at = float("-inf")
+
+    def run(self) -> Iterator[Graded]:
+        while True:
+            self._fill()
+            while self._done:
+                yield self._done.popleft()
+            if self._failure is not None:
+                raise self._failure
+            if self._flying:
+                self._take_in()
+            elif not (self._waiting or self._again or self._suspects or self._done):
+                return
+
+    # -- out ------------------------------------------------------------------------------------------
+
+    def _fill(self) -> None:
+        self._count_places()
+        while len(self._flying) < self._places and (batch := self._next()):
+            number = next(self._numbers)
+            self._flying[number] = batch
+            options = self._options
+            message = Batch(
+                FORMAT,
+                options.level,
+                options.at_least,
+                options.timeout,
+                options.seed,
+                tuple(work.job for work in batch),
+            )
+            self._workers.send(encode(message), lambda outcome, n=number: self._arrived.put((n, outcome)))  # type: ignore[misc]
+
+    def _next(self) -> list[_Work]:
+        """What to send next: nothing if it has to wait."""
+        if self._again:
+            return [self._again.popleft()]
+        self._read_ahead()
+        if self._waiting:
+            # Smaller towards the end, so that all workers are done at about the same time.
+            size = max(1, min(_MOST, len(self._waiting) // (2 * self._places)))
+            batch = [self._waiting.popleft()]
+            room = _MOST_BYTES - _bytes(batch[0])
+            while len(batch) < size and (room := room - _bytes(self._waiting[0])) >= 0:
+                batch.append(self._waiting.popleft())
+            return batch
+        if self._suspects and not self._flying:
+            self._suspects[0].alone = True
+            return [self._suspects.popleft()]
+        return []
+
+    def _read_ahead(self) -> None:
+        """Read so many submissions that the size of a batch can be chosen by what is left."""
+        while len(self._waiting) < 2 * self._places * _MOST:
+            entry = next(self._entries, None)
+            if entry is None:
+                return
+            if entry.submission is not None:
+                exercise = entry.exercise
+                job = Job(exercise.id, dict(entry.submission.files), self._version(exercise))
+                self._waiting.append(_Work(entry, job))
+            elif entry.problem is not None:
+                self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
+
+    def _count_places(self) -> None:
+        now = time.monotonic()
+        if now - self._asked_at < _TICK_S:
+            return
+        places, self._asked_at = self._workers.places(), now
+        if places or self._seen_at < 0:
+            self._seen_at = now
+        self._places = max(1, places)  # what waits on the cluster is begun by the next worker that comes
+        if now - self._seen_at > self._patience_s:
+            raise MissingCapabilityError(
+                "The cluster has no workers left; what was graded is kept.",
+                help="Start workers, then run the same command with --resume.",
+                code="no_workers",
+            )
+
+    # -- back -----------------------------------------------------------------------------------------
+
+    def _take_in(self) -> None:
+        try:
+            number, outcome = self._arrived.get(timeout=_TICK_S)
+        except queue.Empty:
+            return
+        batch = self._flying.pop(number)
+        if isinstance(outcome, Lost):
+            self._lost(batch, outcome)
+        elif isinstance(outcome, bytes):
+            self._answered(batch, decode_answers(outcome))
+        else:
+            self._failure = outcome
+
+    def _answered(self, batch: list[_Work], reply: Answers | None) -> None:
+        if reply is None:
+            raise MissingCapabilityError(
+                "A worker of the cluster answers in another version of the protocol.",
+                help="Install the same checkout of the course on every machine, and restart the workers.",
+                code="version_mismatch",
+            )
+        for work, answer in zip(batch, reply.answers, strict=False):
+            if answer.error is not None:
+                problem = answer.error
+                said = Problem(problem.code, f"Worker on {reply.host}: {problem.message}", problem.help)
+                self._failure = as_error(said, answer.exit_code)
+                return
+            if answer.verdict is None:
+                self._blame(work, killed_its_grader())
+            else:
+                self._done.append(Graded(work.entry, answer.verdict))
+        if len(reply.answers) < len(batch):
+            raise InternalError(f"The worker on {reply.host} left submissions out.")
+
+    def _lost(self, batch: list[_Work], loss: Lost) -> None:
+        if len(batch) > 1:
+            self._again += batch
+            return
+        (work,) = batch
+        work.deaths += loss.deaths
+        if work.alone and work.deaths >= MAX_TRIES:
+            problem = Problem(
+                "worker_died",
+                f"Workers of the cluster died {work.deaths} times on this submission.",
+                "Grade it on one machine, without the cluster; it is marked for regrading.",
+            )
+            self._blame(work, problem)
+        elif work.deaths >= MAX_TRIES - 1:
+            self._suspects.append(work)
+        else:
+            self._again.append(work)
+
+    def _blame(self, work: _Work, problem: Problem) -> None:
+        self._done.append(Graded(work.entry, without_grading(work.entry, "grader_error", problem)))
+
+
+def _bytes(work: _Work) -> int:
+    return sum(map(len, work.job.files.values()))

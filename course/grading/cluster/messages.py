@@ -1,0 +1,76 @@
+"""What crosses the wire between a coordinator and the workers of a cluster.
+
+A task is a function that both sides have, by name, with one argument of bytes; its result is bytes. What
+Dask pickles is therefore never more than a name and a string of bytes: no object of ours, let alone anything
+that came out of a submission, is ever un-pickled. What is in the bytes is checked against these types.
+"""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import msgspec
+
+from course.grading.grader import Answer, Job
+
+__all__ = ["FORMAT", "Answers", "Batch", "decode_answers", "decode_batch", "encode"]
+
+T = TypeVar("T", "Batch", "Answers")
+
+#: Grows when a message changes its meaning.
+FORMAT = 1
+
+
+class Batch(msgspec.Struct, frozen=True):
+    """Submissions for one worker, and how to grade them.
+
+    Attributes:
+        format: the sender's ``FORMAT``.
+        level: protection level to insist on, or None for the best not below ``at_least``.
+        timeout: wall seconds per check.
+        seed: seed of the grading run.
+    """
+
+    format: int
+    level: str | None
+    at_least: str
+    timeout: float
+    seed: int
+    jobs: tuple[Job, ...]
+
+
+class Answers(msgspec.Struct, frozen=True):
+    """What a worker makes of a batch.
+
+    Attributes:
+        host: the worker's machine, for messages.
+        answers: one for each job, in order, but none after one that is an error. An answer with neither
+            verdict nor error is of a submission that no grader survived.
+    """
+
+    format: int
+    host: str
+    answers: tuple[Answer, ...]
+
+
+def encode(message: Batch | Answers) -> bytes:
+    """A message as it crosses."""
+    return msgspec.msgpack.encode(message)
+
+
+def decode_batch(payload: bytes) -> Batch | None:
+    """The batch in ``payload``; None if it is of another format."""
+    return _decode(payload, Batch)
+
+
+def decode_answers(payload: bytes) -> Answers | None:
+    """The answers in ``payload``; None if they are of another format."""
+    return _decode(payload, Answers)
+
+
+def _decode(payload: bytes, kind: type[T]) -> T | None:
+    try:
+        message = msgspec.msgpack.decode(payload, type=kind)
+    except msgspec.MsgspecError:
+        return None
+    return message if message.format == FORMAT else None

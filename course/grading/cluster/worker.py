@@ -1,0 +1,215 @@
+"""What a Dask worker does: hands each batch to a grader process that it keeps warm.
+
+The grader is the same program that ``course grade run`` starts on one machine, with its checks, its sandbox
+and its protection level. The Dask worker only carries bytes to it: no student's code, no check and no
+secret is ever in the worker's own process, which a cluster may reach over the network.
+
+Importing this module is all a worker needs; it imports nothing of Dask.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.errors import CourseError, InternalError
+from course.grading.batch import MAX_TRIES, hang_s, start_grader
+from course.grading.cluster.messages import FORMAT, Answers, decode_batch, encode
+from course.grading.grader import Answer, Config, read_frame, write_frame
+from course.grading.verdict import Problem
+
+if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Iterator
+
+    from course.grading.cluster.messages import Batch
+    from course.grading.grader import Job
+
+__all__ = ["IDLE_S", "dask_setup", "grade_batch", "version_mismatch"]
+
+#: Seconds after which a grader without work ends: a worker of somebody's cluster outlives the run.
+IDLE_S = 60.0
+
+_idle: list[_WarmGrader] = []
+_lock = threading.Lock()
+
+
+def grade_batch(payload: bytes) -> bytes:
+    """The answers to a batch, both as they cross the wire."""
+    batch = decode_batch(payload)
+    host = socket.gethostname()
+    if batch is None:
+        said = "The worker speaks another version of the protocol than the coordinator"
+        return encode(Answers(FORMAT, host, (version_mismatch(said),)))
+    return encode(Answers(FORMAT, host, tuple(_answers(batch))))
+
+
+def version_mismatch(what: str) -> Answer:
+    """The answer of a worker that has other graders than the run was begun with."""
+    problem = Problem(
+        "version_mismatch",
+        f"{what}.",
+        "Install the same checkout of the course on every machine of the cluster, and restart the workers.",
+    )
+    return Answer(error=problem, exit_code=4)
+
+
+def _answers(batch: Batch) -> Iterator[Answer]:
+    grader = _take(Config(batch.level, batch.at_least, batch.timeout, batch.seed, 0))
+    try:
+        for job in batch.jobs:
+            answer = grader.answer(job)
+            yield answer
+            if answer.error is not None:
+                grader.close()
+                return
+    except CourseError as error:
+        problem = Problem(error.code, error.message, error.help)
+        yield Answer(error=problem, exit_code=error.exit_code)
+    finally:
+        _give_back(grader)
+
+
+class _WarmGrader:
+    """A grader process, started when there is something to grade and replaced when it dies.
+
+    Args:
+        config: how to grade; the processor is chosen here.
+    """
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+        self._process: subprocess.Popen[bytes] | None = None
+        self._used = False
+        self._seat: socket.socket | None = None
+        self._retirement: threading.Timer | None = None
+
+    def answer(self, job: Job) -> Answer:
+        """The grader's answer; one with nothing in it if this submission ended every grader it was given to.
+
+        Raises:
+            InternalError: no grader can be started here.
+        """
+        for _ in range(MAX_TRIES):
+            fresh = not self._used
+            answer = self._ask(job)
+            if answer is not None and answer.error is not None and not fresh:
+                # Perhaps the course was updated since this grader was started: a new one knows.
+                self.close()
+                answer = self._ask(job)
+            if answer is not None:
+                return answer
+            self.close()
+        return Answer()
+
+    def _ask(self, job: Job) -> Answer | None:
+        process = self._process or self._start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        self._used = True
+        too_long = threading.Timer(hang_s(self.config.timeout), process.kill)
+        too_long.daemon = True
+        too_long.start()
+        try:
+            with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
+                write_frame(process.stdin, job)
+            frame = read_frame(process.stdout)
+        finally:
+            too_long.cancel()
+        return None if frame is None else msgspec.msgpack.decode(frame, type=Answer)
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        number, self._seat = _take_seat()
+        process = self._process = start_grader(msgspec.structs.replace(self.config, processor=number))
+        assert process.stdout is not None
+        if read_frame(process.stdout) is None:
+            self.close()
+            raise InternalError(
+                "A grader process cannot start there.", help="The worker's log has what it printed."
+            )
+        return process
+
+    def close(self) -> None:
+        """End the process; the next job gets another one."""
+        process, self._process, self._used = self._process, None, False
+        if process is not None:
+            process.kill()  # its sandbox ends with it
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                with contextlib.suppress(OSError):
+                    if pipe is not None:
+                        pipe.close()
+        if self._seat is not None:
+            self._seat.close()
+            self._seat = None
+
+    def retire_later(self) -> None:
+        """End the process when nothing has come for it for a while."""
+        self._retirement = threading.Timer(IDLE_S, self._retire)
+        self._retirement.daemon = True
+        self._retirement.start()
+
+    def stay(self) -> None:
+        """Work has come."""
+        if self._retirement is not None:
+            self._retirement.cancel()
+
+    def _retire(self) -> None:
+        with _lock:
+            if self not in _idle:
+                return
+            _idle.remove(self)
+        self.close()
+
+
+def _take(config: Config) -> _WarmGrader:
+    """A grader for one thread of this worker, warm if there is one; those of another run are ended."""
+    with _lock:
+        others = [grader for grader in _idle if grader.config != config]
+        mine = [grader for grader in _idle if grader.config == config]
+        taken = mine.pop() if mine else _WarmGrader(config)
+        _idle[:] = mine
+    taken.stay()
+    for grader in others:
+        grader.stay()
+        grader.close()
+    return taken
+
+
+def _give_back(grader: _WarmGrader) -> None:
+    with _lock:
+        _idle.append(grader)
+    grader.retire_later()
+
+
+def _take_seat() -> tuple[int, socket.socket | None]:
+    """A number that no other grader on this machine has, by which it picks its processor.
+
+    Held by a name that the kernel gives back whatever ends this process; other systems than Linux do not
+    keep a process on one processor, so there the number says nothing.
+    """
+    if sys.platform != "linux":
+        return 0, None
+    for number in range(4096):
+        seat = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            seat.bind(f"\0course-grader-{os.getuid()}-{number}")
+        except OSError:
+            seat.close()
+        else:
+            return number, seat
+    return 0, None
+
+
+def dask_setup(_worker: object) -> None:
+    """Dask calls this in each worker of a local cluster: Ctrl-C is for the coordinator, which ends them."""
+    import signal
+
+    with contextlib.suppress(ValueError):  # not the main thread: then nothing was to be done
+        signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,124 @@
+"""Writes the pages of a class: one pass over the results, one student in memory at a time."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import re
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from course.grading.exports.cells import csv_bytes, write_bytes
+from course.grading.exports.html_report.class_page import class_page
+from course.grading.exports.html_report.index_page import index_page, index_row
+from course.grading.exports.html_report.markup import MARKER
+from course.grading.exports.html_report.student_page import student_page
+from course.grading.exports.html_report.tally import Tally
+from course.grading.exports.selection import ExportOptions, Written, select
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from course.grading.results import Effective, Results
+
+__all__ = ["write_html", "write_pages"]
+
+_PAGE = re.compile(r"[1-9][0-9]*\.html")
+
+
+def write_html(target: Path, results: Results, options: ExportOptions) -> Written:
+    """The page about the class, the list of students, and the students' pages beside it.
+
+    Args:
+        target: the page (``.html``), or the folder it goes into.
+
+    Raises:
+        UsageError: no such exercise.
+        MissingCapabilityError: students are missing in the roster, or a file cannot be written.
+    """
+    selection = select(results, options)
+    path = target if target.suffix.lower() in {".html", ".htm"} else target / "report.html"
+    paths = write_pages(path, results, selection.each(), selection.exercises)
+    selection.written.paths += paths
+    selection.written.notes.append(
+        "Pages in the folder students can be handed out, each to its student; the list of students is yours."
+    )
+    return selection.written
+
+
+def write_pages(
+    path: Path, results: Results, found: Iterable[Effective], exercises: Sequence[str]
+) -> list[Path]:
+    """Write everything.
+
+    Args:
+        path: of the page about the class; the rest lies beside it.
+        found: results ordered by student; what only an override is about may come at the end.
+        exercises: ids, in the order they are shown.
+
+    Returns:
+        What was written: the class page, the list of students as a page and as a table, the folder of pages.
+
+    Raises:
+        MissingCapabilityError: a file cannot be written.
+    """
+    noted = {item.id: item for item in results.exercises()}
+    order = {name: at for at, name in enumerate(exercises)}
+    numbers = {student: at for at, student in enumerate(results.students(), 1)}
+    links = {student: f"students/{at}.html" for student, at in numbers.items()}
+    folder = path.parent / "students"
+    tally = Tally(noted[name] for name in exercises)
+    rows = {}
+    for student, group in _by_student(results, found):
+        mine = sorted(group, key=lambda effective: order[effective.exercise])
+        tally.take(mine)
+        place = numbers[student]
+        write_bytes(folder / f"{place}.html", _encoded(student_page(results, student, mine)))
+        by_exercise = {effective.exercise: effective for effective in mine}
+        rows[student] = index_row(results, student, place, links[student], by_exercise, exercises)
+    written = sorted(rows, key=numbers.__getitem__)
+    listed, table = path.with_name("students.html"), path.with_name("students.csv")
+    chosen = [noted[name] for name in exercises]
+    shown = [rows[student] for student in written]
+    write_bytes(listed, _encoded(index_page(results, shown, chosen, quote(path.name))))
+    write_bytes(table, csv_bytes(("page", "student", "name", "email"), _table(results, written, links)))
+    write_bytes(path, _encoded(class_page(results, tally, links, quote(listed.name))))
+    _remove_others(folder, {f"{numbers[student]}.html" for student in written})
+    return [path, listed, table, folder]
+
+
+def _by_student(results: Results, found: Iterable[Effective]) -> Iterator[tuple[str, list[Effective]]]:
+    """Everything of one student together.
+
+    Whoever has an override may have a result at the end, where nothing was handed in, so these wait for it.
+    """
+    held: dict[str, list[Effective]] = {override.student: [] for override in results.book.overrides()}
+    for student, group in itertools.groupby(found, key=lambda effective: effective.student):
+        if student in held:
+            held[student] += group
+        else:
+            yield student, list(group)
+    yield from ((student, group) for student, group in held.items() if group)
+
+
+def _table(results: Results, students: Iterable[str], links: dict[str, str]) -> Iterator[list[str]]:
+    for student in students:
+        person = results.person(student)
+        yield [links[student], student, *((person.name, person.email) if person else ("", ""))]
+
+
+def _remove_others(folder: Path, written: set[str]) -> None:
+    """Pages of an earlier class: their numbers may stand for others now."""
+    if not folder.is_dir():
+        return
+    for path in folder.iterdir():
+        if _PAGE.fullmatch(path.name) and path.name not in written:
+            with contextlib.suppress(OSError), path.open("rb") as handle:
+                ours = handle.read(len(MARKER)) == MARKER.encode()
+                if ours:
+                    path.unlink()
+
+
+def _encoded(page: str) -> bytes:
+    return page.encode("utf-8")

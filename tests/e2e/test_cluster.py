@@ -1,0 +1,279 @@
+"""A class on a Dask cluster: the scores of one machine, whatever happens to the workers."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.grading.batch import BatchOptions
+from course.grading.cluster.coordinator import grade_on
+from course.grading.cluster.worker import grade_batch
+from course.grading.gradebook import Gradebook
+from course.grading.intake import read_class
+from course.grading.run import RunOptions, grade_class
+from course.grading.session import grader_version
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.grading.results import Effective
+
+ROOT = Path(__file__).resolve().parents[2]
+MINI = ROOT / "tests" / "fixtures" / "mini_course"
+SOLUTION = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+WRONG = b"\ndef double(x):\n    return x\n"
+POISON = b"# whoever grades this dies\n"
+
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.skipif(
+        any(importlib.util.find_spec(name) is None for name in ("distributed", "cryptography")),
+        reason="needs the extra `cluster`: distributed and cryptography are not installed",
+    ),
+    pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux"),
+    # Dask closes some sockets and event loops of its own late.
+    pytest.mark.filterwarnings("default::ResourceWarning"),
+    pytest.mark.filterwarnings("default::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+def make_class(folder: Path, students: int) -> None:
+    """Every third student is wrong about one function."""
+    for number in range(students):
+        place = folder / f"student-{number:03}"
+        place.mkdir(parents=True)
+        (place / "doubling.py").write_bytes(SOLUTION + WRONG * (number % 3 == 0) + b"# %d\n" % number)
+
+
+def scores(out: Path) -> dict[str, Any]:
+    """Score, and status and points of every check, by student."""
+    with Gradebook(out / "gradebook.sqlite") as book:
+        return {
+            result.key.student: (
+                result.verdict.state,
+                result.verdict.score,
+                [(check.id, check.status, check.points) for check in result.verdict.checks],
+            )
+            for result in book.results()
+        }
+
+
+def children(parent: int, what: str) -> list[int]:
+    """The processes that ``parent`` started and whose command line holds ``what``."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            if int(fields[1]) == parent and what.encode() in (entry / "cmdline").read_bytes():
+                found.append(int(entry.name))
+    return found
+
+
+def dask_workers(parent: int) -> list[int]:
+    return children(parent, "spawn_main")
+
+
+@pytest.fixture
+def catalog(monkeypatch: pytest.MonkeyPatch) -> Catalog:
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+    path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+    monkeypatch.setenv("PYTHONPATH", path)
+    return Catalog()
+
+
+def on_cluster(
+    folder: Path, out: Path, catalog: Catalog, options: RunOptions, *, kill_at: int = -1
+) -> list[str]:
+    """Grade on two workers; one is killed when so many results are in. Returns who was reported."""
+    from course.grading.cluster.connect import local_cluster
+
+    reported: list[str] = []
+
+    def report(result: Effective, *_: object) -> None:
+        reported.append(result.student)
+        if len(reported) == kill_at:
+            os.kill(dask_workers(os.getpid())[0], signal.SIGKILL)
+
+    with local_cluster(2, catalog) as grade:
+        grade_class(folder, out, catalog, options, report, grade=grade)
+    assert not dask_workers(os.getpid()), "nothing is left running"
+    return reported
+
+
+def test_a_cluster_scores_as_one_machine_does_even_if_a_worker_is_killed(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    students = 60
+    make_class(tmp_path / "class", students)
+    options = RunOptions(exercises=("doubling",), at_least="L1", seed=3)
+    grade_class(tmp_path / "class", tmp_path / "local", catalog, options, lambda *_: None)
+    due = scores(tmp_path / "local")
+    assert len(due) == students
+    for name, kill_at in (("undisturbed", -1), ("disturbed", 5)):
+        reported = on_cluster(tmp_path / "class", tmp_path / name, catalog, options, kill_at=kill_at)
+        assert sorted(reported) == sorted(due), "each is reported once"
+        assert scores(tmp_path / name) == due
+
+
+def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Path, catalog: Catalog) -> None:
+    """A death that no grader process can keep from its worker: a machine that runs out of memory."""
+    from course.grading.cluster.connect import DaskWorkers, start_cluster
+
+    def deadly(payload: bytes) -> bytes:
+        import os
+        import signal
+
+        if b"whoever grades this dies" in payload:
+            os.kill(os.getpid(), signal.SIGKILL)
+        answer: bytes = grade_batch(payload)
+        return answer
+
+    make_class(tmp_path / "class", 12)
+    with (tmp_path / "class" / "student-004" / "doubling.py").open("ab") as file:
+        file.write(POISON)
+    doubling = catalog.exercise("doubling")
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    with contextlib.ExitStack() as stack:
+        workers = DaskWorkers(start_cluster(stack, 2), deadly)
+        found = {
+            graded.entry.student: graded.verdict
+            for graded in grade_on(
+                workers, entries, BatchOptions(at_least="L1"), lambda it: grader_version(it, catalog)
+            )
+        }
+    assert len(found) == 12
+    poisoned = found.pop("student-004")
+    assert (poisoned.state, poisoned.error and poisoned.error.code) == ("grader_error", "worker_died")
+    assert {verdict.state for verdict in found.values()} == {"graded"}
+
+
+def command(*words: object) -> list[str]:
+    run = [sys.executable, "-m", "course", "grade", "run", *map(str, words)]
+    return [*run, "--exercise", "doubling", "--plain", "--isolation", "process"]
+
+
+def left_running(marker: str) -> list[str]:
+    """Processes of one test, which must end by themselves."""
+    deadline = time.monotonic() + 30
+    while True:
+        left = []
+        for entry in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if marker.encode() in (entry / "environ").read_bytes():
+                    left.append((entry / "cmdline").read_text("utf-8", "replace"))
+        if not left or time.monotonic() > deadline:
+            return left
+        time.sleep(0.2)
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
+def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
+    tmp_path: Path, catalog: Catalog, sign: signal.Signals
+) -> None:
+    """Ctrl-C reaches every process of the terminal, the workers too; kill -9 the coordinator alone."""
+    students = 300
+    make_class(tmp_path / "class", students)
+    environment = {**os.environ, "MARKER": str(tmp_path)}
+    out = tmp_path / "out"
+    run = command(tmp_path / "class", "--out", out, "--local-cluster", 2, "--seed", 9)
+    with subprocess.Popen(
+        run,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        first = process.stdout.readline()
+        assert "student-" in first
+        if sign is signal.SIGINT:
+            os.killpg(process.pid, sign)
+        else:
+            process.kill()
+        words = process.stderr.read()
+        process.stdout.read()
+    assert process.returncode == (130 if sign is signal.SIGINT else -sign)
+    assert not left_running(str(tmp_path))
+    if sign is signal.SIGINT:
+        assert words.strip() == "Interrupted; what was done is kept.", words
+    done = len(scores(out))
+    assert 0 < done < students
+    again = subprocess.run([*run, "--resume"], env=environment, capture_output=True, text=True, check=False)
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.count("/300 student") == students - done
+    assert len(scores(out)) == students
+
+
+@contextlib.contextmanager
+def scheduler_and_worker(environment: dict[str, str]) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
+    """A Dask scheduler and one worker with a nanny, started as an instructor would start them."""
+    started = []
+    try:
+        dask = [sys.executable, "-P", "-m", "distributed.cli.dask_scheduler"]
+        plain = {"env": environment, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
+        scheduler = subprocess.Popen(
+            [*dask, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"],
+            **plain,  # type: ignore[call-overload]
+        )
+        started.append(scheduler)
+        line = next(line for line in scheduler.stderr if "Scheduler at:" in line)
+        address = line.split()[-1]
+        plain["stderr"] = subprocess.DEVNULL
+        worker = [sys.executable, "-P", "-m", "distributed.cli.dask_worker", address]
+        started.append(
+            subprocess.Popen([*worker, "--nthreads", "2", "--no-dashboard"], **plain)  # type: ignore[call-overload]
+        )
+        yield address, started
+    finally:
+        for process in reversed(started):
+            process.terminate()
+        for process in started:
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            if process.stderr:
+                process.stderr.close()
+
+
+def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, catalog: Catalog) -> None:
+    make_class(tmp_path / "class", 300)
+    environment = {**os.environ, "MARKER": str(tmp_path)}
+    options = RunOptions(exercises=("doubling",), seed=3)
+    from course.errors import MissingCapabilityError
+    from course.grading.cluster.connect import remote_cluster
+
+    with scheduler_and_worker(environment) as (address, (scheduler, _)):
+
+        def report(*_: object) -> None:
+            if scheduler.poll() is None:
+                scheduler.kill()
+                scheduler.wait()
+
+        with (
+            pytest.raises(MissingCapabilityError, match="scheduler is gone"),
+            remote_cluster(address, catalog) as grade,
+        ):
+            grade_class(tmp_path / "class", tmp_path / "out", catalog, options, report, grade=grade)
+    done = len(scores(tmp_path / "out"))
+    assert 0 < done < 300
+    with scheduler_and_worker(environment) as (address, _), remote_cluster(address, catalog) as grade:
+        again = RunOptions(exercises=("doubling",), resume=True)
+        summary = grade_class(
+            tmp_path / "class", tmp_path / "out", catalog, again, lambda *_: None, grade=grade
+        )
+    assert (summary.already, summary.states["graded"]) == (done, 300)
+    assert not left_running(str(tmp_path))

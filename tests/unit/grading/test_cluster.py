@@ -1,0 +1,474 @@
+"""The cluster's parts without a cluster: who gets what, what crosses the wire, what a worker makes of it."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import pickletools
+import shutil
+import signal
+import threading
+import time
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import pytest
+
+from course.cli.app import run as course
+from course.errors import CourseError, MissingCapabilityError, UsageError
+from course.grading.batch import MAX_TRIES, BatchOptions, Graded
+from course.grading.cluster import connect, coordinator, worker
+from course.grading.cluster.coordinator import Lost, grade_on
+from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, decode_batch, encode
+from course.grading.grader import Answer, Job
+from course.grading.intake import Entry
+from course.grading.session import Submission, grader_version
+from course.grading.verdict import Problem, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+    from course.grading.cluster.coordinator import Outcome
+    from course.grading.session import GradingSession
+
+ROOT = Path(__file__).resolve().parents[3]
+MINI = ROOT / "tests" / "fixtures" / "mini_course"
+POISON = b"poison"
+DEADLY_CHECK = """
+
+@pytest.mark.task("double")
+@pytest.mark.points(1)
+def test_deadly(submission):
+    \"\"\"Ends the grader if three doubled is 81\"\"\"
+    import os
+    import signal
+
+    if submission.call("double", 3) == 81:
+        os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def perfect(job: Job) -> Answer:
+    return Answer(
+        Verdict(
+            exercise=job.exercise, scope="full", state="graded", score=10.0, max_score=10.0, passed=True,
+            checks=(), isolation="L3",
+        )
+    )  # fmt: skip
+
+
+class FakeWorkers:
+    """Workers in a thread, all in step: a round is everything that was sent before it began.
+
+    Args:
+        places: how many batches they take at once.
+        deadly: whether a batch takes its worker with it.
+        together: whether all batches of a round are then lost, as if one process graded them all.
+    """
+
+    def __init__(
+        self,
+        places: int = 2,
+        *,
+        answer: Callable[[Job], Answer] = perfect,
+        deadly: Callable[[Batch], bool] = lambda _: False,
+        together: bool = False,
+        deaths: int = 1,
+    ) -> None:
+        self._places = places
+        self._answer = answer
+        self._deadly = deadly
+        self._together = together
+        self._deaths = deaths
+        self.rounds: list[list[Batch]] = []
+        self._sent: list[tuple[Batch, Callable[[Outcome], None]]] = []
+        self._lock = threading.Lock()
+        self._timer: threading.Timer | None = None
+
+    def places(self) -> int:
+        return self._places
+
+    def send(self, payload: bytes, done: Callable[[Outcome], None]) -> None:
+        batch = decode_batch(payload)
+        assert batch is not None
+        with self._lock:
+            self._sent.append((batch, done))
+            if self._timer is None:
+                self._timer = threading.Timer(0.01, self._round)
+                self._timer.start()
+
+    def _round(self) -> None:
+        with self._lock:
+            now, self._sent, self._timer = self._sent, [], None
+        self.rounds.append([batch for batch, _ in now])
+        dead = [self._deadly(batch) for batch, _ in now]
+        for (batch, done), mine in zip(now, dead, strict=True):
+            if mine or (self._together and any(dead)):
+                done(Lost(self._deaths))
+            else:
+                done(encode(Answers(FORMAT, "there", tuple(map(self._answer, batch.jobs)))))
+
+
+def entries_of(exercise: Exercise, count: int, special: dict[int, bytes] | None = None) -> list[Entry]:
+    special = special or {}
+    return [
+        Entry(f"s{number:03}", exercise, Submission({"doubling.py": special.get(number, b"# %d" % number)}))
+        for number in range(count)
+    ]
+
+
+def grade(workers: Any, entries: list[Entry], **more: Any) -> list[Graded]:
+    return list(grade_on(workers, iter(entries), BatchOptions(seed=5), lambda _: "v1", **more))
+
+
+def is_poison(batch: Batch) -> bool:
+    return any(POISON in content for job in batch.jobs for content in job.files.values())
+
+
+def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling: Exercise) -> None:
+    entries = entries_of(doubling, 100)
+    entries[3] = Entry("s003", doubling, problem=Problem("no_file", "There is none."))
+    entries[4] = Entry("s004", doubling)  # not handed in
+    workers = FakeWorkers(3)
+    found = grade(workers, entries)
+    assert sorted(item.entry.student for item in found) == [
+        entry.student for entry in entries if entry.student != "s004"
+    ]
+    states = {item.entry.student: item.verdict.state for item in found}
+    assert states.pop("s003") == "ungradable"
+    assert set(states.values()) == {"graded"}
+    sizes = [[len(batch.jobs) for batch in batches] for batches in workers.rounds]
+    assert max(map(len, sizes)) <= 3
+    assert sizes[0][0] == 8
+    assert sizes[-1][-1] == 1
+    assert {(batch.seed, job.version) for row in workers.rounds for batch in row for job in batch.jobs} == {
+        (5, "v1")
+    }
+
+
+def test_large_submissions_travel_in_small_batches(doubling: Exercise) -> None:
+    workers = FakeWorkers(1)
+    grade(workers, entries_of(doubling, 20, dict.fromkeys(range(20), b"#" * 400_000)))
+    assert max(len(batch.jobs) for row in workers.rounds for batch in row) == 2
+
+
+def test_a_batch_lost_with_its_worker_is_graded_elsewhere(doubling: Exercise) -> None:
+    lost: list[Batch] = []
+
+    def deadly(batch: Batch) -> bool:
+        if not lost and len(batch.jobs) > 1:
+            lost.append(batch)
+            return True
+        return False
+
+    found = grade(FakeWorkers(2, deadly=deadly), entries_of(doubling, 40))
+    assert lost
+    assert {item.verdict.state for item in found} == {"graded"}
+    assert len(found) == 40
+
+
+@pytest.mark.parametrize(("deaths", "lives"), [(1, MAX_TRIES), (4, 2)])
+def test_a_submission_that_ends_every_worker_is_recorded_and_nobody_else(
+    doubling: Exercise, deaths: int, lives: int
+) -> None:
+    """``deaths``: how many workers a scheduler tries by itself before it says that a batch is lost."""
+    workers = FakeWorkers(2, deadly=is_poison, deaths=deaths)
+    found = {
+        item.entry.student: item.verdict for item in grade(workers, entries_of(doubling, 40, {7: POISON}))
+    }
+    assert len(found) == 40
+    poisoned = found.pop("s007")
+    assert poisoned.error is not None
+    assert (poisoned.state, poisoned.error.code) == ("grader_error", "worker_died")
+    assert {verdict.state for verdict in found.values()} == {"graded"}
+    alone = [row for row in workers.rounds if is_poison(row[0]) and len(row[0].jobs) == 1]
+    given = [batch for row in workers.rounds for batch in row if is_poison(batch) and len(batch.jobs) == 1]
+    assert len(given) == lives
+    assert len(alone[-1]) == 1, "before it is blamed, it is graded while nothing else is"
+
+
+def test_who_is_graded_beside_a_deadly_submission_is_not_blamed(doubling: Exercise) -> None:
+    """One process with four threads: each death takes three others with it."""
+    workers = FakeWorkers(4, deadly=is_poison, together=True)
+    entries = entries_of(doubling, 60, {7: POISON, 8: POISON + b"2"})
+    found = {item.entry.student: item.verdict.state for item in grade(workers, entries)}
+    assert {student for student, state in found.items() if state == "grader_error"} == {"s007", "s008"}
+    assert len(found) == 60
+
+
+def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise) -> None:
+    entries = entries_of(doubling, 4)
+
+    def answer(job: Job) -> Answer:
+        if job.files["doubling.py"] == b"# 0":
+            return perfect(job)
+        return worker.version_mismatch("Other graders")
+
+    grading = grade_on(FakeWorkers(1, answer=answer), iter(entries), BatchOptions(), lambda _: "v1")
+    assert next(grading).entry.student == "s000"
+    with pytest.raises(CourseError, match="Worker on there: Other graders") as raised:
+        next(grading)
+    assert (raised.value.code, raised.value.exit_code) == ("version_mismatch", 4)
+
+
+def test_a_submission_no_grader_survived_is_our_fault(doubling: Exercise) -> None:
+    (found,) = grade(FakeWorkers(1, answer=lambda _: Answer()), entries_of(doubling, 1))
+    assert found.verdict.error is not None
+    assert (found.verdict.state, found.verdict.error.code) == ("grader_error", "grader_died")
+
+
+def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(
+    doubling: Exercise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(coordinator, "_TICK_S", 0.01)
+
+    class Nobody:
+        def places(self) -> int:
+            return 0
+
+        def send(self, _payload: bytes, _done: Callable[[Outcome], None]) -> None:
+            pass
+
+    with pytest.raises(MissingCapabilityError, match="no workers left"):
+        grade(Nobody(), entries_of(doubling, 2), patience_s=0.05)
+
+
+def test_messages_of_another_format_are_refused_and_not_half_understood() -> None:
+    batch = Batch(FORMAT, None, "L2", 1.0, 0, ())
+    assert decode_batch(encode(batch)) == batch
+    newer = msgspec.structs.replace(batch, format=FORMAT + 1)
+    for payload in (encode(newer), b"", b"\xc1", msgspec.msgpack.encode({"format": FORMAT})):
+        assert decode_batch(payload) is None
+        assert decode_answers(payload) is None
+        reply = decode_answers(worker.grade_batch(payload))
+        assert reply is not None
+        (answer,) = reply.answers
+        assert answer.error is not None
+        assert answer.error.code == "version_mismatch"
+
+
+def test_nothing_is_pickled_but_the_name_of_a_function_and_bytes() -> None:
+    sent: list[tuple[Any, ...]] = []
+
+    class Future:
+        def add_done_callback(self, _: object) -> None:
+            pass
+
+    class Client:
+        def submit(self, *args: Any, **_: Any) -> Future:
+            sent.append(args)
+            return Future()
+
+    connect.DaskWorkers(Client()).send(b"payload", lambda _: None)
+    ((function, payload),) = sent
+    assert type(payload) is bytes
+    names = [op.name for op, _, _ in pickletools.genops(pickle.dumps((function, payload)))]
+    assert names.count("STACK_GLOBAL") == 1
+    assert not {"REDUCE", "BUILD", "NEWOBJ", "NEWOBJ_EX", "INST", "OBJ"} & set(names)
+    assert pickle.loads(pickle.dumps(function)) is worker.grade_batch
+
+
+def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -> None:
+    pytest.importorskip("distributed", reason="needs the extra `cluster`")
+    from distributed import KilledWorker
+
+    class Future:
+        def __init__(self, status: str, error: BaseException | None = None, value: Any = None) -> None:
+            self.status, self._error, self._value = status, error, value
+
+        def exception(self) -> BaseException | None:
+            return self._error
+
+        def result(self) -> Any:
+            return self._value
+
+    seen: list[Any] = []
+
+    class Client:
+        def submit(self, *_: Any, **__: Any) -> Any:
+            return self
+
+        def add_done_callback(self, call: Callable[[Any], None]) -> None:
+            call(self.future)
+
+        future: Future
+
+    client = Client()
+    killed = KilledWorker("key", None, 3)  # type: ignore[arg-type]
+    absent = RuntimeError("while reading the graph")
+    absent.__cause__ = ModuleNotFoundError("No module named 'course'")
+    for client.future in (
+        Future("finished", value=b"x"), Future("error", killed), Future("cancelled"), Future("lost"),
+        Future("error", absent), Future("error", ZeroDivisionError("1/0")),
+    ):  # fmt: skip
+        connect.DaskWorkers(client).send(b"", seen.append)
+    assert seen[:2] == [b"x", Lost(4)]
+    codes = [error.code for error in seen[2:]]
+    assert codes == ["no_scheduler", "no_scheduler", "version_mismatch", "internal"]
+
+
+# -- a worker, with a real grader process -----------------------------------------------------------------
+
+
+@pytest.fixture
+def at_work(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Answers]]:
+    """Has this process do what a Dask worker does, on the miniature course."""
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+
+    def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
+        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, level, "L1", 5.0, 0, tuple(jobs)))))
+        assert reply is not None
+        return reply
+
+    yield answers
+    for grader in list(worker._idle):
+        grader.stay()
+        grader.close()
+    worker._idle.clear()
+
+
+def test_a_worker_scores_as_a_session_does_and_keeps_its_grader_warm(
+    at_work: Callable[..., Answers], session: GradingSession, catalog: Catalog, solution: bytes
+) -> None:
+    version = grader_version(session.exercise, catalog)
+    sources = [solution, solution + b"\ndef double(x):\n    return x\n", b"def ("]
+    due = [session.grade(Submission({"doubling.py": source})) for source in sources]
+    processes = set()
+    for source, verdict in zip(sources, due, strict=True):
+        (answer,) = at_work([Job("doubling", {"doubling.py": source}, version)]).answers
+        assert answer.verdict is not None
+        assert (answer.verdict.state, answer.verdict.score) == (verdict.state, verdict.score)
+        (grader,) = worker._idle
+        assert grader._process is not None
+        processes.add(grader._process.pid)
+    assert len(processes) == 1
+
+
+def test_a_worker_with_other_graders_refuses_before_it_grades(
+    at_work: Callable[..., Answers], solution: bytes
+) -> None:
+    for exercise in ("doubling", "unheard-of"):
+        jobs = [Job(exercise, {"doubling.py": solution}, "0123456789abcdef")] * 2
+        (answer,) = at_work(jobs).answers
+        assert answer.verdict is None
+        assert answer.error is not None
+        assert (answer.error.code, answer.exit_code) == ("version_mismatch", 4)
+        assert "0123456789abcdef" in answer.error.message
+
+
+def test_a_submission_that_ends_three_graders_costs_its_worker_nothing(
+    at_work: Callable[..., Answers], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes
+) -> None:
+    """The deadly thing is a hidden check: student's code has no grader within its reach."""
+    shutil.copytree(MINI, tmp_path / "course")
+    checks = tmp_path / "course" / "graders" / "doubling" / "checks.py"
+    with checks.open("a", encoding="utf-8") as file:
+        file.write(DEADLY_CHECK)
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    started: list[int] = []
+    start = worker.start_grader
+    monkeypatch.setattr(worker, "start_grader", lambda config: (started.append(1), start(config))[1])
+    deadly = solution + b"\ndef double(x):\n    return 81\n"
+    first, second = at_work(
+        [Job("doubling", {"doubling.py": deadly}), Job("doubling", {"doubling.py": solution})]
+    ).answers
+    assert (first.verdict, first.error) == (None, None)
+    assert second.verdict is not None
+    assert second.verdict.state == "graded"
+    assert len(started) == MAX_TRIES + 1
+
+
+def test_a_grader_that_died_between_batches_is_replaced(
+    at_work: Callable[..., Answers], solution: bytes
+) -> None:
+    job = Job("doubling", {"doubling.py": solution})
+    at_work([job])
+    (grader,) = worker._idle
+    assert grader._process is not None
+    os.kill(grader._process.pid, signal.SIGKILL)
+    grader._process.wait()
+    (answer,) = at_work([job]).answers
+    assert answer.verdict is not None
+    assert answer.verdict.state == "graded"
+
+
+def test_a_grader_without_work_ends_by_itself(
+    at_work: Callable[..., Answers], solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "IDLE_S", 0.05)
+    at_work([Job("doubling", {"doubling.py": solution})])
+    deadline = time.monotonic() + 20
+    while worker._idle and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not worker._idle
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
+def test_graders_on_one_machine_take_different_processors() -> None:
+    one, first = worker._take_seat()
+    two, second = worker._take_seat()
+    assert first is not None
+    assert second is not None
+    assert one != two
+    first.close()
+    again, third = worker._take_seat()
+    assert again == one
+    for seat in (second, third):
+        assert seat is not None
+        seat.close()
+
+
+# -- the command --------------------------------------------------------------------------------------------
+
+
+def test_without_dask_the_command_that_installs_it_is_said(
+    catalog: Catalog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connect.importlib.util, "find_spec", lambda _: None)
+    with pytest.raises(MissingCapabilityError, match="distributed and cryptography") as raised:
+        connect.local_cluster(2, catalog)
+    assert "pip install 'distributed>=" in raised.value.help
+
+
+def test_the_extra_names_what_the_code_asks_for() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+    assert sorted(connect._WANTED.values()) == sorted(extras["cluster"])
+
+
+def test_a_cluster_of_others_does_not_run_unprotected_submissions(
+    catalog: Catalog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connect, "_needs_dask", lambda: None)
+    cluster = connect.remote_cluster("tls://nowhere.invalid:1", catalog)
+    with cluster, pytest.raises(UsageError, match="whole cluster"):
+        next(cluster(iter(()), BatchOptions(at_least="L1")))
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--local-cluster", "2", "--scheduler", "tls://x:1"], "two clusters"),
+        (["--local-cluster", "2", "-j", "2"], "-j is for a run without a cluster"),
+        (["--scheduler", "tls://x:1", "-j", "2"], "-j is for a run without a cluster"),
+    ],
+)
+def test_ways_of_grading_exclude_each_other(
+    words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert course(["grade", "run", str(tmp_path), "--out", str(out), *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_scheduler_that_is_not_there_is_said(catalog: Catalog, tmp_path: Path) -> None:
+    pytest.importorskip("distributed", reason="needs the extra `cluster`")
+    pytest.importorskip("cryptography", reason="needs the extra `cluster`")
+    cluster = connect.remote_cluster(str(tmp_path / "scheduler.json"), catalog)
+    with cluster, pytest.raises(MissingCapabilityError, match="No Dask scheduler answers") as raised:
+        next(cluster(iter(()), BatchOptions()))
+    assert raised.value.code == "no_scheduler"

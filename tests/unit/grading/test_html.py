@@ -1,0 +1,388 @@
+"""The class page, the list of students and the pages to hand out."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import dataclasses
+import hashlib
+import io
+import re
+import statistics
+from typing import TYPE_CHECKING
+
+import msgspec
+import pytest
+
+from course.errors import MissingCapabilityError
+from course.grading.exports.cells import number, safe_cell, spelled_out
+from course.grading.exports.formats import export
+from course.grading.exports.html_report.class_page import class_page
+from course.grading.exports.html_report.markup import Html, prose, script, tag, text
+from course.grading.exports.html_report.tally import MOST_ROWS, Tally
+from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook import Key, Override, Result, SubmittedAt
+from course.grading.results import Results
+from course.grading.roster import Person, Roster
+from course.grading.run import open_results
+from course.grading.verdict import Problem, Status
+from tests.unit.grading.made import (
+    BROKEN,
+    HALF,
+    HOSTILE,
+    REFUSED,
+    RIGHT,
+    SECRET,
+    WRONG,
+    check,
+    digest,
+    key,
+    make_book,
+    verdict,
+)
+from tests.unit.grading.pages import faults, read_page
+from tests.unit.grading.test_results import DUE, POLICY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+#: Names of one sort more: longer than any screen, from right to left, markup inside markup.
+NAMES = [*HOSTILE, "y" * 10_000, "אבי כהן", "محمد", "</bdi><b>bold", '" onclick="x', "&lt;", "`code`"]
+SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
+ALL = ExportOptions()
+
+
+def quiz_verdict(right: int):
+    """Five questions, so many of them right; ``expected`` is the key, which no page needs."""
+    checks = [
+        msgspec.structs.replace(
+            check(f"question-{at}", Status.PASS if at < right else Status.FAIL, points=1.0),
+            task="quiz",
+            input={"seed": 3, "variant": "secret-variant"},
+            expected="secret-key",
+            actual="chosen-id",
+        )
+        for at in range(5)
+    ]
+    made = verdict(*checks, exercise="quiz")
+    return msgspec.structs.replace(made, max_score=5.0, passed=right >= 4, isolation="")
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class with every name, every outcome, a quiz, overrides and people who are late."""
+    from course.grading.gradebook import GradedExercise
+
+    folder = tmp_path_factory.mktemp("html")
+    verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(NAMES)}
+    verdicts |= {"late": RIGHT, "set": HALF, "broken": BROKEN, "wrong": WRONG}
+    with make_book(folder, verdicts) as book:
+        book.set_exercises([GradedExercise("quiz", "Quiz", 5.0, 0.8, 1_000_000)])
+        for at, name in enumerate(NAMES[:6]):
+            book.add(Result(key(name, "quiz"), quiz_verdict(at)))
+        book.add_override(Override("set", "doubling", 8.25, 'said "=1+1", <b>then</b> left\nearly'))
+        book.add_override(Override("set", "halving", 1.5, "shown at the board"))
+        book.add_override(Override("nothing handed in", "doubling", 3.0, "on paper"))
+        book.add_times(
+            [SubmittedAt("late", "doubling", digest("late"), "gradescope", DUE.timestamp() + 2 * 86_400)]
+        )
+        book.set_meta(late_policy=POLICY)
+    with open_results(folder, writing=True):
+        pass  # what lies beside a gradebook is written at the end of whatever changes it
+    return folder
+
+
+@pytest.fixture
+def results(out: Path):
+    with open_results(out) as opened:
+        yield opened
+
+
+def places(out: Path) -> dict[str, str]:
+    """Name as a cell of the index -> file of the page."""
+    content = (out / "students.csv").read_text("utf-8-sig")
+    rows = csv.DictReader(io.StringIO(content, newline=""), strict=True)
+    return {row["student"]: row["page"] for row in rows}
+
+
+def test_every_page_is_sound_whatever_the_names(out: Path) -> None:
+    pages = {path: read_page(path) for path in [out / "report.html", *(out / "students").iterdir()]}
+    pages[out / "students.html"] = read_page(out / "students.html")
+    assert len(pages) == len(NAMES) + 5 + 2
+    for path, page in pages.items():
+        assert faults(page, scripted=path.parent == out) == [], path.name
+        assert all(line.isprintable() for line in page.source.split("\n")), path.name
+    assert {path.name for path in (out / "students").iterdir()} == {
+        f"{at}.html" for at in range(1, len(NAMES) + 6)
+    }
+
+
+def test_a_name_is_shown_as_text_on_the_page_of_its_own(out: Path) -> None:
+    found = places(out)
+    assert len(found) == len(NAMES) + 5
+    listed = read_page(out / "students.html").text
+    for name in NAMES:
+        shown = spelled_out(name if len(name) <= 120 else name[:120] + "…")
+        page = read_page(out / found[safe_cell(name)])
+        assert shown in page.pieces, ascii(name[:40])
+        assert shown in listed
+        assert len(page.source) < 30_000
+
+
+def test_nobody_reads_another_name(out: Path) -> None:
+    found = places(out)
+    names = ["late", "set", "broken", "wrong", "é漢字", "O'Neil", "אבי כהן", "nothing handed in"]
+    for mine in names:
+        page = read_page(out / found[mine])
+        text_of = " ".join(page.pieces)
+        marks = {"é漢字", "O'Neil", "אבי כהן", "Ada\\u202eevoL"} - {mine}
+        assert not [name for name in marks if name in text_of], mine
+        assert not [link for link in page.all("a") if not str(link["href"]).startswith("#")], mine
+
+
+def test_what_is_handed_out_has_nothing_hidden(out: Path) -> None:
+    found = places(out)
+    for name, path in found.items():
+        if name == "wrong":
+            continue  # fails a public check, whose values students see at home
+        source = (out / path).read_text("utf-8")
+        assert not [secret for secret in [*SECRETS, "secret-key", "secret-variant"] if secret in source], name
+    assert SECRETS[0] in (out / found["wrong"]).read_text("utf-8")
+    half = read_page(out / found[safe_cell("+1")]).text
+    assert "It is not twice the number." in half
+    assert "Add it to itself." in half
+    assert "SQUARES" in half
+    assert "hidden check" in half
+    broken = read_page(out / found["broken"]).text
+    assert "ZeroDivisionError" not in broken
+    assert "It will be graded again." in broken
+    for name in ("report.html", "students.html"):
+        assert not [secret for secret in SECRETS[:2] if secret in read_page(out / name).tables], name
+
+
+def test_hidden_values_stay_out_of_a_failing_hidden_check_next_to_a_public_one(tmp_path: Path) -> None:
+    hidden = msgspec.structs.replace(
+        check("kept_back", Status.ERROR, hidden=True),
+        input={"x": 77.125}, expected=154.25, traceback="line 3, called with 77.125", stdout="saw 77.125",
+    )  # fmt: skip
+    with make_book(tmp_path, {"ada": verdict(check("shown", Status.FAIL), hidden)}) as book:
+        export(Results(book), "html", tmp_path, None, ALL)
+    source = (tmp_path / "students" / "1.html").read_text("utf-8")
+    assert "1234.57 m" in source or "1234.5678" in source
+    assert "77.125" not in source
+    assert "154.25" not in source
+
+
+def test_every_number_of_the_class_page_is_the_gradebooks(out: Path, results: Results) -> None:
+    page = read_page(out / "report.html")
+    everything = list(results.all())
+    titles = {item.id: item.title for item in results.exercises()}
+    rows = {row[0].split()[0]: row[1:] for row in page.tables["Students with a result, and their scores"][1:]}
+    for name, title in titles.items():
+        mine = [item for item in everything if item.exercise == name]
+        graded = [
+            item for item in mine
+            if item.score is not None and (item.verdict.state == "graded" or item.override is not None)
+        ]  # fmt: skip
+        scores = [item.score for item in graded if item.score is not None]
+        passed = sum(item.passed for item in mine)
+        assert rows[title] == [
+            f"{len(graded)} of {len(mine)}",
+            f"{passed} {passed / len(graded):.0%}".replace("%", " %"),
+            f"{statistics.median(scores):.2f}".rstrip("0").rstrip("."),
+            f"{statistics.mean(scores):.2f}".rstrip("0").rstrip("."),
+        ]
+    facts = re.findall(r"<dt>(?:<a[^>]*>)?([^<]+)(?:</a>)?</dt><dd>(\d+)</dd>", page.source)
+    ungraded = [item for item in everything if item.verdict.state == "ungradable" and item.override is None]
+    assert dict(facts) == {
+        "students": str(len(results.students())),
+        "results with a grade": str(len(everything) - len(ungraded) - 1),
+        "of them pass": str(sum(item.passed for item in everything)),
+        "could not be graded": str(len(ungraded)),
+        "faults of the grader": "1",
+        "scores set by hand": "3",
+        "handed in late": "1",
+    }
+
+
+def test_pass_rates_and_diagnoses_are_counted_per_student(out: Path, results: Results) -> None:
+    page = read_page(out / "report.html")
+    graded = [item.verdict for item in results.all(exercise="doubling") if item.verdict.state == "graded"]
+    right = sum(item.checks[1].status is Status.PASS for item in graded)
+    (row,) = [row for row in page.tables["Pass rate per check"] if "kept_back" in row[0]]
+    share = f"{right / len(graded):.0%}".replace("%", " %")
+    assert row[1] == f"{share} {right} of {len(graded)}; {len(graded) - right} failed"
+    mistaken = sum(any(found.diagnosis == "SQUARES" for found in item.checks) for item in graded)
+    (squares,) = [
+        row for row in page.tables["Mistakes by the number of students who made them"] if "Doubling" in row[0]
+    ]
+    assert squares[0].startswith("SQUARES")
+    assert "Add it to itself." in squares[0]
+    assert squares[1].startswith(f"{mistaken} of {len(graded)},")
+    tasks = page.tables["Tasks by the share of their points that the class reached, the smallest first"]
+    points = sum(item.score for item in graded) / sum(item.max_score for item in graded)
+    assert tasks[1][1].startswith(f"{points:.0%}".replace("%", " %"))
+    assert len(tasks) == 2, "questions of the quiz are no tasks"
+    questions = page.tables["Right answers per question"]
+    assert [row[1].split(" % ")[1] for row in questions[1:]] == [
+        "5 of 6; 1 wrong", "4 of 6; 2 wrong", "3 of 6; 3 wrong", "2 of 6; 4 wrong", "1 of 6; 5 wrong",
+    ]  # fmt: skip
+
+
+def test_the_histogram_counts_everybody_with_a_grade_once(out: Path, results: Results) -> None:
+    drawings = [str(item.get("aria-label")) for item in read_page(out / "report.html").all("svg")]
+    for name in ("doubling", "quiz"):
+        scored = [
+            item for item in results.all(exercise=name)
+            if item.score is not None and (item.verdict.state == "graded" or item.override is not None)
+        ]  # fmt: skip
+        counts = [
+            sum(int(count) for count in re.findall(r": (\d+)", drawing))
+            for drawing in drawings
+            if drawing.startswith(f"Scores of {len(scored)} students")
+        ]
+        assert counts == [len(scored)]
+
+
+def test_the_list_of_students_has_the_scores_of_the_table(out: Path) -> None:
+    rows = read_page(out / "students.html").tables["Students and their scores"]
+    assert rows[0] == ["Page", "Student", "Doubling, of 10", "Halving, of 2", "Quiz, of 5"]
+    content = (out / "grades.csv").read_text("utf-8-sig")
+    table = list(csv.DictReader(io.StringIO(content, newline=""), strict=True))
+    found = places(out)
+    for line in table:
+        row = rows[int(re.findall(r"\d+", found[line["student"]])[0])]
+        shown = row[{"doubling": 2, "halving": 3, "quiz": 4}[line["exercise"]]]
+        assert shown.split()[0] == (line["score"] or "none"), line
+    by_name = {row[1]: row for row in rows}
+    assert by_name["late"][2] == "8 late"
+    assert by_name["set"][2:] == ["8.25 by hand", "1.5 by hand", "–"]
+    assert by_name["broken"][2] == "none fault of the grader"
+
+
+def test_a_page_has_the_score_that_counts_and_why(out: Path) -> None:
+    found = places(out)
+    late = " ".join(read_page(out / found["late"]).pieces)
+    assert "8 of 10 points : passed, 2 points off for lateness." in late
+    assert "Handed in 2 d after the deadline; 2 points were taken off 10." in late
+    by_hand = read_page(out / found["set"])
+    words = " ".join(by_hand.pieces)
+    assert [row[:2] for row in by_hand.tables["Scores"][1:]] == [
+        ["Doubling", "8.25 of 10"],
+        ["Halving", "1.5 of 2"],
+    ]
+    assert "The checks gave 5." in words
+    assert 'said "=1+1", <b>then</b> left\nearly' in words
+    assert "shown at the board" in words
+    assert "on paper" in read_page(out / found["nothing handed in"]).text
+    refused = read_page(out / found[safe_cell("-1")]).text
+    assert "could not be graded" in refused
+    assert "There is none." in refused
+
+
+def test_overrides_late_and_who_could_not_be_graded_are_listed(out: Path, results: Results) -> None:
+    page = read_page(out / "report.html")
+    refused = [item for item in results.all() if item.verdict.error is not None and item.result.number]
+    assert len(page.tables["One by one"]) == len(refused) + 1
+    reasons = {row[0]: row for row in page.tables["By reason"][1:]}
+    assert reasons["check_failed"][1:] == ["fault of the grader", "Doubling", "1"]
+    assert reasons["no_file"][3] == str(len(refused) - 1)
+    by_hand = page.tables["Scores that count in place of the graders'"]
+    assert sorted(row[1] for row in by_hand[1:]) == [
+        "1.5 of 2 checks: –", "3 of 10 checks: –", "8.25 of 10 checks: 5",
+    ]  # fmt: skip
+    assert page.tables["Handed in late, the latest first"][1:] == [["late Doubling", "2 d", "2", "8"]]
+    graded = sum(item.verdict.isolation == "L3" for item in results.all())
+    assert page.tables["Protection level that submissions ran at"][1][:2] == ["L3", str(graded)]
+    assert "course grade rerun" in page.text
+
+
+def test_the_policy_lets_one_script_run_and_loads_nothing(out: Path) -> None:
+    digest_ = base64.b64encode(hashlib.sha256(script().encode()).digest()).decode()
+    for name, scripted in (("report.html", True), ("students.html", True), ("students/1.html", False)):
+        page = read_page(out / name)
+        (policy,) = [
+            item["content"]
+            for item in page.all("meta")
+            if item.get("http-equiv") == "Content-Security-Policy"
+        ]
+        assert str(policy).startswith("default-src 'none'; style-src 'unsafe-inline'; img-src data:")
+        assert (f"script-src 'sha256-{digest_}'" in str(policy)) is scripted
+        assert (f"<script>{script()}</script>" in page.source) is scripted
+        assert not re.search(r"https?:|//[a-z]|url\(|@import", page.source.replace(script(), ""))
+
+
+def test_a_second_export_leaves_no_page_of_somebody_else(tmp_path: Path) -> None:
+    with make_book(tmp_path, {f"student {at}": RIGHT for at in range(4)}) as book:
+        export(Results(book), "html", tmp_path, None, ALL)
+        mine = tmp_path / "students" / "77.html"
+        mine.write_text("<p>not ours</p>")
+        before = {path.name for path in (tmp_path / "students").iterdir()}
+        results = Results(book)
+        results.roster = Roster((Person("student 0"), Person("student 1")))
+        partial = dataclasses.replace(ALL, partial=True)
+        with pytest.raises(MissingCapabilityError):
+            export(results, "html", tmp_path, None, ALL)
+        written = export(results, "html", tmp_path, None, partial)
+    assert before == {"1.html", "2.html", "3.html", "4.html", "77.html"}
+    assert {path.name for path in (tmp_path / "students").iterdir()} == {"1.html", "2.html", "77.html"}
+    assert (written.rows, written.unmatched) == (2, ["student 2", "student 3"])
+
+
+def test_the_page_goes_where_it_is_told(tmp_path: Path) -> None:
+    with make_book(tmp_path / "out", {"ada": RIGHT}) as book:
+        results = Results(book)
+        results.roster = Roster((Person("ada", "Ada Lovelace", "ada@x.org", section="B"),))
+        export(results, "html", tmp_path / "out", tmp_path / "web" / "spring.html", ALL)
+        export(results, "html", tmp_path / "out", tmp_path / "folder", ALL)
+    assert {path.name for path in (tmp_path / "web").iterdir()} == {
+        "spring.html", "students.html", "students.csv", "students",
+    }  # fmt: skip
+    assert {"href": "spring.html"} in read_page(tmp_path / "web" / "students.html").all("a")
+    assert (tmp_path / "folder" / "report.html").is_file()
+    page = read_page(tmp_path / "web" / "students" / "1.html")
+    assert page.pieces[page.pieces.index("Skip to the content") + 1] == "Ada Lovelace"
+    row = read_page(tmp_path / "web" / "students.html").tables["Students and their scores"][1]
+    assert row == ["1", "ada", "Ada Lovelace", "B", "10", "–"]
+
+
+def test_the_class_page_does_not_grow_with_the_class(tmp_path: Path) -> None:
+    """Lists stop; whoever is not listed is counted."""
+    sizes = {}
+    with make_book(tmp_path, {}) as book:
+        book.set_meta(late_policy=POLICY)
+        results = Results(book)
+        for students in (MOST_ROWS, 10 * MOST_ROWS):
+            tally = Tally(results.exercises())
+            links = {}
+            for at in range(students):
+                name = f"student {at:05}"
+                links[name] = f"students/{at + 1}.html"
+                made = (REFUSED, HALF)[at % 2]
+                found = results.of(
+                    Result(Key(name, "doubling", "", "v1", 7), made, "2026-12-02T10:00:00Z", 1, 1)
+                )
+                by_hand = Override(name, "doubling", 5.0, "oral") if at % 4 == 1 else None
+                tally.take([dataclasses.replace(found, late=60.0 * at if at % 2 else None, override=by_hand)])
+            sizes[students] = len(class_page(results, tally, links, "students.html"))
+            assert tally.troubled.count == students // 2
+            assert tally.late.shown[0].student == f"student {students - 1:05}"
+    assert sizes[10 * MOST_ROWS] < 2 * sizes[MOST_ROWS] < 500_000
+
+
+def test_a_class_of_which_nothing_could_be_graded_has_a_page(tmp_path: Path) -> None:
+    problem = Problem("syntax_error", "line 1: `def f(:`", "Look `there`.")
+    with make_book(tmp_path, {"ada": verdict(state="ungradable", error=problem)}) as book:
+        export(Results(book), "html", tmp_path, None, ALL)
+    page = read_page(tmp_path / "report.html")
+    assert faults(page, scripted=True) == []
+    assert "No submission could be graded." in page.text
+    assert "def f(:" in page.pieces
+
+
+def test_what_is_no_markup_becomes_none() -> None:
+    assert tag("p", "<b>", title='"&') == '<p title="&quot;&amp;">&lt;b&gt;</p>'
+    assert tag("p", Html("<b></b>"), hidden=True, id=None) == '<p hidden=""><b></b></p>'
+    assert text("a\u202eb\nc\x1b") == "a\\u202eb\nc\\x1b"
+    assert prose("use `a<b` or `") == "use <code>a&lt;b</code> or `"
+    assert number(None) == ""

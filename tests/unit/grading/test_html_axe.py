@@ -1,0 +1,137 @@
+"""The pages in a real browser: axe-core's rules, in light and dark, on a desk and on a phone."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import subprocess
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.grading.exports.formats import export
+from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook import GradedExercise, Override, Result, SubmittedAt
+from course.grading.results import Results
+from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, WRONG, digest, key, make_book
+from tests.unit.grading.test_html import quiz_verdict
+from tests.unit.grading.test_results import DUE, POLICY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+pytestmark = pytest.mark.soak
+
+#: Its rules change with its version: a newer one is tried on purpose, not by accident.
+_AXE = "axe-core@4.14.1"
+_FLAGS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+]  # fmt: skip
+_RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+_SCREENS = [(1280, "light"), (1280, "dark"), (390, "light")]
+_PAGES = ["report.html", "students.html", "students/1.html", "students/2.html", "students/3.html"]
+
+
+@pytest.fixture(scope="module")
+def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The source of axe-core, fetched by npm."""
+    npm = shutil.which("npm")
+    if npm is None:
+        pytest.skip("npm is missing: axe-core cannot be fetched")
+    folder = tmp_path_factory.mktemp("axe")
+    command = [npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", str(folder), _AXE]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        pytest.skip(f"npm could not fetch axe-core: {done.stderr.strip()[-200:]}")
+    return (folder / "node_modules" / "axe-core" / "axe.min.js").read_text("utf-8")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if chromium is None:
+        pytest.skip("Chromium is missing")
+    if importlib.util.find_spec("playwright") is None:
+        pytest.skip("playwright is missing: pip install 'physics-sim-course[dev]'")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=chromium, args=_FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("pages")
+    verdicts = {"0 wrong": WRONG, "1 late": RIGHT, "2 broken": BROKEN, "3 set": HALF}
+    verdicts |= {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(HOSTILE)}
+    # Sorted before everything else, so that the pages tried are these.
+    with make_book(out, {name: verdict for name, verdict in verdicts.items() if name[0].isdigit()}) as book:
+        for name in HOSTILE:
+            book.add(Result(key("x" + name), verdicts[name]))
+        book.set_exercises([GradedExercise("quiz", "Quiz", 5.0, 0.8, 1_000_000)])
+        book.add(Result(key("0 wrong", "quiz"), quiz_verdict(3)))
+        book.add_override(Override("3 set", "doubling", 8.25, "said <b>so</b>"))
+        at = DUE.timestamp() + 2 * 86_400
+        book.add_times([SubmittedAt("1 late", "doubling", digest("1 late"), "gradescope", at)])
+        book.set_meta(late_policy=POLICY)
+        export(Results(book), "html", out, None, ExportOptions())
+    return out
+
+
+@pytest.mark.parametrize("name", _PAGES)
+@pytest.mark.parametrize(("width", "scheme"), _SCREENS)
+def test_axe_finds_nothing(browser: Any, axe: str, folder: Path, name: str, width: int, scheme: str) -> None:
+    context = browser.new_context(
+        viewport={"width": width, "height": 900}, color_scheme=scheme, bypass_csp=True
+    )
+    page = context.new_page()
+    page.goto((folder / name).as_uri())
+    page.evaluate(axe)
+    run = "tags => axe.run(document, {runOnly: tags}).then(found => found)"
+    found = page.evaluate(run, _RULES)
+    context.close()
+    assert [
+        (item["id"], [node["html"][:120] for node in item["nodes"][:3]]) for item in found["violations"]
+    ] == []
+    assert len(found["passes"]) > 10, "axe looked at something"
+
+
+@pytest.mark.parametrize("name", _PAGES)
+def test_a_page_asks_for_nothing_and_fits_a_phone(browser: Any, folder: Path, name: str) -> None:
+    """As it is, its policy in force: no message, no request beside the file, no sideways scrolling."""
+    context = browser.new_context(viewport={"width": 390, "height": 844})
+    page = context.new_page()
+    said: list[str] = []
+    asked: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto((folder / name).as_uri())
+    width = page.evaluate("document.documentElement.scrollWidth")
+    context.close()
+    assert said == []
+    assert asked == [(folder / name).as_uri()]
+    assert width == 390
+
+
+def test_tables_sort_and_filter_by_keyboard(browser: Any, folder: Path) -> None:
+    page = browser.new_page()
+    page.goto((folder / "students.html").as_uri())
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
+    page.get_by_role("button", name="Doubling").focus()
+    page.keyboard.press("Enter")
+    column = "rows => rows.map(row => row.cells[2].dataset.value).filter(Boolean).map(Number)"
+    scores = page.eval_on_selector_all("tbody tr", column)
+    assert scores == sorted(scores)
+    assert page.locator("th[aria-sort=ascending]").inner_text().startswith("Doubling")
+    page.keyboard.press("Space")
+    assert page.eval_on_selector_all("tbody tr", column) == sorted(scores, reverse=True)
+    page.get_by_label("Show rows with").fill("LATE")
+    assert page.get_by_role("status").inner_text() == f"1 of {len(HOSTILE) + 4} shown"
+    assert page.locator("tbody tr:visible").count() == 1
+    page.close()

@@ -44,6 +44,12 @@ class Teller:
         """The latest lines, oldest first."""
         return list(self._told)
 
+    def forget(self) -> None:
+        """The world was reset: what was told belongs to a run that is over."""
+        self._last.clear()
+        self._told.clear()
+        self._left = 0
+
     def tell(self, events: Sequence[Event], now: float) -> list[dict[str, Any]]:
         """Lines for those of the events that are worth one.
 

@@ -15,7 +15,7 @@ from course.sandbox.views.terminal_words import KEYS, setting
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from course.sandbox.views.story import Experiment
+    from course.sandbox.views.story import Experiment, Teller
     from course.sandbox.views.terminal_hand import Pointer
     from course.sandbox.views.terminal_lines import Canvas
     from course.sandbox.views.terminal_scene import Stage
@@ -39,6 +39,7 @@ class Controls(App[None]):
     _stopped: bool
     _panel_wanted: bool
     _lines: list[str]
+    _teller: Teller
 
     BINDINGS: ClassVar[list[Any]] = [
         Binding("ctrl+c,ctrl+q", "quit", priority=True, show=False),
@@ -106,6 +107,7 @@ class Controls(App[None]):
         self.world.reset()
         self.experiment.again()
         self.stage.forget()
+        self._teller.forget()
         self._lines = []
         if self._stopped:
             self.world.paused = self._stopped = False

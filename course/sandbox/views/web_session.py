@@ -217,6 +217,8 @@ class Session:
                 self._holder = None
                 world.reset()
                 self.experiment.again()
+                self._teller.forget()
+                self._tell({"type": "events", "events": [], "anew": True})
             case messages.Guess(value):
                 self.experiment.answer(value)
                 world.paused = False

@@ -13,6 +13,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from course.sandbox.loading import choose, scene_ids
+from course.sandbox.views.terminal_camera import Camera
+from course.sandbox.world import World
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -92,6 +96,13 @@ class Terminal:
             time.sleep(0.1)
         pytest.fail(f"{words} did not appear on:\n{self.screen()}")
 
+    def wait_until_gone(self, word: str, seconds: float = 40.0) -> None:
+        """Until the screen no longer shows this."""
+        until = time.monotonic() + seconds
+        while word in (screen := self.screen()):
+            assert time.monotonic() < until, screen
+            time.sleep(0.1)
+
     def state(self) -> str:
         """What a program may leave behind: the other screen, mouse reports, a hidden cursor."""
         return self._tmux("display", "-p", "#{alternate_on} #{mouse_any_flag} #{cursor_flag}").strip()
@@ -101,8 +112,13 @@ class Terminal:
 
 
 @pytest.fixture
-def terminal(tmp_path: Path) -> Iterator[Terminal]:
-    made = Terminal(tmp_path, (80, 24))
+def size() -> tuple[int, int]:
+    return 80, 24
+
+
+@pytest.fixture
+def terminal(tmp_path: Path, size: tuple[int, int]) -> Iterator[Terminal]:
+    made = Terminal(tmp_path, size)
     with contextlib.closing(made):
         yield made
 
@@ -167,4 +183,69 @@ def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(termin
     terminal.wait("RuntimeError: broken on purpose")
     time.sleep(0.5)
     assert terminal.screen().count("\nRuntimeError: broken on purpose") == 1
+    assert terminal.state() == CLEAN
+
+
+def highest(scene: str, size: tuple[int, int]) -> tuple[str, int, int, tuple[int, int]]:
+    """The body without wheels that starts highest, its column and row, and a cell to pull it to."""
+    chosen = choose(scene)
+    world = World(chosen.scene, chosen.settings)
+    # What stands around the picture: a line above; events and keys below; numbers beside it.
+    columns, rows = {(80, 24): (50, 19), (160, 50): (114, 40)}[size]
+    camera = Camera.fit(chosen.scene.view, columns, rows)
+    shot = world.snapshot()
+    y, x, name = max(
+        (y, x, part.name)
+        for part, x, y in zip(world.parts, shot.x.tolist(), shot.y.tolist(), strict=True)
+        if not part.fixed and part.wheels is None
+    )
+    column, row = camera.cell(x, y)
+    to = column + (6 if column < columns // 2 else -6), max(0, row - 2)
+    return name, column + 1, row + 2, (to[0] + 1, to[1] + 2)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (160, 50)], ids=["80x24", "160x50"])
+@pytest.mark.parametrize("scene", scene_ids())
+def test_every_scene_opens_runs_answers_the_mouse_and_leaves_the_terminal_clean(
+    terminal: Terminal, scene: str, size: tuple[int, int]
+):
+    name, column, row, to = highest(scene, size)
+
+    def keep(what: str) -> None:
+        (Path(terminal._socket).parent / f"{scene}-{size[0]}-{what}.txt").write_text(terminal.screen())
+
+    terminal.start(scene)
+    terminal.wait("Before it runs")
+    keep("asked")
+    terminal.keys("Escape")
+    terminal.wait_until_gone("Before it runs")
+    # Slowly, so that no run is over before the next key arrives.
+    terminal.keys("-", "-", "-", "-", "-", "Space")
+    terminal.wait("paused")
+    keep("stopped")
+    terminal.keys("r")
+    terminal.wait("From the start")
+
+    # While time stands still, a drag aims.
+    terminal.mouse(0, column, row)
+    terminal.mouse(32, (column + to[0]) // 2, row)
+    terminal.mouse(32, *to)
+    terminal.wait("aiming")
+    keep("aiming")
+    terminal.mouse(0, *to, "m")
+    terminal.wait(f"{name} will fly at")
+    terminal.keys("Space")
+    terminal.wait("thrown")
+
+    # While it runs, a hand holds.
+    terminal.keys("r")
+    terminal.wait("From the start")
+    terminal.mouse(0, column, row)
+    terminal.mouse(32, *to)
+    terminal.wait(f"{name}: ")
+    terminal.wait("Let go to throw it")
+    terminal.mouse(0, *to, "m")
+    keep("held")
+    terminal.keys("q")
+    terminal.wait("left after")
     assert terminal.state() == CLEAN

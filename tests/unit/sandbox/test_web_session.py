@@ -268,6 +268,17 @@ def test_a_run_that_somebody_meddled_with_is_not_compared(request_: dict) -> Non
     assert len(kept) == 1
 
 
+def test_a_reset_ends_the_story_of_the_run_before() -> None:
+    made, page = make("head-on")
+    send(made, page, "pause", on=False)
+    watch(made, 1)
+    assert "meets" in json.dumps(of(told(page), "events"))
+    send(made, page, "reset")
+    assert [message for message in of(told(page), "events") if message.get("anew")]
+    _, late = join(made)
+    assert told(late)[0]["events"] == []
+
+
 def test_a_comparison_that_cannot_be_kept_is_still_shown() -> None:
     def full(_) -> None:
         raise MissingCapabilityError("The disk is full.")

@@ -409,7 +409,7 @@ class View {
     if (message.type === "scene") this.introduce(message);
     else if (message.type === "bodies") this.embody(message);
     else if (message.type === "status") this.status(message);
-    else if (message.type === "events") this.tell(message.events);
+    else if (message.type === "events") this.tell(message);
     else if (message.type === "error") this.say(message.message);
   }
 
@@ -491,7 +491,12 @@ class View {
 
   // -- words for everybody ------------------------------------------------------------------------
 
-  tell(events) {
+  tell({ events, anew }) {
+    if (anew) {
+      this.list.replaceChildren();
+      this.flashes = [];
+      this.unsaid = [];
+    }
     this.addLines(events);
     const now = performance.now();
     if (!this.still) {

@@ -1,0 +1,130 @@
+"""``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
+
+What is checked is the text of the cells that were run, not the objects in the kernel: the functions run again
+in a process of their own, so a check means the same here, in a terminal and in the grading run.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from course.errors import CourseError
+from course.notebooks.findings import CheckTable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.catalog.models import Exercise
+    from course.grading.verdict import CheckResult, Verdict
+    from course.notebooks.page import ReportPage
+
+__all__ = ["check", "register", "report", "typed_in"]
+
+
+def register(shell: Any) -> None:
+    """Make ``%course_check`` and ``%course_report`` known to an IPython shell."""
+
+    def course_check(line: str) -> CheckTable | None:
+        """Run the public checks: %course_check EXERCISE [FUNCTION]"""
+        words = line.split()
+        if not 1 <= len(words) <= 2:
+            _said("Write: %course_check EXERCISE [FUNCTION]")
+            return None
+        try:
+            return check(typed_in(shell), *words)
+        except CourseError as error:
+            _said(f"{error.message} {error.help}")
+            return None
+
+    def course_report(line: str) -> ReportPage | None:
+        """Show what your functions do on public data: %course_report EXERCISE"""
+        words = line.split()
+        if len(words) != 1:
+            _said("Write: %course_report EXERCISE")
+            return None
+        try:
+            return report(typed_in(shell), words[0])
+        except CourseError as error:
+            _said(f"{error.message} {error.help}")
+            return None
+
+    shell.register_magic_function(course_check, "line", "course_check")
+    shell.register_magic_function(course_report, "line", "course_report")
+
+
+def _said(text: str) -> None:
+    print(text)  # noqa: T201 - a cell's output is its screen
+
+
+def typed_in(shell: Any) -> list[str]:
+    """What was run in a shell so far, oldest first, without the cell that asks."""
+    return list(shell.history_manager.input_hist_raw[1:-1])
+
+
+def report(history: Sequence[str], exercise_id: str) -> ReportPage:
+    """What the functions that were run do on public data.
+
+    Args:
+        history: what was run, oldest first.
+
+    Raises:
+        NotFoundError: there is no such exercise, or it has nothing to show.
+        UngradableError: there is nothing to run yet, or it cannot be run.
+    """
+    from course.catalog.load import Catalog
+    from course.grading.report import report_of
+    from course.notebooks.page import ReportPage
+    from course.notebooks.typed import module_of
+
+    catalog = Catalog()
+    exercise = catalog.exercise(exercise_id)
+    module = module_of(history, exercise)
+    return ReportPage(report_of(exercise, catalog, {exercise.module: module.source}))
+
+
+def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> CheckTable:
+    """The public checks of an exercise, or of one of its functions, on the cells that were run.
+
+    Args:
+        history: what was run, oldest first.
+
+    Raises:
+        NotFoundError: there is no such exercise or function.
+        UngradableError: there is nothing to check yet.
+    """
+    from course.catalog.load import Catalog
+    from course.errors import NotFoundError
+    from course.grading.notebook_places import placed
+    from course.notebooks.typed import module_of
+
+    exercise = Catalog().exercise(exercise_id)
+    known = [one.id for one in exercise.task]
+    if task is not None and task not in known:
+        raise NotFoundError(
+            f"{exercise_id} has no function {task}.", help=f"It has: {', '.join(known)}.", code="no_such_task"
+        )
+    module = module_of(history, exercise)
+    return CheckTable(placed(_graded(exercise, module.source, task), module, exercise), task)
+
+
+def _graded(exercise: Exercise, source: bytes, task: str | None) -> Verdict:
+    """The verdict on a module; on the checks of one function only, if one is named."""
+    import msgspec
+
+    from course.catalog.load import Catalog
+    from course.grading.session import GradingSession, Submission
+
+    submission = Submission({exercise.module: source})
+    with GradingSession(exercise, Catalog(), scope="public") as session:
+        wanted = [check.id for check in session.checks if check.task == task]
+        if not wanted:
+            whole: Verdict = session.grade(submission)
+            return whole
+        found: dict[str, CheckResult] = {}
+        for name in wanted:
+            verdict: Verdict = session.grade(submission, only=name)
+            if verdict.state != "graded":
+                return verdict
+            found |= {check.id: check for check in verdict.checks}
+    checks = tuple(found[name] for name in wanted)
+    return msgspec.structs.replace(verdict, checks=checks)

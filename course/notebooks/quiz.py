@@ -1,0 +1,125 @@
+"""The quiz as a notebook: questions to read, cells to answer in, and an explanation of every option."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+from course.notebooks.cells import Cell, code, document, markdown
+from course.notebooks.lowering import escaped
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.catalog.load import Catalog
+    from course.quizzing.attempt import Marked, Result
+    from course.quizzing.bank import Posed
+
+__all__ = ["SEED", "Marks", "marked", "quiz_notebook"]
+
+#: The questions of a notebook never change by themselves; ``course quiz take`` draws others each time.
+SEED = 1
+
+_HEAD = """\
+# Quiz
+
+{mark}. Write the letter of your answer between the quotation marks, run every cell, and run the last one
+to see which were right and why. This is practice and is not recorded: `course quiz take` in a terminal asks
+other variants of the same questions and keeps the result."""
+
+
+def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
+    """The notebook file of the quiz, as ``seed`` asks it.
+
+    Raises:
+        NotFoundError: the course has no quiz.
+        ContentError: a question is wrong.
+    """
+    from course.quizzing.attempt import mark_sentence
+    from course.quizzing.bank import Bank
+
+    posed = Bank.of(catalog).pose(seed)
+    cells = [markdown(_HEAD.format(mark=mark_sentence(len(posed)))), code("answers = {}", role="quiz-setup")]
+    for number, question in enumerate(posed, 1):
+        cells += _question(number, len(posed), question)
+    cells.append(markdown("## Marks"))
+    cells.append(
+        code(f"from course.notebooks.quiz import marked\n\nmarked({seed}, answers)", role="quiz-marks")
+    )
+    return document(cells, kind="quiz", id="quiz", version=catalog.version, seed=seed)
+
+
+def _question(number: int, total: int, posed: Posed) -> list[Cell]:
+    choices = "\n".join(f"- **{choice.letter}.** {escaped(choice.text)}" for choice in posed.choices)
+    text = f"## Question {number} of {total}: {escaped(posed.title)}\n\n{escaped(posed.prompt)}\n\n{choices}"
+    answer = f'answers["{posed.question}"] = ""'
+    return [markdown(text), code(answer, role="quiz-answer", task=posed.question)]
+
+
+def marked(seed: int, answers: Mapping[str, str]) -> Marks | None:
+    """What a notebook's answers are worth, to be shown by Jupyter; None, said in words, until all are given.
+
+    Args:
+        answers: letters by question id.
+    """
+    from course.catalog.load import Catalog
+    from course.quizzing.attempt import mark
+    from course.quizzing.bank import LETTERS, Bank
+
+    posed = Bank.of(Catalog()).pose(seed)
+    for number, question in enumerate(posed, 1):
+        given = str(answers.get(question.question, "")).strip()
+        if question.choice(given) is None:
+            problem = f"is answered {given[:20]!r}" if given else "is not answered yet"
+            letters = f"{LETTERS[0]} to {LETTERS[len(question.choices) - 1]}"
+            advice = f"Write a letter from {letters} into its cell, and run both cells."
+            print(f"Question {number} {problem}. {advice}")  # noqa: T201 - a cell's output is its screen
+            return None
+    return Marks(mark(posed, {key: str(value).strip() for key, value in answers.items()}))
+
+
+class Marks:
+    """A scored attempt as Jupyter shows it: every option of what was missed, with its explanation."""
+
+    def __init__(self, result: Result) -> None:
+        self.result = result
+
+    @property
+    def summary(self) -> str:
+        """The score in a sentence."""
+        from course.quizzing.attempt import needed
+
+        verdict = "passed" if self.result.passed else "not passed"
+        total = self.result.total
+        return f"{self.result.score} of {total} right, {needed(total)} needed: {verdict}."
+
+    def __repr__(self) -> str:
+        lines = [self.summary]
+        for number, one in enumerate(self.result.marked, 1):
+            lines.append(f"{number}. {one.posed.title}: {'right' if one.right else 'missed'}")
+            lines += [f"   {label}: {text} {why}" for label, text, why in _told(one)]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        parts = [f"<p><b>{escape(self.summary)}</b></p>"]
+        for number, one in enumerate(self.result.marked, 1):
+            outcome = "✓ right" if one.right else "✗ missed"
+            told = "".join(
+                f"<li><b>{escape(label)}:</b> {escape(text)}<br><small>{escape(why)}</small></li>"
+                for label, text, why in _told(one)
+            )
+            parts.append(f"<p>{number}. <b>{escape(one.posed.title)}</b>: {outcome}</p><ul>{told}</ul>")
+        return "".join(parts)
+
+
+def _told(one: Marked) -> list[tuple[str, str, str]]:
+    """(what it is, the option, why) of each option worth showing."""
+    key = one.posed.key
+    told = [] if one.right else [("Your answer", one.chosen.text, one.chosen.explanation)]
+    told.append(("Right", key.text, key.explanation))
+    if not one.right:
+        rest = [
+            choice for choice in one.posed.choices if choice.letter not in (key.letter, one.chosen.letter)
+        ]
+        told += [(f"Not {choice.letter}", choice.text, choice.explanation) for choice in rest]
+    return told

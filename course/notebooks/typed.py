@@ -1,0 +1,56 @@
+"""What somebody has run in a notebook so far, as the module it stands for.
+
+A kernel knows every cell that was run, old versions included, in the order they were run. Of these only the
+newest counts: a cell is left out once all it defined has been defined again.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from course.grading.notebook_cells import CodeCell, typed_cell
+from course.grading.notebook_source import NotebookSource, source_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.catalog.models import Exercise
+
+__all__ = ["module_of"]
+
+_DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
+
+
+def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
+    """The module that the cells run so far stand for.
+
+    Args:
+        history: what was run, oldest first, magics included.
+
+    Raises:
+        UngradableError: none of the exercise's functions was run yet.
+    """
+    cells = [typed_cell(number, text) for number, text in enumerate(history, 1) if text.strip()]
+    kept: list[CodeCell] = []
+    later: set[str] = set()
+    for cell in reversed(cells):
+        names = _names(cell)
+        if names and names <= later:
+            continue
+        later |= names
+        kept.append(cell)
+    return replace(source_of(kept[::-1], exercise, "This notebook"), called="In [{}]")
+
+
+def _names(cell: CodeCell) -> set[str]:
+    """Functions and classes that a cell defines, or would if it were Python."""
+    if cell.tree is None:
+        return {first or second for first, second in _DEF.findall(cell.text)}
+    return {
+        node.name
+        for node in cell.tree.body
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+    }

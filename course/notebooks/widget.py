@@ -1,0 +1,111 @@
+"""The sandbox alive in a notebook: the world runs in the kernel, the page draws it as the web view does."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from pathlib import Path
+from typing import Any
+
+import anywidget
+
+import course.sandbox.views
+from course.sandbox.loading import choose
+from course.sandbox.views.web_session import Page, Session
+from course.sandbox.world import World
+
+__all__ = ["Sandbox"]
+
+_STATIC = Path(course.sandbox.views.__file__).parent / "static"
+#: A cell's output is no page of its own: what is above and below should stay in sight. JupyterLab lays lists
+#: of terms out in its own way.
+_HERE = """
+.sandbox { height: min(75vh, 44rem); }
+.sandbox :is(dt, dd) { float: none; width: auto; margin: 0; padding: 0; }
+.sandbox dt { font-weight: inherit; }
+"""
+#: Between two frames, in s: what a person does has to get through as well.
+_PAUSE = 0.02
+#: How long a page may take to draw a frame before it counts as gone, in s; it is asked again when it says
+#: anything.
+_GONE = 5.0
+
+
+class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
+    """A world to look at and to take hold of.
+
+    Args:
+        scene_id: see ``course sandbox list``, or the path of a scene of your own.
+        settings: the scene's parameters, and gravity, restitution, friction, step or iterations.
+
+    Raises:
+        NotFoundError: there is no such scene.
+        UsageError: a setting is unknown or out of range.
+    """
+
+    _esm = (_STATIC / "world.js").read_text("utf-8") + Path(__file__).with_suffix(".js").read_text("utf-8")
+    _css = (_STATIC / "style.css").read_text("utf-8") + _HERE
+
+    def __init__(self, scene_id: str, **settings: float) -> None:
+        super().__init__()
+        chosen = choose(scene_id, settings)
+        self.world = World(chosen.scene, chosen.settings)
+        self.session = Session(self.world, chosen)
+        self._page: Page | None = None
+        self._tasks: list[asyncio.Task[None]] = []
+        self._seen = asyncio.Event()
+        self._stalled = False
+        self.on_msg(self._hear)
+
+    def _hear(self, _: Any, message: Any, __: Any) -> None:
+        """Something that a page says."""
+        if self._page is not None and self._stalled:
+            self._page.watching, self._stalled = True, False
+        match message:
+            case {"kind": "hello"}:
+                self._leave()
+                self._join()
+            case {"kind": "bye"}:
+                self._leave()
+            case {"kind": "seen"}:
+                self._seen.set()
+            case {"kind": "request", "text": str(text)} if self._page is not None:
+                self.session.receive(self._page, text)
+
+    def _join(self) -> None:
+        """A page has come, or one that was there begins anew."""
+        self._page = self.session.join()
+        if self._page is not None:
+            self._tasks = [
+                asyncio.ensure_future(self.session.run()),
+                asyncio.ensure_future(self._speak(self._page)),
+            ]
+
+    def _leave(self) -> None:
+        for task in self._tasks:
+            task.cancel()
+        self._tasks = []
+        if self._page is not None:
+            self.session.leave(self._page)
+            self._page = None
+
+    async def _speak(self, page: Page) -> None:
+        """Hand on what the session says; a frame only once the one before it was drawn."""
+        while (data := await page.fetch()) is not None:
+            if isinstance(data, str):
+                self.send({"kind": "words", "text": data})
+                continue
+            self._seen.clear()
+            self.send({"kind": "numbers"}, [data])
+            try:
+                async with asyncio.timeout(_GONE):
+                    await self._seen.wait()
+            except TimeoutError:
+                page.watching, self._stalled = False, True
+            await asyncio.sleep(_PAUSE)
+
+    def close(self) -> None:
+        """End it, here and in every page."""
+        with contextlib.suppress(RuntimeError):  # the loop may have ended first
+            self._leave()
+        super().close()

@@ -1,0 +1,283 @@
+"""The notebooks in real JupyterLab, in a real browser without a network."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.sandbox.loading import choose
+from course.sandbox.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).resolve().parents[2]
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+MISSING = [name for name in ("jupyterlab", "nbclient", "ipykernel", "playwright") if find_spec(name) is None]
+#: In ms; a machine that runs other tests beside this one is slow to start a kernel.
+PATIENCE = 180_000
+FLAGS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    # Names that are not this machine's lead nowhere, so that whatever asks for the network fails here.
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+]  # fmt: skip
+
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.skipif(bool(MISSING), reason=f"the extra notebook is not installed: {', '.join(MISSING)}"),
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium"),
+]
+
+WRONG = """def explicit_euler_step(accel, t, q, v, h):
+    v_next = v + h * accel(t, q, v)
+    return q + h * v_next, v_next
+"""
+RIGHT = """def explicit_euler_step(accel, t, q, v, h):
+    return q + h * v, v + h * accel(t, q, v)
+"""
+
+
+@pytest.fixture(scope="module")
+def notebooks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with two notebooks as a student gets them, the lesson already run."""
+    folder = tmp_path_factory.mktemp("jupyter") / "notebooks"
+    course = [sys.executable, "-m", "course", "notebook", "build", "--out", str(folder)]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    for words in (["numerical-integration", "--executed"], ["integrators"], ["sandbox"]):
+        subprocess.run([*course, *words], check=True, env=environment, cwd=folder.parent)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address(notebooks: Path) -> Iterator[str]:
+    """JupyterLab on these notebooks, with settings and state of its own."""
+    home = notebooks.parent
+    settings = home / "settings" / "@jupyterlab" / "notebook-extension"
+    settings.mkdir(parents=True)
+    # Cells out of sight are in the page too, where the test can look at them.
+    (settings / "tracker.jupyterlab-settings").write_text('{"windowingMode": "none"}')
+    news = home / "settings" / "@jupyterlab" / "apputils-extension"
+    news.mkdir()
+    (news / "notification.jupyterlab-settings").write_text('{"checkForUpdates": false, "fetchNews": "false"}')
+    environment = os.environ | {
+        "HOME": str(home),
+        "PYTHONPATH": str(ROOT),
+        "JUPYTER_RUNTIME_DIR": str(home / "runtime"),
+        "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
+        "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
+    }
+    command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1"]
+    command += ["--port=0", "--IdentityProvider.token=", f"--ServerApp.root_dir={notebooks}"]
+    log = (home / "server.log").open("wb")
+    server = subprocess.Popen(command, env=environment, cwd=home, stdout=log, stderr=log)
+    try:
+        yield _started(home / "runtime", server)
+    finally:
+        server.terminate()
+        server.wait(60)
+        log.close()
+
+
+def _started(runtime: Path, server: subprocess.Popen[bytes]) -> str:
+    deadline = time.monotonic() + PATIENCE / 1000
+    while time.monotonic() < deadline and server.poll() is None:
+        for file in runtime.glob("jpserver-*.json"):
+            try:
+                return str(json.loads(file.read_text())["url"]).rstrip("/")
+            except ValueError:
+                pass  # still being written
+        time.sleep(0.2)
+    pytest.fail(f"JupyterLab did not start: {(runtime.parent / 'server.log').read_text()[-2000:]}")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def open_notebook(browser: Any, address: str, tmp_path: Path) -> Iterator[Any]:
+    """Opens a notebook in a page of its own; pictures of the pages go to COURSE_SCREENSHOTS if it is set."""
+    pages = []
+
+    def open_(path: str) -> Any:
+        page = browser.new_page(viewport={"width": 1300, "height": 1000})
+        page.set_default_timeout(PATIENCE)
+        page.goto(f"{address}/lab/workspaces/w{len(pages)}-{tmp_path.name}/tree/{path}")
+        page.wait_for_selector(".jp-Notebook .jp-Cell")
+        page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]", state="attached")
+        pages.append(page)
+        return page
+
+    yield open_
+    shots = Path(os.environ.get("COURSE_SCREENSHOTS", tmp_path))
+    for number, page in enumerate(pages):
+        page.screenshot(path=shots / f"{tmp_path.name}-{number}.png")
+        page.close()
+
+
+def shot(page: Any, name: str, selector: str) -> None:
+    """Keep a picture of a part of the page for whoever wants to look."""
+    folder = os.environ.get("COURSE_SCREENSHOTS")
+    if folder:
+        page.locator(selector).first.scroll_into_view_if_needed()
+        page.screenshot(path=Path(folder) / f"{name}.png")
+
+
+def test_a_lesson_opens_with_figures_diagrams_and_mathematics(open_notebook: Any) -> None:
+    page = open_notebook("lessons/numerical-integration.ipynb")
+    page.wait_for_selector(".jp-MarkdownOutput mjx-container", state="attached")
+    page.wait_for_selector(".jp-RenderedMermaid img, .jp-RenderedMermaid svg", state="attached")
+    shown = page.evaluate(
+        """() => ({
+            figures: [...document.querySelectorAll('.jp-OutputArea-output img')].map(i => i.naturalWidth),
+            diagrams: document.querySelectorAll('.jp-RenderedMermaid img, .jp-RenderedMermaid svg').length,
+            formulas: document.querySelectorAll('mjx-container').length,
+            wrong: document.querySelectorAll('mjx-merror, .jp-RenderedMermaid.jp-mod-warning').length,
+            boxes: document.querySelectorAll('.alert').length,
+            text: document.querySelector('.jp-Notebook').innerText,
+        })"""
+    )
+    for name, selector in (("figure", ".jp-OutputArea-output img"), ("diagram", ".jp-RenderedMermaid")):
+        shot(page, f"lesson-{name}", selector)
+    assert shown["figures"]
+    assert all(width > 500 for width in shown["figures"])
+    assert shown["diagrams"] >= 1
+    assert shown["formulas"] >= 5
+    assert shown["wrong"] == 0
+    assert shown["boxes"] >= 3
+    for stray in (":::", "{mermaid}", "$$", "```", "<div", "\\frac"):
+        assert stray not in shown["text"], stray
+
+
+def test_an_exercise_is_edited_until_its_check_passes(open_notebook: Any) -> None:
+    page = open_notebook("exercises/integrators.ipynb")
+    page.keyboard.press("Escape")
+    page.click("text=Run >> visible=true")
+    page.click("text=Run All Cells >> visible=true")
+    _wait_for_check(page, "not written yet")
+    shot(page, "exercise-unwritten", ".course-checks")
+    _write(page, WRONG)
+    _wait_for_check(page, "All 2 public checks", absent=True)
+    shot(page, "exercise-finding", ".course-checks")
+    assert "semi-implicit" in _check(page)
+    _write(page, RIGHT)
+    _wait_for_check(page, "public checks of explicit_euler_step pass")
+    shot(page, "exercise-pass", ".course-checks")
+
+
+def _check_cell(page: Any) -> Any:
+    return page.locator(".jp-CodeCell", has_text="%course_check integrators explicit_euler_step")
+
+
+def _check(page: Any) -> str:
+    return str(_check_cell(page).locator(".jp-OutputArea").inner_text())
+
+
+def _write(page: Any, text: str) -> None:
+    """Replace the function and run its cell and the check below it."""
+    cell = page.locator(".jp-CodeCell", has_text="def explicit_euler_step").first
+    cell.locator(".cm-content").click()
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text(text)
+    page.keyboard.press("Shift+Enter")
+    page.keyboard.press("Shift+Enter")
+
+
+def _wait_for_check(page: Any, text: str, *, absent: bool = False) -> None:
+    """Until the check's output shows a text, or, once it ran again, something else."""
+    if absent:
+        _check_cell(page).locator(".jp-OutputArea", has_text="EULER").wait_for()
+    else:
+        _check_cell(page).locator(".jp-OutputArea", has_text=text).first.wait_for()
+
+
+def test_the_sandbox_moves_and_a_body_can_be_dragged(open_notebook: Any) -> None:
+    pytest.importorskip("anywidget")
+    page = open_notebook("sandbox.ipynb")
+    _run(page, "from course.notebooks.sandbox import play")
+    _run(page, 'play("head-on")')
+    widget = page.locator(".sandbox")
+    canvas = widget.locator("canvas.world")
+    canvas.wait_for()
+    canvas.scroll_into_view_if_needed()
+    page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText === '0.00 s'")
+    page.wait_for_timeout(500)  # the bodies are drawn in the frame after
+    # The world waits for a guess, and while it stands, dragging sets a velocity of 2 m/s for each metre.
+    x, y = _start("head-on", "left-puck")
+    page.mouse.move(*_pixel(canvas, "head-on", x, y))
+    page.mouse.down()
+    page.mouse.move(*_pixel(canvas, "head-on", x, y + 0.5), steps=8)
+    shot(page, "sandbox-dragging", "canvas.world")
+    page.mouse.up()
+    widget.locator(".picked", has_text=re.compile(r"left puck, 1 kg: (0\.9|1\.0)")).wait_for()
+    assert widget.locator(".clock").inner_text() == "0.00 s"
+    widget.get_by_role("button", name="Just run").click()
+    page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== '0.00 s'")
+    page.wait_for_function("() => !document.querySelector('.sandbox .clock').innerText.startsWith('0')")
+    shot(page, "sandbox-after", "canvas.world")
+
+
+def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook: Any) -> None:
+    pytest.importorskip("anywidget")
+    page = open_notebook("sandbox.ipynb")
+    _run(page, "from course.notebooks.sandbox import play")
+    _run(page, 'play("newtons-cradle")')
+    canvas = page.locator(".sandbox canvas.world")
+    canvas.wait_for()
+    page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== ''")
+    cells = page.locator(".jp-Cell").count()
+    canvas.focus()
+    for key in ("n", "b", "x"):  # B and X would insert and cut cells
+        page.keyboard.press(key)
+    page.locator(".sandbox .events li").first.wait_for()
+    assert page.locator(".jp-Cell").count() == cells
+
+
+def _run(page: Any, text: str) -> None:
+    """Run the cell with this text; again if the kernel was not there yet."""
+    cell = page.locator(".jp-CodeCell", has_text=text).first
+    for _ in range(PATIENCE // 3000):
+        cell.locator(".cm-content").click()
+        page.keyboard.press("Shift+Enter")
+        for _ in range(15):
+            page.wait_for_timeout(200)
+            prompt = cell.locator(".jp-InputPrompt").inner_text()
+            if any(character.isdigit() for character in prompt):
+                return
+    pytest.fail(f"the cell with {text!r} never ran")
+
+
+def _start(scene_id: str, name: str) -> tuple[float, float]:
+    """Where a body is at the start."""
+    world = World(choose(scene_id).scene)
+    index = [part.name for part in world.parts].index(name)
+    shown = world.snapshot()
+    return float(shown.x[index]), float(shown.y[index])
+
+
+def _pixel(canvas: Any, scene_id: str, x: float, y: float) -> tuple[float, float]:
+    """Where a place of a scene is on the page."""
+    box = canvas.bounding_box()
+    left, bottom, right, top = choose(scene_id).scene.view
+    scale = min(box["width"] / (right - left), box["height"] / (top - bottom))
+    return (
+        box["x"] + box["width"] / 2 + (x - (left + right) / 2) * scale,
+        box["y"] + box["height"] / 2 - (y - (bottom + top) / 2) * scale,
+    )

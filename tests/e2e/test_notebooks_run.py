@@ -1,0 +1,76 @@
+"""Generated notebooks run from top to bottom in a fresh kernel, and give the lessons' own numbers."""
+
+from __future__ import annotations
+
+import json
+from importlib.util import find_spec
+from typing import Any
+
+import pytest
+
+from course.authoring.lesson_cells import as_written
+from course.catalog import blocks as b
+from course.catalog.load import Catalog
+from course.catalog.markdown import read_blocks
+from course.notebooks.build import generate
+from course.notebooks.execute import executed
+
+MISSING = [name for name in ("nbclient", "ipykernel") if find_spec(name) is None]
+
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.skipif(bool(MISSING), reason=f"the extra notebook is not installed: {', '.join(MISSING)}"),
+]
+
+CATALOG = Catalog()
+#: Makes a connection fail the cell that tries it.
+OFFLINE = """\
+import socket
+def _refused(*_, **__): raise OSError("a lesson asked for the network")
+socket.create_connection = socket.getaddrinfo = _refused
+"""
+
+
+def ran(kind: str, name: str, more: str = "") -> list[dict[str, Any]]:
+    """The cells of a notebook after a run; ``more`` is one more cell at its end."""
+    (one,) = [made for made in generate(CATALOG, [name]) if made.kind == kind]
+    notebook = json.loads(one.data)
+    for place, text in ((0, OFFLINE), (len(notebook["cells"]) + 1, more)):
+        extra = {"cell_type": "code", "id": f"extra-{place}", "metadata": {}, "source": text}
+        notebook["cells"].insert(place, extra | {"outputs": [], "execution_count": None})
+    cells: list[dict[str, Any]] = json.loads(executed(json.dumps(notebook).encode(), str(one.path)))["cells"]
+    return cells
+
+
+def printed(cell: dict[str, Any]) -> str:
+    return "".join("".join(one["text"]) for one in cell["outputs"] if one["output_type"] == "stream")
+
+
+@pytest.mark.parametrize("name", CATALOG.lesson_ids())
+def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name: str) -> None:
+    blocks = read_blocks(CATALOG.content.lessons / f"{name}.md")
+    values = [value for _, value in b.walk_inlines(blocks) if isinstance(value, b.Value)]
+    expressions = ", ".join(f"({value.expression})" for value in values)
+    plain = "lambda v: v if isinstance(v, str) else float(v)"
+    cells = ran("lesson", name, f"import json\nprint(json.dumps(list(map({plain}, [{expressions}]))))")
+    ours = [cell for cell in cells if cell["metadata"].get("course", {}).get("role") in ("lesson", "hidden")]
+    written = [block for block in b.walk_blocks(blocks) if isinstance(block, b.CodeCell)]
+    assert len(ours) == len(written)
+    for cell, block in zip(ours, written, strict=True):
+        assert printed(cell).removesuffix("\n") == (block.output or ""), block.line
+    for value, computed in zip(values, json.loads(printed(cells[-1])), strict=True):
+        shown = as_written(computed, value.text)
+        assert value.text.startswith(shown), (value.line, value.expression, shown)
+    figures = [cell for cell in cells if cell["metadata"].get("course", {}).get("role") == "figure"]
+    assert all("image/png" in cell["outputs"][0]["data"] for cell in figures)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [*(("exercise", name) for name in CATALOG.exercise_ids()), ("quiz", "quiz"), ("sandbox", "sandbox")],
+)
+def test_an_exercise_quiz_or_sandbox_runs(kind: str, name: str) -> None:
+    cells = ran(kind, name)
+    shown = [cell for cell in cells if cell.get("outputs")]
+    assert shown
+    assert not any(one["output_type"] == "error" for cell in shown for one in cell["outputs"])

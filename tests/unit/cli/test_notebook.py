@@ -1,0 +1,211 @@
+"""``course notebook``, and notebooks that are handed in."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+
+GOOD = "def double(x):\n    'RIGHT'"
+OTHER = "def doublings(x, n):\n    'RIGHT'"
+
+
+def write_into(path: Path, *texts: str) -> None:
+    """Put functions into the cells of a generated notebook, as somebody who works in Jupyter does."""
+    notebook = json.loads(path.read_text("utf-8"))
+    places = [c for c in notebook["cells"] if c["metadata"].get("course", {}).get("role") == "solution"]
+    for cell, text in zip(places, texts, strict=False):
+        cell["source"] = text
+        cell["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * 1000}]
+        cell["execution_count"] = 3
+    path.write_text(json.dumps(notebook), "utf-8")
+
+
+def test_build_outside_of_a_workspace_makes_folders(course, tmp_path):
+    ran = course("notebook", "build", "--json")
+    assert ran.code == 0
+    assert ran.json["schema"] == "course.notebook/1"
+    assert {file["action"] for file in ran.json["files"]} == {"written"}
+    assert {Path(file["path"]).relative_to(tmp_path).as_posix() for file in ran.json["files"]} == {
+        "notebooks/lessons/twice-as-much.ipynb",
+        "notebooks/lessons/half-as-much.ipynb",
+        "notebooks/exercises/doubling.ipynb",
+        "notebooks/exercises/halving.ipynb",
+        "notebooks/sandbox.ipynb",
+    }
+
+
+def test_in_a_workspace_an_exercise_lies_where_it_is_handed_in(course, workspace):
+    assert course("notebook", "build", "doubling").code == 0
+    assert (workspace / "doubling" / "doubling.ipynb").is_file()
+
+
+def test_build_and_update_keep_somebodys_work(course, workspace):
+    path = workspace / "doubling" / "doubling.ipynb"
+    course("notebook", "build", "doubling")
+    write_into(path, GOOD)
+    mine = path.read_bytes()
+    for command in ("build", "update"):
+        assert course("notebook", command, "doubling", "--json").json["files"][0]["action"] == "current"
+        assert path.read_bytes() == mine
+    older = json.loads(mine)
+    older["metadata"]["course"]["version"] = "0"
+    path.write_text(json.dumps(older))
+    (file,) = course("notebook", "update", "--json").json["files"]
+    assert file["action"] == "merged"
+    assert Path(file["backup"]["backup"]).read_text() == json.dumps(older)
+    assert GOOD in path.read_text("utf-8").encode().decode("unicode_escape")
+
+
+def test_where_merging_is_not_safe_the_newer_one_is_put_beside(course, workspace):
+    path = workspace / "doubling" / "doubling.ipynb"
+    path.write_text("{}")
+    ran = course("notebook", "build", "doubling")
+    assert "left as it is" in ran.out
+    assert "doubling/doubling.new.ipynb" in ran.out
+    assert path.read_text() == "{}"
+    assert json.loads((workspace / "doubling" / "doubling.new.ipynb").read_text())["nbformat"] == 4
+
+
+def test_update_with_nothing_there_says_what_writes_them(course, tmp_path):
+    ran = course("notebook", "update", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (5, "no_notebooks")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "error"),
+    [
+        (("build", "nothing"), 5, "notebook_not_found"),
+        (("build", "--format", "pdf"), 2, "unknown_format"),
+        (("build", "--format", "nbgrader", "--executed"), 2, "executed_nbgrader"),
+        (("check", "nothing.ipynb"), 5, "no_file"),
+        (("check", "."), 2, "not_a_file"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(course, tmp_path, words, code, error):
+    ran = course("notebook", *words, "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (code, error)
+
+
+def test_without_its_extra_executed_says_what_to_install(course, monkeypatch):
+    from course.notebooks import extra
+
+    monkeypatch.setattr(extra, "find_spec", lambda name: None)
+    ran = course("notebook", "build", "--executed", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (4, "missing_extra")
+    for requirement in ("jupyterlab>=4", "nbclient", "ipykernel", "anywidget"):
+        assert f"'{requirement}" in ran.json["error"]["help"]
+    assert course("notebook", "build").code == 0
+
+
+def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, workspace):
+    path = workspace / "doubling" / "doubling.ipynb"
+    course("notebook", "build", "doubling")
+    write_into(path, GOOD)
+    ran = course("notebook", "check", str(path))
+    assert ran.code == 1
+    assert "It is not right." in ran.out
+    write_into(path, GOOD, OTHER)
+    ran = course("notebook", "check", str(path), "--json")
+    assert ran.code == 0
+    assert ran.json["schema"] == "course.notebook-check/1"
+    assert ran.json["result"]["score"] == 4.0
+    assert course("progress", "--json").json["exercises"][0]["score"] == 4.0
+
+
+def test_check_finds_the_exercise_by_marks_name_or_functions(course, tmp_path):
+    course("notebook", "build", "--out", "made")
+    named = tmp_path / "made" / "exercises" / "doubling.ipynb"
+    write_into(named, GOOD, OTHER)
+    bare = json.loads(named.read_text("utf-8"))
+    for cell in bare["cells"]:
+        cell["metadata"] = {}
+    for name in ("anything.ipynb", "doubling.ipynb"):
+        (tmp_path / name).write_text(json.dumps(bare))
+        assert course("notebook", "check", name, "--json").json["result"]["exercise"] == "doubling"
+    (tmp_path / "other.ipynb").write_text('{"nbformat": 4, "cells": [], "metadata": {}}')
+    ran = course("notebook", "check", "other.ipynb", "--json")
+    assert ran.json["error"]["code"] == "which_exercise"
+    ran = course("notebook", "check", "other.ipynb", "--exercise", "doubling", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (3, "no_declared_functions")
+
+
+def handed_in(workspace: Path) -> dict[str, bytes]:
+    with zipfile.ZipFile(workspace / "mini-submission.zip") as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def test_submit_hands_in_the_notebook_where_the_module_is_still_the_stub(course, workspace):
+    path = workspace / "doubling" / "doubling.ipynb"
+    course("notebook", "build", "doubling")
+    assert course("submit", "--json").json["error"]["code"] == "nothing_to_submit"
+    write_into(path, GOOD, OTHER)
+    course("notebook", "check", str(path))
+    body = course("submit", "--json").json
+    assert [file["path"] for file in body["files"]] == ["doubling/doubling.ipynb"]
+    assert body["files"][0]["last_score"] == 4.0
+    assert body["left_out"] == []
+    sent = json.loads(handed_in(workspace)["doubling/doubling.ipynb"])
+    assert all(cell.get("outputs") in (None, []) for cell in sent["cells"])
+
+
+def test_submit_hands_in_the_notebook_where_there_is_no_module(course, workspace):
+    course("notebook", "build", "doubling")
+    write_into(workspace / "doubling" / "doubling.ipynb", GOOD)
+    (workspace / "doubling" / "doubling.py").unlink()
+    assert course("submit").code == 0
+    assert "doubling/doubling.ipynb" in handed_in(workspace)
+
+
+def test_submit_hands_in_the_module_where_both_were_worked_in_and_says_so(course, workspace, write):
+    course("notebook", "build", "doubling")
+    write_into(workspace / "doubling" / "doubling.ipynb", GOOD)
+    write("RIGHT")
+    ran = course("submit")
+    assert "Left out: doubling/doubling.ipynb (doubling.py was worked in too, and is handed in)." in ran.out
+    assert "doubling/doubling.py" in handed_in(workspace)
+    assert "doubling/doubling.ipynb" not in handed_in(workspace)
+
+
+def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write):
+    write("RIGHT")
+    (workspace / "doubling" / "doubling.ipynb").write_text("not a notebook")
+    ran = course("submit", "--json")
+    assert ran.code == 0
+    assert [file["path"] for file in ran.json["left_out"]] == ["doubling/doubling.ipynb"]
+    assert "is not a notebook" in ran.json["left_out"][0]["action"]
+
+
+def test_a_zip_with_a_notebook_is_graded_like_the_module(course, workspace):
+    from course.catalog.load import Catalog
+    from course.grading.downloads import Place, Student
+    from course.grading.intake import read_student
+
+    course("notebook", "build", "doubling")
+    write_into(workspace / "doubling" / "doubling.ipynb", GOOD, OTHER)
+    course("submit", "-o", "sent.zip")
+    folder = workspace / "class"
+    folder.mkdir()
+    (workspace / "sent.zip").rename(folder / "sent.zip")
+    (entry,) = read_student(Student("ada", Place(folder)), [Catalog().exercise("doubling")], required=True)
+    assert entry.submission is not None
+    assert GOOD.encode() in entry.submission.files["doubling.py"]
+
+
+def test_nbgrader_notebooks_carry_its_marks(course, tmp_path):
+    ran = course("notebook", "build", "doubling", "--format", "nbgrader", "--out", "site")
+    assert ran.code == 0
+    path = tmp_path / "site" / "source" / "doubling" / "doubling.ipynb"
+    cells = json.loads(path.read_text("utf-8"))["cells"]
+    marks = [cell["metadata"]["nbgrader"] for cell in cells if "nbgrader" in cell["metadata"]]
+    assert len({mark["grade_id"] for mark in marks}) == len(marks)
+    assert all(mark["schema_version"] == 3 for mark in marks)
+    graded = [mark for mark in marks if mark["grade"]]
+    assert graded
+    assert all(mark["locked"] and mark["points"] > 0 and not mark["solution"] for mark in graded)
+    for cell in cells:
+        if cell["metadata"].get("nbgrader", {}).get("solution"):
+            text = "".join(cell["source"])
+            assert text.index("def ") < text.index("### BEGIN SOLUTION") < text.index("### END SOLUTION")

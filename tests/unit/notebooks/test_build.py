@@ -1,0 +1,234 @@
+"""Generated notebooks: valid, without outputs, the same bytes every time, and nothing Jupyter cannot show."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+
+from course.catalog import blocks as b
+from course.errors import NotFoundError
+from course.grading.notebook_source import notebook_source
+from course.notebooks.build import Generated, generate
+from course.notebooks.layout import FOLDERS, WORKSPACE
+from course.notebooks.lowering import Lowering
+from course.notebooks.quiz import SEED, marked
+from course.notebooks.stub import pieces
+from course.quizzing.bank import Bank
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(scope="module")
+def everything(catalog: Catalog) -> list[Generated]:
+    return list(generate(catalog))
+
+
+def cells(data: bytes, kind: str = "") -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = json.loads(data)["cells"]
+    return [cell for cell in found if kind in ("", cell["cell_type"])]
+
+
+def text(cell: dict[str, Any]) -> str:
+    return "".join(cell["source"])
+
+
+def test_everything_has_a_notebook(catalog: Catalog, everything: list[Generated]) -> None:
+    paths = [str(one.path) for one in everything]
+    expected = [f"lessons/{name}.ipynb" for name in catalog.lesson_ids()]
+    expected += [f"exercises/{exercise.id}.ipynb" for exercise in catalog.exercises()]
+    assert paths == [*expected, "quiz.ipynb", "sandbox.ipynb"]
+
+
+def test_an_id_of_a_lesson_and_an_exercise_gives_both(catalog: Catalog) -> None:
+    both = set(catalog.lesson_ids()) & set(catalog.exercise_ids())
+    assert both
+    name = sorted(both)[0]
+    assert [one.kind for one in generate(catalog, [name])] == ["lesson", "exercise"]
+
+
+def test_an_unknown_id_is_refused_with_what_is_close(catalog: Catalog) -> None:
+    with pytest.raises(NotFoundError) as caught:
+        list(generate(catalog, ["integrator"]))
+    assert "integrators" in caught.value.help
+
+
+def test_notebooks_are_valid_and_have_no_output(everything: list[Generated]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # nbformat only warns where it repairs ids
+        for one in everything:
+            read: Any = nbformat.reads
+            nbformat.validate(read(one.data.decode(), as_version=nbformat.NO_CONVERT))
+    for one in everything:
+        ids = [cell["id"] for cell in cells(one.data)]
+        slots = [cell["metadata"]["course"]["slot"] for cell in cells(one.data)]
+        assert len(set(ids)) == len(ids)
+        assert len(set(slots)) == len(slots)
+        assert all(cell["outputs"] == [] for cell in cells(one.data, "code"))
+
+
+def test_nothing_is_left_that_jupyter_would_show_as_stray_text(everything: list[Generated]) -> None:
+    for one in everything:
+        for cell in cells(one.data, "markdown"):
+            outside = text(cell).split("```")[::2]
+            for stray in (
+                ":::",
+                "{mermaid}",
+                "](lesson:",
+                "](exercise:",
+                "figure:",
+                "](=",
+                "% text:",
+                "{eq}",
+            ):
+                assert not any(stray in part for part in outside), (one.path, stray)
+
+
+def test_links_between_notebooks_lead_to_notebooks(catalog: Catalog) -> None:
+    for layout in (FOLDERS, WORKSPACE):
+        lessons = [one for one in generate(catalog, layout=layout) if one.kind == "lesson"]
+        there = {str(one.path) for one in generate(catalog, layout=layout)}
+        links = 0
+        for one in lessons:
+            for cell in cells(one.data, "markdown"):
+                for part in text(cell).split("](")[1:]:
+                    address = part.partition(")")[0].partition("#")[0]
+                    if address.endswith(".ipynb"):
+                        links += 1
+                        path = os.path.normpath(os.path.join(str(one.path.parent), address))  # noqa: PTH118
+                        assert path in there
+        assert links >= 10
+
+
+def test_a_link_to_a_heading_names_it_as_jupyterlab_does(catalog: Catalog) -> None:
+    link = FOLDERS.links(catalog, "digital-twins")
+    assert link("lesson:why-simulate#how-it-hangs-together") == "why-simulate.ipynb#How-it-hangs-together"
+    assert link("https://example.org/") == "https://example.org/"
+
+
+def test_an_exercise_has_a_cell_and_a_check_for_each_function_and_stands_for_its_stub(
+    catalog: Catalog,
+) -> None:
+    for exercise in catalog.exercises():
+        (one,) = [made for made in generate(catalog, [exercise.id]) if made.kind == "exercise"]
+        tags = [cell["metadata"]["course"] for cell in cells(one.data, "code")]
+        for task in exercise.task:
+            roles = [tag["role"] for tag in tags if tag.get("task") == task.id]
+            assert roles == ["solution", "check"], (exercise.id, task.id)
+        given, stood_for = {}, {}  # type: ignore[var-annotated]
+        exec(compile(exercise.stub_path.read_bytes(), "stub", "exec", dont_inherit=True), given)
+        exec(
+            compile(notebook_source(one.data, exercise).source, "cells", "exec", dont_inherit=True), stood_for
+        )
+        assert given.keys() - {"__doc__"} == stood_for.keys() - {"__doc__"}
+
+
+def test_the_stub_is_taken_apart_without_losing_a_line(catalog: Catalog) -> None:
+    for exercise in catalog.exercises():
+        source = exercise.stub_path.read_text(encoding="utf-8")
+        about, parts = pieces(source, {task.id for task in exercise.task})
+        assert about
+        kept = "\n".join(part.text for part in parts)
+        lost = [line for line in source.split('"""', 2)[2].split("\n") if line and line not in kept]
+        assert lost == []
+
+
+def test_a_lesson_keeps_every_block(catalog: Catalog) -> None:
+    from course.catalog.markdown import read_blocks
+
+    for lesson in catalog.lessons():
+        blocks = read_blocks(catalog.content.lessons / f"{lesson.id}.md")
+        (one,) = [made for made in generate(catalog, [lesson.id]) if made.kind == "lesson"]
+        roles = [cell["metadata"]["course"]["role"] for cell in cells(one.data)]
+        assert roles.count("figure") == sum(isinstance(block, b.Figure) for block in blocks)
+        assert roles.count("prediction") == sum(isinstance(block, b.Prediction) for block in blocks)
+        shown = sum(isinstance(block, b.CodeCell) for block in blocks)
+        assert roles.count("lesson") + roles.count("hidden") == shown
+        whole = "\n".join(map(text, cells(one.data)))
+        assert whole.count("```mermaid") == sum(isinstance(block, b.Diagram) for block in blocks)
+        for block in blocks:
+            if isinstance(block, b.Paragraph | b.Heading):
+                lowered = Lowering(FOLDERS.links(catalog, lesson.id)).block(block)
+                assert lowered in whole
+
+
+def test_characters_with_a_meaning_in_markdown_are_shown_as_they_are() -> None:
+    lowering = Lowering(str)
+    words = b.Paragraph(1, (b.Text("2 * 3 < 4 | a_b [x] $5 `c` \\d"),))
+    assert lowering.block(words) == r"2 \* 3 \< 4 \| a\_b \[x\] \$5 \`c\` \\d"
+
+
+def test_the_quiz_does_not_tell_the_answers_and_marks_them(
+    catalog: Catalog, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (one,) = generate(catalog, ["quiz"])
+    posed = Bank.of(catalog).pose(SEED)
+    whole = "\n".join(map(text, cells(one.data)))
+    for question in posed:
+        assert f'answers["{question.question}"] = ""' in whole
+        assert not any(choice.explanation[:40] in whole for choice in question.choices)
+        assert all(question.key.id not in text(cell) for cell in cells(one.data, "code"))
+    right = {question.question: question.key.letter for question in posed}
+    assert marked(SEED, dict.fromkeys(right, "")) is None
+    assert "Question 1 is not answered yet." in capsys.readouterr().out
+    full = marked(SEED, right)
+    assert full is not None
+    assert full.summary.startswith(f"{len(posed)} of {len(posed)} right")
+    wrong = marked(SEED, right | {posed[0].question: "abcd".replace(posed[0].key.letter, "")[0]})
+    assert wrong is not None
+    assert f"{len(posed) - 1} of {len(posed)}" in wrong._repr_html_()
+    assert posed[0].key.explanation[:40] in repr(wrong)
+
+
+def test_three_processes_with_different_hash_seeds_write_the_same_bytes(everything: list[Generated]) -> None:
+    script = (
+        "import hashlib\n"
+        "from course.catalog.load import Catalog\n"
+        "from course.notebooks.build import generate\n"
+        "for one in generate(Catalog()): print(one.path, hashlib.sha256(one.data).hexdigest())\n"
+    )
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-c", script],
+            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        for seed in ("0", "1", "4000000000")
+    ]
+    printed = {process.communicate()[0] for process in running}
+    here = "".join(f"{one.path} {hashlib.sha256(one.data).hexdigest()}\n" for one in everything)
+    assert printed == {here}
+
+
+def test_building_needs_nothing_of_jupyter(tmp_path: Path) -> None:
+    script = (
+        "import sys\n"
+        "from course.catalog.load import Catalog\n"
+        "from course.notebooks.build import generate\n"
+        "list(generate(Catalog()))\n"
+        "wrong = {'nbformat', 'nbclient', 'IPython', 'jupyterlab', 'anywidget'} & set(sys.modules)\n"
+        "assert not wrong, wrong\n"
+    )
+    subprocess.run(
+        [sys.executable, "-c", script], check=True, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}
+    )
+
+
+def test_the_readme_of_an_exercise_stands_beside_it(integrators: Exercise, catalog: Catalog) -> None:
+    (one,) = generate(catalog, ["integrators"])
+    whole = "\n".join(text(cell) for cell in cells(one.data, "markdown"))
+    for line in integrators.readme_path.read_text(encoding="utf-8").split("\n"):
+        assert line in whole

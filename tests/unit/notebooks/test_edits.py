@@ -1,0 +1,91 @@
+"""Whatever students and Jupyter do to a notebook's cells: the same code gets the same score."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from course.grading.notebook_source import RECORD, notebook_source
+from course.grading.session import GradingSession, Submission
+from course.physics import systems
+from tests.unit.notebooks.edits import edited
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+STEPS = ("explicit_euler_step", "semi_implicit_euler_step", "velocity_verlet_step", "rk4_step")
+
+
+def behaviour(source: bytes) -> list[Any]:
+    """What the functions of a module give, to the last bit."""
+    names: dict[str, Any] = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about escapes and the like in strings
+        exec(compile(source, "integrators.py", "exec", dont_inherit=True), names)
+    system = systems.Oscillator(omega=2.0)
+    start = np.array([1.0]), np.array([0.5])
+    runs = [names["integrate"](names[step], system, *start, 0.5, 0.1) for step in STEPS]
+    times = names["integrate"](names["rk4_step"], system, *start, 0.5, 0.05)[0]
+    return [np.concatenate([q.ravel(), v.ravel()]).tobytes() for _, q, v in runs] + [times.tobytes()]
+
+
+def test_500_random_edits_leave_the_code_what_it_was(
+    solved: bytes, solution: str, integrators: Exercise
+) -> None:
+    right = behaviour(solution.encode())
+    for seed in range(500):
+        module = notebook_source(edited(solved, seed), integrators)
+        assert behaviour(module.source) == right, f"seed {seed}"
+
+
+@pytest.mark.parametrize("function", STEPS)
+def test_a_wrong_function_stays_wrong(
+    solved: bytes, solution: str, integrators: Exercise, function: str
+) -> None:
+    """The comparison above can fail."""
+    wrong = f"{solution}\n\ndef {function}(accel, t, q, v, h):\n    return q + h * v, v\n"
+    assert behaviour(wrong.encode()) != behaviour(notebook_source(solved, integrators).source)
+
+
+def test_the_same_code_scores_the_same_as_a_file_and_as_a_notebook(
+    solved: bytes, solution: str, integrators: Exercise, catalog: Catalog
+) -> None:
+    broken = solution.replace("h / 6 * (dq1", "h / 5 * (dq1")
+    assert broken != solution
+    with GradingSession(integrators, catalog, scope="full") as session:
+        for text in (solution, broken):
+            as_file = session.grade(Submission({"integrators.py": text.encode()}))
+            swapped = solved.replace(b"h / 6 * (dq1", b"h / 5 * (dq1") if text == broken else solved
+            for seed in (1, 2):
+                module = notebook_source(edited(swapped, seed), integrators)
+                as_notebook = session.grade(
+                    Submission({"integrators.py": module.source, RECORD: module.record()})
+                )
+                assert as_notebook.score == as_file.score
+                assert [check.status for check in as_notebook.checks] == [
+                    check.status for check in as_file.checks
+                ]
+                assert as_notebook.warnings == module.notes
+        assert 0 < as_file.score < integrators.max_points
+
+
+def test_an_error_in_a_notebook_is_told_by_its_cell(
+    solved: bytes, integrators: Exercise, catalog: Catalog
+) -> None:
+    raising = solved.replace(b"return q + h * v, v + h * accel(t, q, v)", b"return q / (0 * h).nothing")
+    assert raising != solved
+    module = notebook_source(raising, integrators)
+    with GradingSession(integrators, catalog) as session:
+        verdict = session.grade(Submission({"integrators.py": module.source, RECORD: module.record()}))
+        line = next(n for n, text in enumerate(module.source.decode().split("\n"), 1) if "nothing" in text)
+        check = next(check for check in verdict.checks if check.task == "explicit_euler_step")
+        assert f"in {module.place(line)} of your notebook" in check.message
+        assert (check.traceback or "").startswith(f"{module.place(line)} in explicit_euler_step")
+        syntax = notebook_source(solved.replace(b"return q + h * v, v", b"return q + * h, v"), integrators)
+        refused = session.grade(Submission({"integrators.py": syntax.source, RECORD: syntax.record()}))
+    assert refused.error is not None
+    assert refused.error.message.startswith("Cell ")

@@ -275,7 +275,8 @@ def test_a_reset_ends_the_story_of_the_run_before() -> None:
     assert "meets" in json.dumps(of(told(page), "events"))
     send(made, page, "reset")
     assert [message for message in of(told(page), "events") if message.get("anew")]
-    _, late = join(made)
+    late = made.join()
+    assert late is not None
     assert told(late)[0]["events"] == []
 
 

@@ -57,19 +57,19 @@ function short(value, scale = 0) {
   if (value === null || !Number.isFinite(value)) return "–";
   if (Math.abs(value) <= 2e-6 * scale || value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(1).replace("-", "−");
+  if (size >= 1e5 || size < 1e-3) return value.toExponential(1).replaceAll("-", "−");
   const text = size >= 100 ? value.toFixed(0) : size >= 10 ? value.toFixed(1) : value.toFixed(size >= 1 ? 2 : 3);
-  return text.replace("-", "−");
+  return text.replaceAll("-", "−");
 }
 
 /** A round number in few letters. */
 function tick(value) {
   const text = String(Number(value.toPrecision(2)));
-  return (text.length > 5 ? value.toExponential(0) : text).replace("-", "−");
+  return (text.length > 5 ? value.toExponential(0) : text).replaceAll("-", "−");
 }
 
 /** A number as it was meant: up to six digits, none that say nothing. */
-const plain = (value) => (value === null ? "did not happen" : String(Number(value.toPrecision(6))).replace("-", "−"));
+const plain = (value) => (value === null ? "did not happen" : String(Number(value.toPrecision(6))).replaceAll("-", "−"));
 const spoken = (name) => name.replaceAll("-", " ");
 const amount = (value, of) => {
   const small = of === "s" && value < 0.1;

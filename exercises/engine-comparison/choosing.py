@@ -130,6 +130,8 @@ SLIPS: list[tuple[str, Any]] = [
 
 def of_choices(everything: list[tuple[Any, Any]]) -> Any:
     """The slip that would have given every one of the answers, or the likeliest from the wrong ones."""
+    # Only one answer was looked at so far: the others may be anything, and "" is nobody's name.
+    everything = [(asked, a if a is None or isinstance(a, str) else "") for asked, a in everything]
     if all(answer is None for _, answer in everything):
         return diagnosis.named("NEVER_CHOOSES")
     for code, slip in SLIPS:
@@ -137,7 +139,7 @@ def of_choices(everything: list[tuple[Any, Any]]) -> Any:
             return diagnosis.named(code)
     wrong = [(question, answer) for question, answer in everything if question[2] != answer]
     for (reports, needs, expected), answer in wrong:
-        if answer is not None and all(meets(reports[answer], need) for need in needs):
+        if answer in reports and all(meets(reports[answer], need) for need in needs):
             return diagnosis.named("COST_IGNORED")
         if expected is None:
             return diagnosis.named("NOTHING_FITS")

@@ -33,6 +33,9 @@ class Fake:
             v.append(v_next)
         return t0 + h * np.arange(n + 1), np.array(q), np.array(v)
 
+    def march_each(self, name, marches):
+        return [self.march(name, *march) for march in marches]
+
 
 CASES = [(task, code, step) for task, wrong in formulas.WRONG.items() for code, step in wrong]
 

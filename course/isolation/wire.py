@@ -361,10 +361,12 @@ def _quick_vector(body: bytes, at: int) -> tuple[Any, int]:
 
 
 def _quick_table(body: bytes, at: int) -> tuple[Any, int]:
+    if body[at : at + 2] != _TABLE:
+        return _OTHER, at
     rows, columns = _SHAPE.unpack_from(body, at + 2)
     end = at + 10 + 8 * rows * columns
     # Empty ones may have extents that overflow: those are for the careful reader.
-    if body[at : at + 2] != _TABLE or end > len(body) or not rows * columns:
+    if end > len(body) or not rows * columns:
         return _OTHER, at
     return np.frombuffer(bytearray(body[at + 10 : end]), _FLOAT64).reshape(rows, columns), end
 

@@ -82,7 +82,15 @@ def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
 
 @given(
     st.lists(
-        st.none() | st.floats() | st.integers(-9, 9) | hnp.arrays(np.float64, st.integers(0, 5)), max_size=70
+        st.none()
+        | st.booleans()
+        | st.floats()
+        | st.integers(-9, 9)
+        | st.text(max_size=5)
+        | hnp.arrays(
+            st.sampled_from([np.float64, np.int64, np.bool_]), hnp.array_shapes(min_dims=0, min_side=0)
+        ),
+        max_size=70,
     )
 )
 def test_the_quick_way_and_the_long_way_agree(value: list[Any]) -> None:

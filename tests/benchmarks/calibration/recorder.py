@@ -82,6 +82,15 @@ class Tables:
     mutants: int = 0
     failures: int = 0
 
+    def expect(self, as_declared: bool, name: str, seed: int, result) -> None:
+        """Count a verdict that is not as declared, and say on the error stream which."""
+        if not as_declared:
+            self.failures += 1
+            found = result.finding and (result.finding.diagnosis, result.finding.message)
+            print(
+                f"{name} seed {seed}: {result.check.id} {result.status} {found}", file=sys.stderr, flush=True
+            )
+
 
 def tasks_of(path: Path, helpers: dict[str, str]) -> set[str]:
     """Tasks that a variant does in another way; ``helpers`` says which task a helper belongs to."""
@@ -103,7 +112,7 @@ def calibrate(exercise: str, recorder: Recorder, seeds: int, mutant_seeds: int, 
             for check in mine:
                 recorder.share = 0.0
                 (result,) = local_run.run(sources[name], [check], seed)
-                tables.failures += result.status != "pass"
+                tables.expect(result.status == "pass", name, seed, result)
                 tables.used[check.id] = max(tables.used[check.id], recorder.share)
     tables.bounded = {name: list(values) for name, values in recorder.bounded.items()}
     for mutant in tomllib.loads((folder / "mutants.toml").read_text())["mutant"]:
@@ -118,7 +127,7 @@ def _mutant(tables: Tables, recorder: Recorder, source: str, mutant, checks, see
         recorder.share = 0.0
         (result,) = local_run.run(source, [check], seed)
         right = result.status != "pass" and result.finding.diagnosis == mutant["diagnosis"]
-        tables.failures += not right
+        tables.expect(right, mutant["file"], seed, result)
         tables.caught[check.id] = min(tables.caught.get(check.id, np.inf), recorder.share or np.inf)
     for result in local_run.run(source, checks, 0):
         tables.failed_by[result.check.id] += result.status != "pass"

@@ -107,7 +107,9 @@ def expect_hall(submission, rng):
 
 def expect_slow_turns(submission, rng):
     """As the turn rate goes to zero, the arc goes over into a straight line."""
-    rates = [0.0, 0.0, *(10.0 ** rng.uniform(-14, -11, 8)), *(10.0 ** rng.uniform(-11, -1, 10))]
+    # One in each decade of the slow ones: whatever is taken for straight, one just below it is asked for.
+    decades = np.arange(-11, -1) + rng.uniform(0, 1, 10)
+    rates = [0.0, 0.0, *(10.0 ** rng.uniform(-14, -11, 8)), *(10.0**decades)]
     track = rng.uniform(0.3, 0.8)
     calls = []
     for rate in rates:

@@ -42,7 +42,8 @@ def grade_all(exercise_id: str, seeds: int, accepted: int, first: int, *, own: b
     for path in accepted_files(catalog, exercise):
         sources[f"accepted/{path.name}"] = (compose(solution, path), accepted)
     wrong = 0
-    with GradingSession(exercise, catalog, scope="full") as session:
+    # What is asked is whether the answer is right: a machine that does other work too must not cost a mark.
+    with GradingSession(exercise, catalog, scope="full", timeout=60.0) as session:
         for name, (source, count) in sources.items():
             submission = Submission({exercise.module: source})
             only: list[str | None] = [None]

@@ -65,9 +65,10 @@ def _error_finding(failure: StudentFailure) -> Finding:
             help="Replace the `raise` line by your code; the docstring above it says what to return.",
             diagnosis="NOT_IMPLEMENTED",
         )
+    where = f" on line {failure.line} of your file" if failure.line else ""
     if failure.type == "ImportNotDeclaredError":
         return Finding(
-            message="Your code imports a module that this exercise does not allow.",
+            message=f"Your code needs a module{where} that this exercise does not allow.",
             help="Do without it. Plots and experiments belong in a file of your own that imports this one.",
             diagnosis="IMPORT_NOT_ALLOWED",
             actual=failure.message,
@@ -75,7 +76,6 @@ def _error_finding(failure: StudentFailure) -> Finding:
     # A class name is the student's to choose and could spell out a hidden input: only known ones are said.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception of its own"
-    where = f" on line {failure.line} of your file" if failure.line else ""
     return Finding(
         message=f"Your code raised {name}{where}.",
         help="Call the function yourself as the README's example does, and read the traceback from below.",

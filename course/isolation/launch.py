@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["command", "copy_flat_files", "environment", "private_folder", "remove_tree"]
 
-_FLAT_FILES = tuple(f"isolation/{name}.py" for name in ("wire", "loops", "worker", "lockdown", "zygote"))
+_BESIDE = ("wire", "loops", "declared", "worker", "lockdown", "zygote")
+_FLAT_FILES = tuple(f"isolation/{name}.py" for name in _BESIDE)
 _RHS_FILE = "physics/systems.py"
 
 

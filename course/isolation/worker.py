@@ -26,9 +26,10 @@ if TYPE_CHECKING:
     import socket
 
 if __package__:  # imported as part of the course (type checking, tests); a copy stands alone
-    from course.isolation import loops, wire
+    from course.isolation import declared, loops, wire
     from course.physics import systems
 else:
+    import declared  # type: ignore[import-not-found,no-redef]
     import loops  # type: ignore[import-not-found,no-redef]
     import systems  # type: ignore[import-not-found,no-redef]
     import wire  # type: ignore[import-not-found,no-redef]
@@ -72,28 +73,14 @@ class CappedText(io.TextIOBase):
         return len(text)
 
 
-class ImportNotDeclaredError(ImportError):
-    """A submission imports a package that its exercise does not declare."""
-
-
-class _DeclaredImports:
-    """Refuses top-level packages that are neither the standard library's nor declared.
-
-    This gives a sentence instead of a bare ModuleNotFoundError. It is no protection by itself: at L3 and
-    L2 the files of other packages cannot be read at all.
-    """
-
-    def __init__(self, allowed: frozenset[str]) -> None:
-        self._allowed = allowed
-
-    def find_spec(self, name: str, _path: Any = None, _target: Any = None) -> None:
-        top = name.partition(".")[0]
-        if top not in self._allowed and top not in sys.stdlib_module_names:
-            declared = ", ".join(sorted(self._allowed)) or "none"
-            raise ImportNotDeclaredError(
-                f"this exercise does not allow importing {top!r} (allowed: the standard library, {declared})",
-                name=top,
-            )
+def _run(code: types.CodeType, main: str) -> types.ModuleType:
+    """A module of its own from a submission's code."""
+    module = types.ModuleType(main.removesuffix(".py"))
+    module.__file__ = main
+    module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None, origin=main)
+    sys.modules[module.__name__] = module
+    exec(code, module.__dict__)
+    return module
 
 
 class Worker:
@@ -208,21 +195,24 @@ class Worker:
             with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
                 handle.write(content)
         sys.path.insert(0, os.getcwd())  # noqa: PTH109 - pathlib is not worth its import here
-        sys.meta_path.insert(0, _DeclaredImports(self._imports | {name[:-3] for name in files}))
+        imports = declared.Imports(self._imports | {name[:-3] for name in files}, self._imports)
+        sys.meta_path.insert(0, imports)
         try:
-            code = compile(importlib.util.decode_source(files[main]), main, "exec", dont_inherit=True)
+            source = importlib.util.decode_source(files[main])
+            code = compile(source, main, "exec", dont_inherit=True)
         except (SyntaxError, ValueError, MemoryError, RecursionError, UnicodeError) as error:
             self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
             return
-        module = types.ModuleType(main.removesuffix(".py"))
-        module.__file__ = main
-        module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None, origin=main)
-        sys.modules[module.__name__] = module
         try:
-            exec(code, module.__dict__)
+            try:
+                module = _run(code, main)
+            except declared.ImportNotDeclaredError:
+                imports.stand_in(source)
+                module = _run(code, main)
         except BaseException as error:  # noqa: BLE001 - SystemExit at import is an answer too
             self._send(Kind.REFUSED, {"stage": "import", **_described(error)})
             return
+        declared.StandIn.loading = False
         self._module = module
         names = [name for name, value in list(vars(module).items()) if callable(value) and type(name) is str]
         self._send(Kind.LOADED, names[:1000])
@@ -331,7 +321,8 @@ def _described(error: BaseException) -> dict[str, Any]:
     return described
 
 
-_OWN_FILES = ("worker.py", "zygote.py", "wire.py", "loops.py")
+_OWN = ("worker", "zygote", "lockdown", "wire", "loops", "declared", "systems")
+_OWN_FILES = tuple(f"{name}.py" for name in _OWN)
 
 
 def run(sock: socket.socket, imports: frozenset[str]) -> None:
@@ -339,6 +330,8 @@ def run(sock: socket.socket, imports: frozenset[str]) -> None:
     sys.stdout = CappedText(1)
     sys.stderr = CappedText(2)
     gc.enable()
+    for name in _OWN:  # a submission may have a file of that name
+        sys.modules.pop(name, None)
     worker = Worker(sock, imports)
     try:
         worker.serve()

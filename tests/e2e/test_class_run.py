@@ -59,7 +59,7 @@ BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "a folder": (lambda place: (place / MODULE).mkdir(), "not_a_file"),
     "two files": (_ambiguous, "ambiguous_files"),
     "all missing": (_write(b"x = 1\n"), "no_declared_functions"),
-    "imports what is not there": (_write(b"import scipy_of_the_future\n" + MODEL), "import_error"),
+    "imports what is not there": (_write(b"import absent\nG = 2 * absent.G\n" + MODEL), "import_error"),
     "raises on import": (_write(b"1 / 0\n"), "import_error"),
     "too large": (_write(b"#" * (1 << 21)), "too_large"),
     "a zip that is none": (lambda place: (place / "mine.zip").write_bytes(b"PK"), "refused_archive"),

@@ -91,8 +91,9 @@ def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
         (b"import os; os._exit(0)", "import_crash"),
         (b"while True: pass", "import_timeout"),
         (b"def other(): pass", "no_declared_functions"),
-        (b"import course.physics.integrators", "import_error"),
-        (b"import pytest", "import_error"),
+        (b"import course.physics.integrators as theirs", "no_declared_functions"),
+        (b"import course\nhalf = course.answer / 2", "import_error"),
+        (b"from pytest import absent; absent + 1", "import_error"),
     ],
 )
 def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
@@ -104,6 +105,21 @@ def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
     assert verdict.error is not None
     assert verdict.error.code == code
     assert verdict.error.help
+
+
+def test_an_import_that_is_not_allowed_costs_only_the_tasks_that_need_it(
+    session: GradingSession, solution: bytes
+) -> None:
+    plots = (
+        b"import matplotlib.pyplot as plt\n" + solution + b"\nfigure, axes = plt.subplots()\naxes.plot([1])\n"
+    )
+    assert grade(session, plots).score == 10
+    verdict = grade(session, plots + b"\ndef double(x):\n    plt.plot(x)\n    return 2 * x\n")
+    assert verdict.state == "graded"
+    missed = [check for check in verdict.checks if check.status == "error"]
+    assert {check.task for check in missed} == {"double"}
+    assert all(check.diagnosis == "IMPORT_NOT_ALLOWED" and " on line " in check.message for check in missed)
+    assert 0 < verdict.score < 10
 
 
 @pytest.mark.parametrize(

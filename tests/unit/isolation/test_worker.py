@@ -90,7 +90,13 @@ def test_source_that_python_cannot_read_is_refused_as_syntax(
 
 
 @pytest.mark.parametrize(
-    "source", ["1 / 0", "import sys; sys.exit(0)", "raise KeyboardInterrupt", "import pytest"]
+    "source",
+    [
+        "1 / 0",
+        "import sys; sys.exit(0)",
+        "raise KeyboardInterrupt",
+        "import helper_not_there.x as y; y.z + 1",
+    ],
 )
 def test_source_that_raises_is_refused_at_import_with_its_line(load: Any, source: str) -> None:
     with pytest.raises(LoadRefusedError) as caught:
@@ -99,11 +105,60 @@ def test_source_that_raises_is_refused_at_import_with_its_line(load: Any, source
     assert caught.value.failure.line == 2
 
 
-def test_an_undeclared_import_says_what_is_allowed(load: Any) -> None:
+PLOTS = """\
+import matplotlib.pyplot as plt
+from scipy.integrate import solve_ivp
+
+def f():
+    return 1
+
+def g():
+    return solve_ivp(f, (0, 1), [0.0])
+
+def h():
+    import pandas
+    return pandas.DataFrame()
+
+plt.rcParams["font.size"] = 9
+figure, axes = plt.subplots(2, 2)
+axes[0, 0].plot([1, 2], label="x")
+with plt.rc_context():
+    (first, second), third = axes
+    for each in axes.flat:
+        each.set(title=len(third.lines))
+plt.show()
+"""
+
+
+def test_a_file_that_plots_is_loaded_and_only_what_needs_the_package_fails(load: Any) -> None:
+    connection = load(PLOTS)
+    assert connection.call("f") == 1
+    for name, package, line in (("g", "scipy", 8), ("h", "pandas", 11)):
+        with pytest.raises(StudentFailure) as caught:
+            connection.call(name)
+        assert caught.value.type == "ImportNotDeclaredError"
+        assert f"{package!r} (allowed: the standard library, numpy)" in caught.value.message
+        assert caught.value.line == line
+    assert connection.call("f") == 1
+
+
+def test_an_import_with_something_to_fall_back_on_falls_back(load: Any) -> None:
+    source = "try:\n    from numba import njit\nexcept ImportError:\n    njit = lambda f: f\n"
+    assert load(f"{source}@njit\ndef f():\n    return 3\n").call("f") == 3
+
+
+def test_a_package_that_the_top_level_computes_with_is_refused_with_its_line(load: Any) -> None:
     with pytest.raises(LoadRefusedError) as caught:
-        load("import scipy.integrate\n")
-    assert "scipy" in caught.value.failure.message
-    assert "numpy" in caught.value.failure.message
+        load("import scipy\nx = 1\ny = 2 * scipy.constants.g\n")
+    assert (caught.value.stage, caught.value.failure.line) == ("import", 3)
+
+
+@pytest.mark.parametrize("name", ["wire", "systems", "declared"])
+def test_a_file_of_the_submission_may_have_a_name_of_ours(load: Any, name: str) -> None:
+    connection = load(
+        f"import {name}\n\ndef f():\n    return {name}.g()\n", **{name: "def g():\n    return 5\n"}
+    )
+    assert connection.call("f") == 5
 
 
 def test_the_whole_standard_library_can_be_imported_not_just_what_is_warm(load: Any) -> None:

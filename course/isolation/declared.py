@@ -1,0 +1,118 @@
+"""What a submission may import: the standard library, its own files and the packages its exercise declares.
+
+Runs beside a stranger's code and is no protection by itself: at L3 and L2 the files of other packages cannot
+be read at all. It gives a sentence instead of a bare ModuleNotFoundError, and keeps the rest of a file alive.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib.machinery
+import itertools
+import opcode
+import sys
+import types
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["ImportNotDeclaredError", "Imports", "StandIn"]
+
+
+_UNPACK = opcode.opmap["UNPACK_SEQUENCE"]
+
+
+class ImportNotDeclaredError(ImportError):
+    """A submission imports a package that its exercise does not declare."""
+
+
+class StandIn(types.ModuleType):
+    """What a submission gets for a package it may not import, if it imports it at its top level.
+
+    While the submission loads, it takes any use without a word, so that a plot at the end of a file costs
+    nothing. After that every use raises: only the tasks that need the package fail.
+    """
+
+    loading = True
+
+    def __init__(self, name: str, allowed: str) -> None:
+        super().__init__(name)
+        self._allowed = allowed
+
+    def __getattr__(self, name: str) -> StandIn:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        self._use()
+        return self
+
+    def __call__(self, *_args: Any, **_kwargs: Any) -> StandIn:
+        self._use()
+        return self
+
+    __getitem__ = __enter__ = __call__
+
+    def __setitem__(self, _key: Any, _value: Any) -> None:
+        self._use()
+
+    def __exit__(self, *_error: object) -> None:
+        self._use()
+
+    def __iter__(self) -> Iterator[StandIn]:
+        """As many as ``figure, axes = plt.subplots()`` wants; in a loop none."""
+        self._use()
+        caller = sys._getframe(1)
+        operation, argument = caller.f_code.co_code[caller.f_lasti : caller.f_lasti + 2]
+        return itertools.repeat(self, argument if operation == _UNPACK else 0)
+
+    def _use(self) -> None:
+        if not StandIn.loading:
+            raise _not_declared(self.__name__.partition(".")[0], self._allowed)
+
+
+def _not_declared(package: str, allowed: str) -> ImportNotDeclaredError:
+    return ImportNotDeclaredError(
+        f"this exercise does not allow importing {package!r} (allowed: the standard library, {allowed})",
+        name=package,
+    )
+
+
+class Imports:
+    """Refuses top-level packages that are neither the standard library's nor declared.
+
+    Args:
+        allowed: packages, and files of the submission, that may be imported.
+        declared: the packages, for the sentence.
+    """
+
+    def __init__(self, allowed: frozenset[str], declared: frozenset[str]) -> None:
+        self._allowed = allowed
+        self._declared = ", ".join(sorted(declared)) or "none"
+        self._replaced: set[str] = set()
+
+    def stand_in(self, source: str) -> None:
+        """Let a file load although it imports other packages.
+
+        Only imports at its top level: one inside a ``try`` has something to fall back on, and one in a
+        function is that function's affair.
+        """
+        for node in ast.parse(source).body:
+            if isinstance(node, ast.Import):
+                self._replaced.update(alias.name.partition(".")[0] for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                self._replaced.add(node.module.partition(".")[0])
+
+    def find_spec(self, name: str, _path: Any = None, _target: Any = None) -> Any:
+        top = name.partition(".")[0]
+        if top in self._allowed or top in sys.stdlib_module_names:
+            return None
+        if top in self._replaced:
+            loader: Any = self
+            return importlib.machinery.ModuleSpec(name, loader, is_package=True)
+        raise _not_declared(top, self._declared)
+
+    def create_module(self, spec: importlib.machinery.ModuleSpec) -> StandIn:
+        return StandIn(spec.name, self._declared)
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """A stand-in has nothing to run."""

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from course.cli.author_coverage import counted, coverage, shown
 from course.cli.completion import exercise_ids, lesson_ids
 from course.cli.console import Console, current
 from course.errors import UsageError
 
 if TYPE_CHECKING:
-    from course.authoring.coverage import Coverage
     from course.authoring.mutants import MutantOutcome
-    from course.authoring.report import AuditProblem, AuditReport
+    from course.authoring.report import AuditReport
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.cli.author_schemas import MutantRow
@@ -116,7 +116,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
     from course.cli.author_schemas import AuthorNew
 
     console = current()
-    shown = tuple(_shown(path, catalog) for path in files)
+    shown = tuple(shown(path, catalog) for path in files)
     console.heading(f"Wrote {kind} {name}.")
     for path in shown:
         console.line(path, indent=2)
@@ -161,15 +161,15 @@ def _show_report(console: Console, report: AuditReport) -> None:
         console.line(problem.message, indent=2)
         console.line((problem.fix, "dim"), indent=2)
     looked = (
-        f"{_count(len(report.lessons), 'lesson')}, {_count(len(report.exercises), 'exercise')}, "
-        f"{_count(len(report.questions), 'question')}, {_count(report.checks, 'check')}, "
-        f"{_count(report.graded, 'submission')} graded"
+        f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}, "
+        f"{counted(len(report.questions), 'question')}, {counted(report.checks, 'check')}, "
+        f"{counted(report.graded, 'submission')} graded"
     )
     level = f" at {report.isolation}" if report.isolation else ""
     if report.ok:
         console.line(("All is well", "green"), f": {looked}{level} in {report.seconds:.1f} s.")
     else:
-        found = _count(len(report.problems), "problem")
+        found = counted(len(report.problems), "problem")
         console.line((found, "red"), f" in {looked}{level} in {report.seconds:.1f} s.")
 
 
@@ -239,7 +239,7 @@ def mutants(
     ok = not any(row.faults for row in rows)
     wrong = sum(bool(row.faults) for row in rows)
     console.line(
-        f"{_count(len(rows), 'mutant')}: "
+        f"{counted(len(rows), 'mutant')}: "
         + ("each is caught as it says." if ok else f"{wrong} not caught as they should be.")
     )
     if table is not None and ok:
@@ -337,90 +337,4 @@ def pack(
     return 0
 
 
-@app.command(epilog="Example: course author coverage --write")
-def coverage(
-    write: Annotated[bool, typer.Option("--write", help="Make docs/coverage.md anew.")] = False,
-) -> int:
-    """Show where the course has each part of the chapter it grew out of.
-
-    Every heading, paragraph, bullet, objective, demonstration, printed line, exercise, solution, question,
-    diagram and figure, and that each place exists. Exit code 1 if a part or a place is missing.
-    """
-    from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
-    from course.cli.here import load_catalog
-
-    console, catalog = current(), load_catalog()
-    document = read_coverage(catalog)
-    problems = check_coverage(document, catalog, _is_command)
-    table, page = document.value, None
-    if write and not problems:
-        page = written_to(catalog)
-        page.write_text(as_markdown(table), encoding="utf-8")
-    _show_coverage(console, table, problems)
-    if page:
-        console.note(f"Wrote {_shown(page, catalog)}.")
-    _emit_coverage(console, table, problems, _shown(page, catalog) if page else None)
-    return 1 if problems else 0
-
-
-def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProblem, ...]) -> None:
-    for section in table.section:
-        console.heading(section.title)
-        rows = [(part.lines, part.kind, part.what, ", ".join(part.where)) for part in section.parts]
-        console.table(("lines", "kind", "part", "where"), rows)
-        console.blank()
-    for problem in problems:
-        console.line((problem.where, "bold"))
-        console.line(problem.message, indent=2)
-        console.line((problem.fix, "dim"), indent=2)
-    found = _count(len(problems), "problem") if problems else "none is missing"
-    console.line(f"{_count(len(table.parts), 'part')}, {table.source_lines} lines: {found}.")
-
-
-def _emit_coverage(
-    console: Console, table: Coverage, problems: tuple[AuditProblem, ...], written: str | None
-) -> None:
-    from course.cli.author_schemas import AuthorCoverage, AuthorProblem, CoverageRow
-
-    parts = [
-        CoverageRow(section=section.title, lines=part.lines, kind=part.kind, what=part.what, where=part.where)
-        for section in table.section
-        for part in section.parts
-    ]
-    console.emit(
-        AuthorCoverage(
-            ok=not problems,
-            exit_code=1 if problems else 0,
-            source_lines=table.source_lines,
-            parts=tuple(parts),
-            written=written,
-            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in problems),
-        )
-    )
-
-
-def _is_command(words: tuple[str, ...]) -> bool:
-    """Whether ``course`` followed by these words is a command; simulations count as words of ``sim run``."""
-    from importlib import import_module
-
-    from course.cli.registry import COMMANDS
-    from course.simulations.registry import SIMULATIONS
-
-    entry = COMMANDS.get(words[0]) if words else None
-    if entry is None or (not entry.is_group and len(words) > 1):
-        return False
-    if len(words) == 1:
-        return True
-    group = typer.main.get_group(import_module(f"course.cli.{entry.module}").app)
-    if words[1] not in group.commands:
-        return False
-    return all(word in (*SIMULATIONS, "--all") for word in words[2:])
-
-
-def _shown(path: Path, catalog: Catalog) -> str:
-    root = catalog.content.root
-    return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
-
-
-def _count(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+app.command(epilog="Example: course author coverage --write")(coverage)

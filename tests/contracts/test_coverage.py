@@ -5,14 +5,14 @@ from __future__ import annotations
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.cli.author import _is_command
+from course.cli.author_coverage import is_command
 
 CATALOG = Catalog(content())
 DOCUMENT = read_coverage(CATALOG)
 
 
 def test_every_part_of_the_chapter_has_a_place_that_exists() -> None:
-    assert not check_coverage(DOCUMENT, CATALOG, _is_command)
+    assert not check_coverage(DOCUMENT, CATALOG, is_command)
 
 
 def test_the_table_is_as_long_as_the_chapter() -> None:

@@ -11,7 +11,7 @@ from course.authoring.coverage import as_markdown, check_coverage, read_coverage
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.cli.app import run
-from course.cli.author import _is_command
+from course.cli.author_coverage import is_command
 from course.errors import ContentError, NotFoundError
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def problems(path: Path, old: str = "", new: str = "") -> tuple[AuditProblem, ..
     assert old in text
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
     catalog = Catalog(content())
-    return check_coverage(read_coverage(catalog), catalog, _is_command)
+    return check_coverage(read_coverage(catalog), catalog, is_command)
 
 
 def test_a_table_whose_places_all_exist_is_right(table: Path) -> None:
@@ -99,11 +99,11 @@ def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table: Path) ->
     "words", [("sim", "run", "free-fall"), ("sim", "run", "--all"), ("quiz", "take"), ("check",), ("author",)]
 )
 def test_commands_are_known_with_their_groups(words: tuple[str, ...]) -> None:
-    assert _is_command(words)
+    assert is_command(words)
 
 
 def test_no_words_are_no_command() -> None:
-    assert not _is_command(())
+    assert not is_command(())
 
 
 def test_a_course_without_a_table_says_where_to_look(mini: Path) -> None:

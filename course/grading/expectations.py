@@ -94,12 +94,14 @@ def fail(
     )
 
 
-def _or_nan(diagnose: Diagnose) -> Diagnose:
-    """The diagnosis of a wrong value that is nan: a check's own, or else that it is nan."""
+def _or_not_finite(number: float, diagnose: Diagnose) -> Diagnose:
+    """The diagnosis of a wrong number: a check's own, or else that it is nan or infinite."""
+    if math.isfinite(number):
+        return diagnose
 
     def look() -> Diagnosis | str | None:
         found = attempt(diagnose) if callable(diagnose) else diagnose
-        return found or _NAN
+        return found or (_NAN if math.isnan(number) else _INFINITE)
 
     return look
 
@@ -109,6 +111,12 @@ _NAN = Diagnosis(
     'There is a nan in it, which means "not a number".',
     "nan comes from 0/0, inf - inf, 0 times inf, or the root or logarithm of a negative number, and spoils "
     "whatever is computed from it. Print the intermediate results: where does it appear first?",
+)
+_INFINITE = Diagnosis(
+    "NOT_FINITE",
+    "It is infinite, or was computed from something that is not finite.",
+    "inf comes from a division by zero, or from something that grows without bound until it overflows. Print "
+    "the intermediate results: where does it appear first?",
 )
 
 
@@ -151,8 +159,7 @@ def expect_close(
         met = math.fabs(number - expected) <= abs + rel * math.fabs(expected)
     if not met:
         limits = Tolerance(rel=rel or None, abs=abs or None, source=source)
-        if math.isnan(number):
-            finding["diagnose"] = _or_nan(finding.get("diagnose"))
+        finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
         fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
 
 
@@ -189,8 +196,7 @@ def expect_array(
         finding.setdefault(
             "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
         )
-    if np.isnan(array[first]):
-        finding["diagnose"] = _or_nan(finding.get("diagnose"))
+    finding["diagnose"] = _or_not_finite(float(array[first]), finding.get("diagnose"))
     short = wanted.size <= 6
     fail(
         message,
@@ -271,8 +277,7 @@ def expect_bounded(
     number = as_number(actual, quantity)
     if not low <= number <= high:
         limits = Tolerance(source=source)
-        if math.isnan(number):
-            finding["diagnose"] = _or_nan(finding.get("diagnose"))
+        finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
         expected: Any = [low, high]
         if math.isinf(low) or math.isinf(high):
             expected = {"at most": high} if math.isinf(low) else {"at least": low}
@@ -282,6 +287,7 @@ def expect_bounded(
 def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **finding: Any) -> None:
     """The grader's own count of evaluations is one of the allowed numbers."""
     if count not in allowed:
+        finding.setdefault("help", "Count the places where your code calls it, and how often a loop does.")
         fail(
             message,
             expected=list(allowed),

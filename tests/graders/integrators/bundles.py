@@ -140,6 +140,7 @@ def expect_one_evaluation(accel, submission, task):
     if accel.count != 1:
         kit.fail(
             "A step does not take one evaluation of accel.",
+            help="Call accel once, with the state at the start of the step, and return both new values.",
             expected=1,
             actual=accel.count,
             units="evaluations",

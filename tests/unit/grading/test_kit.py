@@ -104,6 +104,23 @@ def test_a_finding_says_what_was_measured_expected_and_allowed():
     assert (finding.message, finding.help) == ("It is wrong.", "Mend it.")
 
 
+@pytest.mark.parametrize(("bad", "code"), [(math.nan, "NOT_A_NUMBER"), (-math.inf, "NOT_FINITE")])
+def test_a_number_that_is_not_finite_is_called_so_unless_a_check_knows_better(bad, code):
+    for compare, actual, expected in (
+        (kit.expect_close, bad, 1.0),
+        (kit.expect_array, [bad, 2.0], [1.0, 2.0]),
+    ):
+        finding = finding_of(compare, actual, expected, abs=0.5, **TOLERANCE, **WORDS)
+        assert (finding.diagnosis, finding.message[:12]) == (code, "It is wrong.")
+        assert (
+            finding_of(compare, actual, expected, abs=0.5, diagnose="OURS", **TOLERANCE, **WORDS).diagnosis
+            == "OURS"
+        )
+        nothing = finding_of(compare, actual, expected, abs=0.5, diagnose=lambda: None, **TOLERANCE, **WORDS)
+        assert nothing.diagnosis == code
+    assert finding_of(kit.expect_bounded, bad, low=0.0, high=1.0, **TOLERANCE, **WORDS).diagnosis == code
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_an_array_with_one_number_that_is_not_finite_is_not_the_expected_one(bad):
     finding_of(kit.expect_array, [1.0, bad], [1.0, 2.0], abs=10.0, **TOLERANCE, **WORDS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from course.errors import ContentError, MissingCapabilityError
@@ -223,6 +224,19 @@ def test_a_fault_of_a_check_is_never_the_students_zero(
     assert {check.status for check in verdict.checks} <= {Status.GRADER_ERROR, Status.SKIP}
     assert verdict.error is not None
     assert "a bug of ours" in verdict.error.message
+
+
+def test_a_check_that_computes_with_infinite_numbers_is_no_fault_of_ours(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+
+    def computing(*_: object) -> None:
+        seen.append(np.array([np.inf]) - np.inf)  # numpy would warn, and a warning may be an error
+
+    monkeypatch.setattr("course.grading.collected._run_item", computing)
+    grade(session, solution)
+    assert np.isnan(seen).all()
 
 
 def test_hidden_checks_need_a_checkout(catalog: Catalog, doubling: Exercise) -> None:

@@ -66,9 +66,10 @@ def _quiz_passed(here: Here) -> bool:
 def _exercise_step(here: Here, name: str, started: set[str]) -> str:
     if name not in here.catalog.exercise_ids():
         return ""
-    if name not in started:
+    history = here.history(here.catalog.exercise(name))
+    if name not in started and history.last is None:  # a notebook needs no start
         return f"course start {name}"
-    last = here.history(here.catalog.exercise(name)).last_graded
+    last = history.last_graded
     return "" if last is not None and last.all_pass else f"course check {name}"
 
 

@@ -10,11 +10,13 @@ from course.cli.completion import exercise_ids, lesson_ids
 
 __all__ = ["ExerciseName", "LessonName", "OneExercise"]
 
-#: An exercise, or the one the folder is of, or the one last worked on.
+#: An exercise, or the one the folder is of, or the one last worked on; or the path of its file.
 ExerciseName = Annotated[
     str | None,
     typer.Argument(
-        metavar="EXERCISE", help="Its id; the one last worked on if left out.", autocompletion=exercise_ids
+        metavar="EXERCISE",
+        help="Its id, or its file; the one last worked on if left out.",
+        autocompletion=exercise_ids,
     ),
 ]
 

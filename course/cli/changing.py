@@ -28,16 +28,19 @@ __all__ = ["diff", "reset", "update"]
 def diff(exercise: ExerciseName = None) -> int:
     """Show what changed since the stub.
 
-    A unified diff: lines you removed begin with -, lines you added with +.
+    A unified diff: lines you removed begin with -, lines you added with +. Of a notebook it shows the code
+    that is graded.
     """
+    from course.cli.checking import say_which
+    from course.cli.handing_in import asked_for, chosen_work
     from course.cli.here import Here
     from course.cli.schemas import Diff
 
     console, here = current(), Here.load()
-    chosen = here.exercise(exercise)
-    path = here.workspace.path(chosen.id, chosen.module)
-    before, after = _lines(here.stub(chosen)), _lines(here.source(chosen))
-    name = f"{chosen.id}/{chosen.module}"
+    work = chosen_work(here, *asked_for(here, exercise))
+    say_which(console, here, work)
+    name = work.path
+    before, after = _lines(work.stub), _lines(work.source)
     rows = list(difflib.unified_diff(before, after, f"stub/{name}", name, lineterm=""))
     added = sum(row.startswith("+") for row in rows[2:])
     removed = sum(row.startswith("-") for row in rows[2:])
@@ -46,10 +49,12 @@ def diff(exercise: ExerciseName = None) -> int:
         console.note(f"{added} lines added, {removed} removed.")
     else:
         console.line(f"{name} is as it was handed out.")
+    for warning in here.warnings:
+        console.warn(warning)
     console.emit(
         Diff(
-            exercise=chosen.id,
-            path=str(path),
+            exercise=work.exercise.id,
+            path=str(here.workspace.path(work.exercise.id, work.name)),
             changed=bool(rows),
             added=added,
             removed=removed,

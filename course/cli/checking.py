@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,11 +14,20 @@ from course.errors import CourseError, NotFoundError, UngradableError, UsageErro
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.cli.handing_in import Work
     from course.cli.here import Here
     from course.cli.schemas import Check, CourseRef, ErrorReply
     from course.grading.verdict import Verdict
 
-__all__ = ["check", "grade_once", "open_session", "record_verdict", "reply_to", "unlike_verdict"]
+__all__ = [
+    "check",
+    "grade_once",
+    "open_session",
+    "record_verdict",
+    "reply_to",
+    "say_which",
+    "unlike_verdict",
+]
 
 FAILED = 1
 
@@ -35,8 +43,9 @@ def check(
     """Run the public checks.
 
     As often as you like. Exit code 0 if every check passes, 1 if one does not, 3 if there was nothing that
-    could be checked.
+    could be checked. Reads your notebook where you worked in that instead of the .py.
     """
+    from course.cli.handing_in import asked_for, chosen_work
     from course.cli.here import Here
 
     console, here = current(), Here.load()
@@ -44,7 +53,7 @@ def check(
         if exercise is not None or only is not None:
             raise UsageError("--all takes neither an exercise nor --only.", help="Leave one of them out.")
         return _check_all(console, here, verbose=verbose)
-    chosen = here.exercise(exercise)
+    chosen = chosen_work(here, *asked_for(here, exercise))
     reply = _check_one(console, here, chosen, only=only, verbose=verbose)
     if reply.next is not None:
         console.note(f"Next: {reply.next.command}")
@@ -59,6 +68,13 @@ def open_session(exercise: Exercise, catalog: Catalog) -> Any:
     from course.grading.session import GradingSession
 
     return GradingSession(exercise, catalog, scope="public")
+
+
+def say_which(console: Console, here: Here, work: Work) -> None:
+    """Which file was read, where there is a choice; what else there is becomes a warning."""
+    if work.notebook is not None or work.notes:
+        console.note(f"Reading {work.path}.")
+    here.warnings.extend(work.notes)
 
 
 def grade_once(session: Any, exercise: Exercise, source: bytes, only: str | None = None) -> Verdict:
@@ -108,26 +124,11 @@ def record_verdict(
         only: the one check that was asked for.
         one_of_many: every exercise was checked, so that this one is not what the student turned to.
     """
-    from course.progress.history import fingerprint
+    from course.progress.history import check_data
 
-    here.record(
-        "check",
-        exercise.id,
-        {
-            "state": verdict.state,
-            "only": only or "",
-            "all": one_of_many,
-            "score": verdict.score,
-            "max_score": verdict.max_score,
-            "passed": verdict.passed,
-            "all_pass": verdict.all_pass,
-            "seconds": round(seconds, 3),
-            "fingerprint": fingerprint(source),
-            "sha256": hashlib.sha256(source).hexdigest(),
-            "version": here.catalog.version,
-            "checks": [{"id": c.id, "task": c.task, "status": str(c.status)} for c in verdict.checks],
-        },
-    )
+    version = here.catalog.version
+    data = check_data(verdict, source, seconds, version, only=only or "", one_of_many=one_of_many)
+    here.record("check", exercise.id, data)
 
 
 def reply_to(course: CourseRef, verdict: Verdict, step: str = "") -> Check:
@@ -152,7 +153,7 @@ def reply_to(course: CourseRef, verdict: Verdict, step: str = "") -> Check:
 def _check_one(
     console: Console,
     here: Here,
-    exercise: Exercise,
+    work: Work,
     *,
     only: str | None = None,
     one_of_many: bool = False,
@@ -162,13 +163,15 @@ def _check_one(
     from course.cli.advice import next_step
     from course.cli.verdicts import show_verdict
 
-    source = here.source(exercise)
+    exercise, source = work.exercise, work.source
+    say_which(console, here, work)
     with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
         begin = time.perf_counter()
         with open_session(exercise, here.catalog) as session:
-            verdict = grade_once(session, exercise, source, only)
+            graded = grade_once(session, exercise, source, only)
         seconds = time.perf_counter() - begin
-    record_verdict(here, exercise, source, verdict, seconds, only=only, one_of_many=one_of_many)
+    record_verdict(here, exercise, source, graded, seconds, only=only, one_of_many=one_of_many)
+    verdict = work.placed(graded)
     problem = unlike_verdict(verdict)
     if problem is not None:
         raise problem
@@ -178,9 +181,10 @@ def _check_one(
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool) -> int:
+    from course.cli.handing_in import chosen_work, worked_on
     from course.cli.schemas import CheckAll, ErrorBody, ErrorReply
 
-    started = here.started()
+    started = worked_on(here)
     if not started:
         raise NotFoundError(
             "No exercise has been started here.",
@@ -191,7 +195,8 @@ def _check_all(console: Console, here: Here, *, verbose: bool) -> int:
     for exercise in started:
         console.heading(exercise.id)
         try:
-            results.append(_check_one(console, here, exercise, one_of_many=True, verbose=verbose))
+            work = chosen_work(here, exercise)
+            results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose))
         except CourseError as error:
             console.error(error.message, error.help)
             body = ErrorBody(code=error.code, message=error.message, help=error.help)

@@ -13,7 +13,7 @@ import typer
 
 from course.cli.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.console import Console, current
-from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
+from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,11 +39,12 @@ def hint(
     One is due after a check that failed on changed code; comments and layout do not count as a change.
     Until then the last hint is shown again.
     """
+    from course.cli.handing_in import asked_for
     from course.cli.here import Here
 
     console, here = current(), Here.load()
-    chosen = here.exercise(exercise)
-    reply = _next_hint(here, chosen, task)
+    chosen, named = asked_for(here, exercise)
+    reply = _next_hint(here, chosen, task, named)
     if reply.task is not None and not console.quiet:
         console.heading(chosen.task_titled(reply.task), reply.task)
     if reply.hint is not None:
@@ -57,8 +58,12 @@ def hint(
     return 0
 
 
-def _next_hint(here: Here, exercise: Exercise, wanted: str | None) -> schemas.Hint:
-    """Decide what to show, and record it if it is new."""
+def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> schemas.Hint:
+    """Decide what to show, and record it if it is new.
+
+    Args:
+        named: the file that was named, to be called by its name.
+    """
     from course.progress.history import fingerprint
 
     history = here.history(exercise)
@@ -79,7 +84,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None) -> schemas.Hi
     hints = here.catalog.hints(exercise).of(task)
     shown = history.hints_for(task)
     if not history.hint_is_due(fingerprint(here.stub(exercise))):
-        return _not_due(exercise, task, hints[min(shown, len(hints)) - 1] if shown and hints else None)
+        shown_last = hints[min(shown, len(hints)) - 1] if shown and hints else None
+        return _not_due(exercise, task, shown_last, named or _file_name(here, exercise))
     if shown >= len(hints):
         message = (
             f"Every hint for this function has been given; you have worked for all of them. "
@@ -105,16 +111,26 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
     return next((task for task in candidates if task in failing), None)
 
 
-def _not_due(exercise: Exercise, task: str, last: str | None) -> schemas.Hint:
+def _file_name(here: Here, exercise: Exercise) -> str:
+    """The file that the student works in, as far as it can be told."""
+    from course.cli.handing_in import chosen_work
+
+    try:
+        return chosen_work(here, exercise).name
+    except CourseError:
+        return exercise.module
+
+
+def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> schemas.Hint:
     if last is None:
         message = (
-            f"The first hint follows an attempt. Write something in {exercise.module}, however rough, "
+            f"The first hint follows an attempt. Write something in {file}, however rough, "
             "and check it; then ask again."
         )
     else:
         message = (
             "You have had that one already. The next one follows a check that fails on changed code in "
-            f"{exercise.module}."
+            f"{file}."
         )
     return _hint(
         exercise,

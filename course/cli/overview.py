@@ -144,14 +144,16 @@ def day(moment: str) -> str:
 
 
 def _state(here: Here, exercise: Exercise, history: History) -> str:
-    last = history.last
+    last, whole = history.last, history.last_graded
     if last is None:
         return "started" if exercise.id in here.workspace.started() else "new"
     if last.state != "graded":
         return "broken"
-    if last.all_pass:
+    if whole is None:  # only some of the checks were ever run, which says nothing about the others
+        return "failing"
+    if whole.all_pass and last.all_pass:
         return "complete"
-    return "passed" if last.passed else "failing"
+    return "passed" if whole.passed else "failing"
 
 
 def _outside(console: Console) -> int:

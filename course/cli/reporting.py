@@ -15,6 +15,7 @@ from course.cli.schemas import CourseRef, Envelope
 from course.cli.sim_schemas import SimFile
 
 if TYPE_CHECKING:
+    from course.cli.handing_in import Work
     from course.cli.here import Here
     from course.figures.described import Plot
     from course.grading.report import Report, Section
@@ -59,14 +60,16 @@ def report(
     Runs your functions on public data, as the checks do, and draws the result. What needs a function that is
     not written yet says so; the rest is shown.
     """
+    from course.cli.checking import say_which
+    from course.cli.handing_in import asked_for, chosen_work
     from course.cli.here import Here
-    from course.grading.report import report_of
 
     console, here = current(), Here.load()
-    chosen = here.exercise(exercise)
-    source = here.source(chosen)
-    with console.working(f"Running {chosen.module}"):
-        made = report_of(chosen, here.catalog, {chosen.module: source})
+    work = chosen_work(here, *asked_for(here, exercise))
+    chosen = work.exercise
+    say_which(console, here, work)
+    with console.working(f"Running {work.name}"):
+        made = _made(here, work)
     folder = _folder(here, chosen.id, out)
     console.heading(made.title, chosen.id)
     sections = tuple(
@@ -75,6 +78,8 @@ def report(
     )
     written = _write_bag(console, made, bag) if bag is not None else None
     console.note(f"Next: course check {chosen.id}")
+    for warning in here.warnings:
+        console.warn(warning)
     console.emit(
         ReportReply(
             course=here.course,
@@ -85,6 +90,23 @@ def report(
         )
     )
     return 0
+
+
+def _made(here: Here, work: Work) -> Report:
+    """The report; of a notebook it names cells, also where it cannot be made."""
+    from course.errors import UngradableError
+    from course.grading.notebook_places import in_cells, placed_report
+    from course.grading.report import report_of
+
+    files = {work.exercise.module: work.source}
+    if work.notebook is None:
+        return report_of(work.exercise, here.catalog, files)
+    try:
+        made = report_of(work.exercise, here.catalog, files)
+    except UngradableError as error:
+        message = in_cells(error.message, work.notebook, work.exercise)
+        raise UngradableError(message, help=error.help, code=error.code) from None
+    return placed_report(made, work.notebook, work.exercise)
 
 
 def _folder(here: Here, exercise: str, out: Path | None) -> Path:

@@ -54,13 +54,17 @@ def watch(
     Ctrl-C ends it. With --json the one object is printed then.
     """
     from course.cli.checking import open_session
+    from course.cli.handing_in import asked_for, chosen_work
     from course.cli.here import Here
 
     console, here = current(), Here.load()
-    chosen = here.exercise(exercise)
-    path = here.workspace.path(chosen.id, chosen.module)
-    here.source(chosen)  # nothing to watch is an error now, and only something to wait for later
-    watcher = Watcher(console=console, here=here, exercise=chosen, verbose=verbose)
+    # Nothing to watch is an error now, and only something to wait for later.
+    work = chosen_work(here, *asked_for(here, exercise))
+    chosen = work.exercise
+    path = here.workspace.path(chosen.id, work.name)
+    for note in work.notes:
+        console.warn(note)
+    watcher = Watcher(console=console, here=here, exercise=chosen, verbose=verbose, name=work.name)
     try:
         with _ended_like_ctrl_c(), open_session(chosen, here.catalog) as session:
             console.note(f"Watching {here.workspace.shown(path)}; Ctrl-C ends it.")
@@ -122,12 +126,17 @@ def saves(path: Path) -> Iterator[None]:
 
 @dataclass
 class Watcher:
-    """Turns saves into verdicts and remembers them."""
+    """Turns saves into verdicts and remembers them.
+
+    Attributes:
+        name: of the file that is watched; "" for the exercise's module.
+    """
 
     console: Console
     here: Here
     exercise: Exercise
     verbose: bool = False
+    name: str = ""
     runs: list[WatchRun] = field(default_factory=list)
     last: Check | ErrorReply | None = None
     _seen: Signature = None
@@ -136,7 +145,7 @@ class Watcher:
     def look(self, session: Any) -> bool:
         """Grade the file if it was saved since the last look; True if it was."""
         noticed = time.perf_counter()
-        path = self.here.workspace.path(self.exercise.id, self.exercise.module)
+        path = self.here.workspace.path(self.exercise.id, self.name or self.exercise.module)
         signature = _signature(path)
         if signature is None:
             if not self._gone:
@@ -167,14 +176,16 @@ class Watcher:
     def _grade(self, session: Any, noticed: float) -> None:
         from course.cli import checking
         from course.cli.advice import next_step
+        from course.cli.handing_in import chosen_work
         from course.cli.verdicts import show_verdict
 
         self._announce()
         try:
-            source = self.here.source(self.exercise)
-            verdict = checking.grade_once(session, self.exercise, source)
+            work = chosen_work(self.here, self.exercise, self.name or self.exercise.module)
+            graded = checking.grade_once(session, self.exercise, work.source)
             seconds = time.perf_counter() - noticed
-            checking.record_verdict(self.here, self.exercise, source, verdict, seconds)
+            checking.record_verdict(self.here, self.exercise, work.source, graded, seconds)
+            verdict = work.placed(graded)
             problem = checking.unlike_verdict(verdict)
             if problem is not None:
                 raise problem
@@ -184,7 +195,7 @@ class Watcher:
             self._ungradable(error, noticed)
             return
         show_verdict(self.console, self.exercise, verdict, verbose=self.verbose, brief=True)
-        step = next_step(self.here, self.exercise, verdict, source)
+        step = next_step(self.here, self.exercise, verdict, work.source)
         if step != f"course watch {self.exercise.id}":
             self.console.note(f"Next: {step}")
         self.last = checking.reply_to(self.here.course, verdict, step)

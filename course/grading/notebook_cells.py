@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
+import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -18,15 +19,18 @@ from course.errors import UngradableError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["MAX_NOTEBOOK", "CodeCell", "code_cells", "typed_cell"]
+__all__ = ["MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "typed_cell"]
 
 #: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
 MAX_NOTEBOOK = 32 << 20
+#: Of all code cells together: what a module may be large. In characters.
+MAX_CODE = 1 << 20
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
 #: Cell magics whose body is Python of this notebook; the cells of all others are something else.
 _PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})
-_MAGIC = re.compile(r"\s*(?:[%!?]|[A-Za-z_][\w.]*\?{1,2}\s*$|[\w.,\s\[\]]+=\s*[%!])|.*\S\?{1,2}\s*$")
+#: Of a line without space around it: a million spaces in a row would be tried in every way to part them.
+_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|.*\S\?{1,2}$")
 
 
 class _Cell(msgspec.Struct, frozen=True):
@@ -103,12 +107,26 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
             code="other_kernel",
         )
     cells = notebook.cells or [cell for sheet in notebook.worksheets for cell in sheet.cells]
-    return [_code_cell(number, cell) for number, cell in enumerate(cells, 1) if cell.cell_type == "code"]
+    codes = [(number, cell) for number, cell in enumerate(cells, 1) if cell.cell_type == "code"]
+    _must_be_small([(number, len(_text(cell))) for number, cell in codes], name)
+    return [_code_cell(number, cell) for number, cell in codes]
 
 
 def typed_cell(number: int, text: str) -> CodeCell:
     """A cell of which only the text is known: what was typed into a running notebook."""
     return _code_cell(number, _Cell("code", text))
+
+
+def _must_be_small(sizes: list[tuple[int, int]], name: str) -> None:
+    """Refuse more code than anyone writes before it is parsed: a syntax tree is far larger than its text."""
+    if sum(size for _, size in sizes) <= MAX_CODE:
+        return
+    number, size = max(sizes, key=lambda one: one[1])
+    raise UngradableError(
+        f"The code of {name} is larger than {MAX_CODE >> 20} MB; cell {number} has {size:,} characters.",
+        help="Keep data out of the cells; the exercise needs none.",
+        code="too_large",
+    )
 
 
 def _decoded(data: bytes, name: str) -> _Notebook:
@@ -136,16 +154,22 @@ def _language(metadata: _Metadata | None) -> str:
 
 
 def _code_cell(number: int, cell: _Cell) -> CodeCell:
-    source = cell.source or cell.input
-    text = source if isinstance(source, str) else "".join(source)
-    text, dropped = _without_magics(text.replace("\r\n", "\n").replace("\r", "\n"))
+    text, dropped = _without_magics(_text(cell).replace("\r\n", "\n").replace("\r", "\n"))
+    text, more = _without_shell(text)
     tags = cell.metadata.get("course")
-    return CodeCell(number, text, _parsed(text), tags if isinstance(tags, dict) else {}, dropped)
+    return CodeCell(number, text, _parsed(text), tags if isinstance(tags, dict) else {}, (*dropped, *more))
+
+
+def _text(cell: _Cell) -> str:
+    source = cell.source or cell.input
+    return source if isinstance(source, str) else "".join(source)
 
 
 def _parsed(text: str) -> ast.Module | None:
     try:
-        return ast.parse(text)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
+            return ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
 
@@ -169,12 +193,36 @@ def _without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
     lines = text.split("\n")
     taken: list[tuple[int, str]] = []
     for index in _statement_lines(text):
-        shown = lines[index]
-        if _MAGIC.match(shown) and _parsed(shown.strip()) is None:
-            indent = shown[: len(shown) - len(shown.lstrip())]
+        whole = lines[index]
+        shown = whole.strip()
+        if _MAGIC.match(shown) and _parsed(shown) is None:
+            indent = whole[: len(whole) - len(whole.lstrip())]
             lines[index] = indent + "pass"
-            taken.append((index + 1, shown.strip()))
+            taken.append((index + 1, shown))
     return "\n".join(lines), tuple(taken)
+
+
+def _without_shell(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
+    """The text without statements that are magics written out: get_ipython().run_line_magic(...)."""
+    tree = _parsed(text) if "get_ipython" in text else None
+    if tree is None:
+        return text, ()
+    lines = text.split("\n")
+    taken: list[tuple[int, str]] = []
+    for node in tree.body:
+        first, last = node.lineno - 1, node.end_lineno or node.lineno
+        alone = sum(one.lineno <= last and first < (one.end_lineno or one.lineno) for one in tree.body) == 1
+        if alone and _asks_shell(node):
+            taken.append((node.lineno, lines[first].strip()))
+            lines[first:last] = ["pass", *[""] * (last - first - 1)]
+    return "\n".join(lines), tuple(taken)
+
+
+def _asks_shell(node: ast.stmt) -> bool:
+    inner = node.value if isinstance(node, ast.Expr) else None
+    while isinstance(inner, ast.Attribute | ast.Call):
+        inner = inner.value if isinstance(inner, ast.Attribute) else inner.func
+    return isinstance(inner, ast.Name) and inner.id == "get_ipython"
 
 
 _PIECE = re.compile(

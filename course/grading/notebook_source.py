@@ -128,7 +128,6 @@ def _counts(cell: CodeCell, exercise: str, functions: set[str]) -> bool:
 def _blocks(cells: list[CodeCell], chosen: list[CodeCell]) -> list[tuple[CodeCell, str]]:
     """(cell, text) of everything that counts, in order; lines left out are empty."""
     whole = {cell.number for cell in chosen}
-    used = {name for cell in chosen if cell.tree for name in _loaded(cell.tree)}
     others = [
         (cell, node)
         for cell in cells
@@ -136,15 +135,17 @@ def _blocks(cells: list[CodeCell], chosen: list[CodeCell]) -> list[tuple[CodeCel
         for node in cell.tree.body
         if not _is_tool(cell, node)
     ]
+    binding: dict[str, list[int]] = {}
+    for index, (_, node) in enumerate(others):
+        for name in _bound(node):
+            binding.setdefault(name, []).append(index)
     kept: set[int] = set()
-    grown = True
-    while grown:
-        grown = False
-        for index, (_, node) in enumerate(others):
-            if index not in kept and not used.isdisjoint(_bound(node)):
+    wanted = [name for cell in chosen if cell.tree for name in _loaded(cell.tree)]
+    while wanted:
+        for index in binding.pop(wanted.pop(), ()):  # each name is looked up once
+            if index not in kept:
                 kept.add(index)
-                used.update(_loaded(node))
-                grown = True
+                wanted += _loaded(others[index][1])
     nodes: dict[int, list[ast.stmt]] = {}
     for index in sorted(kept):
         nodes.setdefault(others[index][0].number, []).append(others[index][1])

@@ -16,7 +16,8 @@ __all__ = ["CheckTable"]
 _MARKS = {"pass": "✓", "skip": "–"}
 _STYLE = (
     "<style>.course-checks{border-collapse:collapse}.course-checks td{text-align:left!important;"
-    "vertical-align:top;padding:.35em .6em}.course-checks small{opacity:.8}</style>"
+    "vertical-align:top;padding:.35em .6em}.course-checks td:first-child{white-space:nowrap}"
+    ".course-checks small{opacity:.8}</style>"
 )
 
 
@@ -26,10 +27,12 @@ class CheckTable:
     Args:
         verdict: on all public checks.
         task: show those of this function only; None shows all.
+        note: what else there is to say, as a sentence.
     """
 
-    def __init__(self, verdict: Verdict, task: str | None) -> None:
+    def __init__(self, verdict: Verdict, task: str | None, note: str = "") -> None:
         self.verdict = verdict
+        self.note = note
         self.checks = tuple(check for check in verdict.checks if task in (None, check.task))
         self._task = task
 
@@ -49,6 +52,8 @@ class CheckTable:
         most = sum(check.max_points for check in self.checks)
         of = f" of {self._task}" if self._task else ""
         score = f"{format_points(points)} of {format_points(most)} points"
+        if self.passed and len(self.checks) == 1:
+            return f"The one public check{of} passes: {score}."
         if self.passed:
             return f"All {len(self.checks)} public checks{of} pass: {score}."
         return f"{passing} of {len(self.checks)} public checks{of} pass: {score}."
@@ -58,12 +63,13 @@ class CheckTable:
         for check in self.checks:
             lines.append(f"{_MARKS.get(check.status, '✗')} {check.title}: {check.status}")
             lines += [f"    {text}" for text in _words(check)]
-        return "\n".join([*lines, self.summary])
+        return "\n".join([*lines, self.summary, *([self.note] if self.note else [])])
 
     def _repr_html_(self) -> str:
         rows = "".join(_row(check) for check in self.checks)
         table = f'<table class="course-checks">{rows}</table>' if rows else ""
-        return f"{_STYLE}{table}<p><b>{escape(self.summary)}</b></p>"
+        note = f"<p>{escape(self.note)}</p>" if self.note else ""
+        return f"{_STYLE}{table}<p><b>{escape(self.summary)}</b></p>{note}"
 
 
 def _row(check: CheckResult) -> str:

@@ -1,21 +1,24 @@
 """``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
 
 What is checked is the text of the cells that were run, not the objects in the kernel: the functions run again
-in a process of their own, so a check means the same here, in a terminal and in the grading run.
+in a process of their own, so a check means the same here, in a terminal and in the grading run. In a
+workspace it is recorded as `course check` records it.
 """
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any
 
-from course.errors import CourseError
+from course.errors import CourseError, NotFoundError
 from course.notebooks.findings import CheckTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.grading.verdict import CheckResult, Verdict
+    from course.grading.verdict import Verdict
     from course.notebooks.page import ReportPage
 
 __all__ = ["check", "register", "report", "typed_in"]
@@ -72,6 +75,7 @@ def report(history: Sequence[str], exercise_id: str) -> ReportPage:
         UngradableError: there is nothing to run yet, or it cannot be run.
     """
     from course.catalog.load import Catalog
+    from course.grading.notebook_places import placed_report
     from course.grading.report import report_of
     from course.notebooks.page import ReportPage
     from course.notebooks.typed import module_of
@@ -79,7 +83,8 @@ def report(history: Sequence[str], exercise_id: str) -> ReportPage:
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     module = module_of(history, exercise)
-    return ReportPage(report_of(exercise, catalog, {exercise.module: module.source}))
+    made = report_of(exercise, catalog, {exercise.module: module.source})
+    return ReportPage(placed_report(made, module, exercise))
 
 
 def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> CheckTable:
@@ -93,38 +98,70 @@ def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> 
         UngradableError: there is nothing to check yet.
     """
     from course.catalog.load import Catalog
-    from course.errors import NotFoundError
     from course.grading.notebook_places import placed
-    from course.notebooks.typed import module_of
+    from course.notebooks.typed import defines_all, module_of
 
-    exercise = Catalog().exercise(exercise_id)
+    catalog = Catalog()
+    exercise = catalog.exercise(exercise_id)
     known = [one.id for one in exercise.task]
     if task is not None and task not in known:
         raise NotFoundError(
             f"{exercise_id} has no function {task}.", help=f"It has: {', '.join(known)}.", code="no_such_task"
         )
     module = module_of(history, exercise)
-    return CheckTable(placed(_graded(exercise, module.source, task), module, exercise), task)
+    begin = time.perf_counter()
+    verdict = _graded(catalog, exercise, module.source)
+    seconds = time.perf_counter() - begin
+    if task is not None and not defines_all(module.source, known):
+        # What was not run yet is not missing: the attempt is at this function alone.
+        verdict = _of_task(verdict, exercise, task)
+        note = _recorded(catalog, exercise, verdict, module.source, seconds, only=task)
+    else:
+        note = _recorded(catalog, exercise, verdict, module.source, seconds)
+    return CheckTable(placed(verdict, module, exercise), task, note)
 
 
-def _graded(exercise: Exercise, source: bytes, task: str | None) -> Verdict:
-    """The verdict on a module; on the checks of one function only, if one is named."""
-    import msgspec
-
-    from course.catalog.load import Catalog
+def _graded(catalog: Catalog, exercise: Exercise, source: bytes) -> Verdict:
     from course.grading.session import GradingSession, Submission
 
-    submission = Submission({exercise.module: source})
-    with GradingSession(exercise, Catalog(), scope="public") as session:
-        wanted = [check.id for check in session.checks if check.task == task]
-        if not wanted:
-            whole: Verdict = session.grade(submission)
-            return whole
-        found: dict[str, CheckResult] = {}
-        for name in wanted:
-            verdict: Verdict = session.grade(submission, only=name)
-            if verdict.state != "graded":
-                return verdict
-            found |= {check.id: check for check in verdict.checks}
-    checks = tuple(found[name] for name in wanted)
-    return msgspec.structs.replace(verdict, checks=checks)
+    with GradingSession(exercise, catalog, scope="public") as session:
+        verdict: Verdict = session.grade(Submission({exercise.module: source}))
+    return verdict
+
+
+def _of_task(verdict: Verdict, exercise: Exercise, task: str) -> Verdict:
+    """The part of a verdict that is about one function."""
+    import msgspec
+
+    if verdict.state != "graded":
+        return verdict
+    checks = tuple(check for check in verdict.checks if check.task == task)
+    score, most = sum(check.points for check in checks), sum(check.max_points for check in checks)
+    return msgspec.structs.replace(
+        verdict, checks=checks, score=score, max_score=most, passed=score >= exercise.pass_mark * most
+    )
+
+
+def _recorded(
+    catalog: Catalog, exercise: Exercise, verdict: Verdict, source: bytes, seconds: float, *, only: str = ""
+) -> str:
+    """Add an attempt to the progress of the workspace this kernel runs in; what there is to say about that.
+
+    Outside of a workspace there is no record, and nothing to say.
+    """
+    from pathlib import Path
+
+    from course.progress.history import check_data
+    from course.progress.workspace import Workspace
+
+    try:
+        workspace = Workspace.find(Path.cwd())
+        if workspace.course_id != catalog.course_id:
+            return f"This was not recorded: {workspace.root} is a workspace of another course."
+        data = check_data(verdict, source, seconds, catalog.version, only=only)
+        workspace.store.append("check", exercise.id, data)
+    except (NotFoundError, FileNotFoundError):  # also where the folder is gone
+        return ""
+    except CourseError as error:
+        return f"This was not recorded: {error.message} {error.help}"
+    return ""

@@ -12,14 +12,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from course.grading.notebook_cells import CodeCell, typed_cell
-from course.grading.notebook_source import NotebookSource, source_of
+from course.grading.notebook_source import SETUP, NotebookSource, source_of
+from course.notebooks.stub import pieces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from course.catalog.models import Exercise
 
-__all__ = ["module_of"]
+__all__ = ["defines_all", "module_of"]
 
 _DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
 
@@ -33,7 +34,12 @@ def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
     Raises:
         UngradableError: none of the exercise's functions was run yet.
     """
-    cells = [typed_cell(number, text) for number, text in enumerate(history, 1) if text.strip()]
+    given = _given(exercise)
+    cells = [
+        replace(typed_cell(number, text), tags=given.get(text.strip(), {}))
+        for number, text in enumerate(history, 1)
+        if text.strip()
+    ]
     kept: list[CodeCell] = []
     later: set[str] = set()
     for cell in reversed(cells):
@@ -43,6 +49,28 @@ def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
         later |= names
         kept.append(cell)
     return replace(source_of(kept[::-1], exercise, "This notebook"), called="In [{}]")
+
+
+def _given(exercise: Exercise) -> dict[str, dict[str, str]]:
+    """The marks of the cells that an exercise's notebook begins with, by their text.
+
+    A kernel knows nothing of marks; and what such a cell imports counts whether it is used or not.
+    """
+    parts = pieces(exercise.stub_path.read_text(encoding="utf-8"), {task.id for task in exercise.task})[1]
+    marks = {"exercise": exercise.id, "role": SETUP}
+    return {part.text.strip(): marks for part in parts if not part.task}
+
+
+def defines_all(source: bytes, names: Sequence[str]) -> bool:
+    """Whether a module defines every name; one that is not Python lacks none, it cannot be run at all."""
+    tree = typed_cell(1, source.decode()).tree
+    if tree is None:
+        return True
+    assigned = {
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    }
+    defined = {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    return set(names) <= defined | assigned
 
 
 def _names(cell: CodeCell) -> set[str]:

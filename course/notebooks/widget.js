@@ -7,6 +7,8 @@ export default {
     el.addEventListener("focusin", (event) => {
       event.target.dataset.lmSuppressShortcuts = "true";
     });
+    // How wide the cell is decides how the world is laid out, not how wide the window is.
+    el.style.containerType = "inline-size";
     const world = mount(el, { send: (request) => model.send({ kind: "request", text: JSON.stringify(request) }) });
     const hear = (message, buffers) => {
       if (message.kind === "numbers") {

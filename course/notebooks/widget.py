@@ -9,21 +9,13 @@ from typing import Any
 
 import anywidget
 
-import course.sandbox.views
+from course.notebooks.widget_style import STATIC, style
 from course.sandbox.loading import choose
 from course.sandbox.views.web_session import Page, Session
 from course.sandbox.world import World
 
 __all__ = ["Sandbox"]
 
-_STATIC = Path(course.sandbox.views.__file__).parent / "static"
-#: A cell's output is no page of its own: what is above and below should stay in sight. JupyterLab lays lists
-#: of terms out in its own way.
-_HERE = """
-.sandbox { height: min(75vh, 44rem); }
-.sandbox :is(dt, dd) { float: none; width: auto; margin: 0; padding: 0; }
-.sandbox dt { font-weight: inherit; }
-"""
 #: Between two frames, in s: what a person does has to get through as well.
 _PAUSE = 0.02
 #: How long a page may take to draw a frame before it counts as gone, in s; it is asked again when it says
@@ -43,8 +35,8 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
         UsageError: a setting is unknown or out of range.
     """
 
-    _esm = (_STATIC / "world.js").read_text("utf-8") + Path(__file__).with_suffix(".js").read_text("utf-8")
-    _css = (_STATIC / "style.css").read_text("utf-8") + _HERE
+    _esm = (STATIC / "world.js").read_text("utf-8") + Path(__file__).with_suffix(".js").read_text("utf-8")
+    _css = style()
 
     def __init__(self, scene_id: str, **settings: float) -> None:
         super().__init__()

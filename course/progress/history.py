@@ -10,15 +10,42 @@ import ast
 import hashlib
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from datetime import datetime
 
     from course.progress.store import Event
 
-__all__ = ["CheckRun", "History", "fingerprint", "history_of"]
+    class _Check(Protocol):
+        """What is kept of one check."""
+
+        @property
+        def id(self) -> str: ...
+        @property
+        def task(self) -> str: ...
+        @property
+        def status(self) -> str: ...
+
+    class _Verdict(Protocol):
+        """What is kept of a verdict."""
+
+        @property
+        def state(self) -> str: ...
+        @property
+        def score(self) -> float: ...
+        @property
+        def max_score(self) -> float: ...
+        @property
+        def passed(self) -> bool: ...
+        @property
+        def all_pass(self) -> bool: ...
+        @property
+        def checks(self) -> Sequence[_Check]: ...
+
+
+__all__ = ["CheckRun", "History", "check_data", "fingerprint", "history_of"]
 
 _PASS = "pass"
 
@@ -31,7 +58,7 @@ class CheckRun:
         id: of its event.
         at: when, in UTC.
         state: "graded" or "ungradable".
-        only: the check that was asked for alone; empty for a run of all public checks.
+        only: the check or function that was asked for alone; empty for a run of all public checks.
         score, max_score: points.
         passed: the pass mark was reached.
         all_pass: every check passed.
@@ -156,15 +183,56 @@ def history_of(events: Iterable[Event]) -> History:
     return History(runs=tuple(runs), hints=tuple(hints), started=started)
 
 
-def fingerprint(source: bytes) -> str:
-    """What makes a file a different attempt: its code, without comments and layout.
+def check_data(
+    verdict: _Verdict,
+    source: bytes,
+    seconds: float,
+    version: str,
+    *,
+    only: str = "",
+    one_of_many: bool = False,
+) -> dict[str, object]:
+    """What an event of kind "check" holds: the attempt as ``history_of`` reads it again.
 
-    A file that does not parse is known by its bytes, line endings aside.
+    Args:
+        source: the module that was checked.
+        seconds: how long it took.
+        version: of the course's content.
+        only: the check or function that was asked for alone.
+        one_of_many: every exercise was checked, so that this one is not what the student turned to.
+    """
+    return {
+        "state": verdict.state,
+        "only": only,
+        "all": one_of_many,
+        "score": verdict.score,
+        "max_score": verdict.max_score,
+        "passed": verdict.passed,
+        "all_pass": verdict.all_pass,
+        "seconds": round(seconds, 3),
+        "fingerprint": fingerprint(source),
+        "sha256": hashlib.sha256(source).hexdigest(),
+        "version": version,
+        "checks": [
+            {"id": check.id, "task": check.task, "status": str(check.status)} for check in verdict.checks
+        ],
+    }
+
+
+def fingerprint(source: bytes) -> str:
+    """What makes a file a different attempt: its statements, without comments and layout.
+
+    The same code in a notebook is the same attempt. There a module's docstring is a text cell, a ``pass``
+    stands where a magic was, and cells run in the order somebody ran them; so neither of these counts. A file
+    that does not parse is known by its bytes, line endings aside.
     """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
-            code = ast.dump(ast.parse(source)).encode("utf-8", "surrogatepass")
+            tree = ast.parse(source)
+            body = tree.body[1:] if ast.get_docstring(tree, clean=False) is not None else tree.body
+            statements = {ast.dump(node) for node in body if not isinstance(node, ast.Pass)}
+            code = "\n".join(sorted(statements)).encode("utf-8", "surrogatepass")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         code = source.replace(b"\r\n", b"\n")
     return hashlib.sha256(code).hexdigest()

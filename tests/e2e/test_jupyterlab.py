@@ -178,7 +178,7 @@ def test_an_exercise_is_edited_until_its_check_passes(open_notebook: Any) -> Non
     shot(page, "exercise-finding", ".course-checks")
     assert "semi-implicit" in _check(page)
     _write(page, RIGHT)
-    _wait_for_check(page, "public checks of explicit_euler_step pass")
+    _wait_for_check(page, "The one public check of explicit_euler_step passes")
     shot(page, "exercise-pass", ".course-checks")
 
 
@@ -228,10 +228,32 @@ def test_the_sandbox_moves_and_a_body_can_be_dragged(open_notebook: Any) -> None
     page.mouse.up()
     widget.locator(".picked", has_text=re.compile(r"left puck, 1 kg: (0\.9|1\.0)")).wait_for()
     assert widget.locator(".clock").inner_text() == "0.00 s"
-    widget.get_by_role("button", name="Just run").click()
+    widget.locator(".card", has_text="changed by hand").wait_for()
+    widget.get_by_role("button", name="Run", exact=True).click()
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== '0.00 s'")
     page.wait_for_function("() => !document.querySelector('.sandbox .clock').innerText.startsWith('0')")
     shot(page, "sandbox-after", "canvas.world")
+
+
+def test_a_narrow_cell_puts_the_panel_below_the_world(open_notebook: Any) -> None:
+    pytest.importorskip("anywidget")
+    page = open_notebook("sandbox.ipynb")
+    _run(page, "from course.notebooks.sandbox import play")
+    _run(page, 'play("newtons-cradle")')
+    panel, stage = page.locator(".sandbox .panel"), page.locator(".sandbox .stage")
+    page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== ''")
+    wide = stage.bounding_box(), panel.bounding_box()
+    assert wide[1]["x"] >= wide[0]["x"] + wide[0]["width"] - 1
+    page.set_viewport_size({"width": 900, "height": 1000})  # the file browser takes its share of it
+    page.wait_for_timeout(500)
+    shot(page, "sandbox-narrow", ".sandbox .top")
+    narrow = stage.bounding_box(), panel.bounding_box()
+    assert narrow[1]["y"] >= narrow[0]["y"] + narrow[0]["height"]
+    assert narrow[0]["width"] == pytest.approx(narrow[1]["width"], abs=2)
+    assert narrow[0]["height"] > 150
+    overflow = "() => { const s = document.querySelector('.sandbox'); return s.scrollWidth - s.clientWidth; }"
+    assert page.evaluate(overflow) <= 1
+    shot(page, "sandbox-narrow-panel", ".sandbox .panel")
 
 
 def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook: Any) -> None:

@@ -178,6 +178,21 @@ def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write):
     assert "is not a notebook" in ran.json["left_out"][0]["action"]
 
 
+def test_submit_says_so_where_outputs_are_nested_too_deeply(course, workspace, monkeypatch):
+    """Just below the depth at which the grading run's reader gives up, ours may have given up already."""
+    from course.cli import handing_in
+
+    def too_deep(_data):
+        raise RecursionError
+
+    monkeypatch.setattr(handing_in, "_without_outputs", too_deep)
+    course("notebook", "build", "doubling")
+    write_into(workspace / "doubling" / "doubling.ipynb", GOOD)
+    ran = course("submit")
+    assert ran.code == 3
+    assert "doubling/doubling.ipynb (its outputs cannot be read" in ran.out
+
+
 def test_a_zip_with_a_notebook_is_graded_like_the_module(course, workspace):
     from course.catalog.load import Catalog
     from course.grading.downloads import Place, Student

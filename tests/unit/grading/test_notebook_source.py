@@ -9,7 +9,7 @@ import pytest
 
 from course.catalog.models import Exercise, Task
 from course.errors import UngradableError
-from course.grading.notebook_cells import MAX_NOTEBOOK
+from course.grading.notebook_cells import MAX_CODE, MAX_NOTEBOOK
 from course.grading.notebook_source import NotebookSource, notebook_source
 
 EXERCISE = Exercise(
@@ -149,6 +149,37 @@ def test_what_only_inner_functions_and_defaults_use_counts_too() -> None:
 def test_what_is_not_python_is_taken_out_line_by_line(text: str, left: str) -> None:
     source = source_of(code(text, SOLUTION), code(FORCE, SOLUTION))
     assert source.source.decode() == f"{left}\n{FORCE}\n"
+
+
+def test_magics_that_are_written_out_are_taken_out_too() -> None:
+    text = "get_ipython().run_line_magic(\n    'matplotlib', 'inline'\n)\nget_ipython().system('ls')\n"
+    source = source_of(code(text + FORCE, SOLUTION), code("K = 1; get_ipython()", SOLUTION))
+    assert source.source.decode() == f"pass\n\n\npass\n{FORCE}\nK = 1; get_ipython()\n"
+    assert source.notes[0].startswith("Cell 1, line 1: left out")
+    assert source.notes[1].startswith("Cell 1, line 4: left out")
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        [code(" " * 300_000 + "§")],
+        [code("x" + " " * 300_000 + "§")],
+        [code(f"a{k} = a{k + 1}") for k in range(1500)] + [code("def energy():\n    return a0")],
+        [code("?" * 200_000)],
+        [code("'" * 200_001)],
+        [code("(" * 200_000)],
+    ],
+)
+def test_no_cell_takes_forever_to_read(cells: list[dict[str, Any]]) -> None:
+    """Each took minutes or hours where the time grew with the square of the size."""
+    assert source_of(*cells, code(FORCE)).source.endswith(f"{FORCE}\n".encode())
+
+
+def test_more_code_than_anyone_writes_is_refused_and_the_largest_cell_named() -> None:
+    with pytest.raises(UngradableError) as caught:
+        source_of(code(FORCE), code("1\n" * (MAX_CODE // 4)), code("1\n" * (MAX_CODE // 3)))
+    assert caught.value.code == "too_large"
+    assert "cell 3" in caught.value.message
 
 
 @pytest.mark.parametrize("text", ["%%bash\nrm -rf /", "%%html\n<b>", "%%writefile a.py\ndef force(): 1"])

@@ -22,6 +22,7 @@ from course.notebooks.layout import FOLDERS, WORKSPACE
 from course.notebooks.lowering import Lowering
 from course.notebooks.quiz import SEED, marked
 from course.notebooks.stub import pieces
+from course.notebooks.widget_style import style
 from course.quizzing.bank import Bank
 
 if TYPE_CHECKING:
@@ -211,6 +212,12 @@ def test_three_processes_with_different_hash_seeds_write_the_same_bytes(everythi
     printed = {process.communicate()[0] for process in running}
     here = "".join(f"{one.path} {hashlib.sha256(one.data).hexdigest()}\n" for one in everything)
     assert printed == {here}
+
+
+def test_the_world_in_a_cell_is_laid_out_by_the_cell_and_not_by_the_window() -> None:
+    css = style()
+    assert "@media (max-width" not in css
+    assert css.count("@container (max-width: 720px)") == 2
 
 
 def test_building_needs_nothing_of_jupyter(tmp_path: Path) -> None:

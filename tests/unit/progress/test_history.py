@@ -85,10 +85,19 @@ def test_a_check_run_alone_corrects_the_last_whole_run_and_leaves_its_score():
         b"def double(x):\n    return x  # now with a comment\n",
         b"def double(x):\r\n\r\n    return  x\r\n",
         b"\xef\xbb\xbfdef double(x):\n    return x\n",
+        b'"""What this is about."""\n\npass\ndef double(x):\n    return x\n',
     ],
 )
 def test_comments_and_layout_are_no_attempt(other):
     assert fingerprint(other) == FIRST
+
+
+def test_the_order_of_functions_is_no_attempt_but_any_change_of_one_is():
+    other = b"def halve(x):\n    return x / 2\n"
+    both = b"def double(x):\n    return x\n"
+    assert fingerprint(both + other) == fingerprint(other + both)
+    assert fingerprint(both + other) != fingerprint(both)
+    assert fingerprint(both + other) != fingerprint(both + other.replace(b"2", b"3"))
 
 
 @pytest.mark.parametrize("source", [b"def double(x:\n", b"\x00", b"\xff\xfe", b"(" * 100_000, b'"\\d"\n'])

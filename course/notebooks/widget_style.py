@@ -1,0 +1,32 @@
+"""How the sandbox looks in a cell's output: the web view's own style, made for a place inside of a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import course.sandbox.views
+
+__all__ = ["STATIC", "style"]
+
+#: The web view's files.
+STATIC = Path(course.sandbox.views.__file__).parent / "static"
+
+#: What the web view asks of its window, a cell has to ask of its own width: two notebooks side by side leave
+#: half a window. Below this width the picture would be narrower than the panel beside it.
+_WINDOW, _CELL = "@media (max-width: 860px)", "@container (max-width: 720px)"
+#: A cell's output is no page of its own: what is above and below should stay in sight. JupyterLab lays lists
+#: of terms out in its own way.
+_HERE = f"""
+.sandbox {{ height: min(75vh, 44rem); }}
+.sandbox :is(dt, dd) {{ float: none; width: auto; margin: 0; padding: 0; }}
+.sandbox dt {{ font-weight: inherit; }}
+{_CELL} {{
+  .sandbox {{ height: auto; min-height: 0; }}
+  .sandbox .events ol {{ max-height: 8rem; }}
+}}
+"""
+
+
+def style() -> str:
+    """The style sheet of a world in a cell. Whoever holds the world has to be a container of inline size."""
+    return (STATIC / "style.css").read_text("utf-8").replace(_WINDOW, _CELL) + _HERE

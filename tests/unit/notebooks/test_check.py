@@ -1,0 +1,127 @@
+"""``%course_check``: what was run in a kernel is checked as a file would be, and recorded as its attempt."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.cli import app
+from course.grading.notebook_source import notebook_source
+from course.notebooks import magic
+from course.notebooks.exercises import exercise_notebook
+from course.notebooks.typed import module_of
+from course.progress.history import fingerprint
+from course.progress.workspace import Workspace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from course.catalog.load import Catalog
+
+MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+DOUBLE = "def double(x):\n    return x + x"
+DOUBLINGS = "def doublings(x, n):\n    return [x * 2**k for k in range(n + 1)]"
+STUB = "def doublings(x, n):\n    raise NotImplementedError"
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Workspace:
+    """A workspace with ``doubling`` started; the kernel runs in the exercise's folder, as Jupyter has it."""
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
+    monkeypatch.chdir(tmp_path)
+    for words in (("init", "work"), ("-C", "work", "start", "doubling")):
+        assert app.run(words) == 0
+    monkeypatch.chdir(tmp_path / "work" / "doubling")
+    return Workspace.find(Path.cwd())
+
+
+def attempts(workspace: Workspace) -> list[dict[str, Any]]:
+    """What was recorded, without what differs from run to run."""
+    found = [dict(event.data) for event in workspace.store.events("check", "doubling")]
+    for one in found:
+        one.pop("seconds")
+        one.pop("sha256")
+    return found
+
+
+@pytest.mark.parametrize("second", [DOUBLINGS, STUB, "def doublings(x, n):\n    return 1 / 0"])
+def test_a_check_in_a_notebook_is_recorded_as_the_same_check_in_a_terminal(
+    here: Workspace, second: str
+) -> None:
+    table = magic.check(["%load_ext course.notebooks", DOUBLE, second, DOUBLE, "x = 1"], "doubling", "double")
+    assert table.passed
+    assert table.note == ""
+    Path("doubling.py").write_text(f'"""Doubling."""\n\n\n{DOUBLE}\n\n\n{second}\n')
+    app.run(("check", "doubling"))
+    from_notebook, from_terminal = attempts(here)
+    assert from_notebook == from_terminal
+    assert from_notebook["only"] == ""
+    assert [check["id"] for check in from_notebook["checks"]] == ["double_of_three", "doublings_length"]
+
+
+def test_a_function_checked_before_the_others_were_run_is_an_attempt_at_it_alone(here: Workspace) -> None:
+    table = magic.check([DOUBLE], "doubling", "double")
+    assert table.passed
+    assert table.summary == "The one public check of double passes: 2 of 2 points."
+    (attempt,) = attempts(here)
+    assert attempt["only"] == "double"
+    assert (attempt["score"], attempt["max_score"], attempt["passed"]) == (2.0, 2.0, True)
+    assert [check["task"] for check in attempt["checks"]] == ["double"]
+
+
+def test_code_that_cannot_be_run_is_recorded_as_that(here: Workspace) -> None:
+    table = magic.check(["def double(x:\n    return 1"], "doubling", "double")
+    assert not table.passed
+    assert "In [1], line 1" in table.summary
+    assert [attempt["state"] for attempt in attempts(here)] == ["ungradable"]
+
+
+def test_outside_of_a_workspace_nothing_is_recorded_and_nothing_said(
+    here: Workspace, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    table = magic.check([DOUBLE, DOUBLINGS], "doubling")
+    assert table.passed
+    assert table.note == ""
+    assert attempts(here) == []
+
+
+def spoilt(workspace: Workspace) -> None:
+    (workspace.state / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
+
+
+def of_another_course(workspace: Workspace) -> None:
+    marker = workspace.root / "course.toml"
+    marker.write_text(marker.read_text().replace('id = "mini"', 'id = "other"'))
+
+
+@pytest.mark.parametrize("spoil", [spoilt, of_another_course])
+def test_where_nothing_can_be_recorded_the_check_is_shown_and_says_so(
+    here: Workspace, spoil: Callable[[Workspace], None]
+) -> None:
+    spoil(here)
+    table = magic.check([DOUBLE, DOUBLINGS], "doubling")
+    assert table.passed
+    assert "not recorded" in table.note
+    assert table.note in repr(table)
+    assert "not recorded" in table._repr_html_()
+
+
+def test_a_stub_is_one_attempt_in_every_form(catalog: Catalog) -> None:
+    for exercise in catalog.exercises():
+        stub = fingerprint(exercise.stub_path.read_bytes())
+        data = exercise_notebook(catalog, exercise)
+        assert fingerprint(notebook_source(data, exercise).source) == stub
+        texts = ["".join(cell["source"]) for cell in json.loads(data)["cells"] if cell["cell_type"] == "code"]
+        for order in (texts, [*texts, *texts[::-1]]):
+            assert fingerprint(module_of(order, exercise).source) == stub, exercise.id
+
+
+def test_the_newest_version_of_a_cell_counts(here: Workspace) -> None:
+    wrong = DOUBLE.replace("x + x", "x")
+    assert not magic.check([DOUBLE, DOUBLINGS, wrong], "doubling", "double").passed
+    assert magic.check([wrong, DOUBLINGS, DOUBLE], "doubling", "double").passed

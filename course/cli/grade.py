@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from course.grading.results import Effective
     from course.grading.run import GradeAll, RunOptions, Summary
 
-__all__ = ["app", "explain", "in_days", "levels", "run", "score_of"]
+__all__ = ["app", "explain", "levels", "run", "score_of"]
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 _MOST_TROUBLED = 20
@@ -278,6 +278,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
 
 def _show_result(console: Console, catalog: Catalog, found: Effective, history: list[Result]) -> None:
     from course.cli.verdicts import show_everything
+    from course.grading.late import in_days
     from course.grading.numbers import format_points
 
     verdict, result = found.verdict, found.result
@@ -320,14 +321,6 @@ def score_of(found: Effective) -> str:
     from course.grading.numbers import format_points
 
     return "no score" if found.raw_score is None else format_points(found.raw_score)
-
-
-def in_days(seconds: float) -> str:
-    """A lateness in words, down to the minute."""
-    days, rest = divmod(int(seconds), 86_400)
-    hours, minutes = rest // 3600, rest % 3600 // 60
-    parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * (not days)
-    return " ".join(parts)
 
 
 def _register() -> None:

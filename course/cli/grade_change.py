@@ -243,7 +243,7 @@ def _late_one(item: Effective) -> LateOne:
 def _show_late(
     console: Console, results: Results, found: list[LateOne], unknown_time: int, unknown: list[str]
 ) -> None:
-    from course.cli.grade import in_days
+    from course.grading.late import in_days
 
     if results.policy is None:
         console.line("No late policy is in force; add one with --policy FILE.")
@@ -316,6 +316,8 @@ def similar(
     if len(found.pairs) > 20:
         console.line(f"and {len(found.pairs) - 20} more", indent=2)
     console.line((f"{len(found.pairs)} pairs among {found.compared} submissions.", "bold"))
+    if found.left_out:
+        console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
     if found.unreadable:
         console.note(f"{len(found.unreadable)} could not be read as Python and were not compared.")
     console.note(f"Side by side: {target}")

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["FORMAT_VERSION", "begin_writing", "create", "explained", "open_file", "release"]
 
 FORMAT_VERSION = 2
+_DAMAGED = "Restore it from a backup, or grade into a new folder; nothing in this one was mended or removed."
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
 _TABLES = """
@@ -89,7 +90,7 @@ def explained(path: Path) -> Iterator[None]:
     except sqlite3.DatabaseError as error:
         raise IntegrityError(
             f"{path} is damaged: {error}.",
-            help="Restore it from a backup, or grade into a new folder; this file was not changed.",
+            help=_DAMAGED,
         ) from None
 
 
@@ -104,7 +105,7 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
     if "no such table" in words or "no such column" in words:
         return IntegrityError(
             f"{path} is damaged: {words}.",
-            help="Restore it from a backup, or grade into a new folder; this file was not changed.",
+            help=_DAMAGED,
         )
     if "full" in words:
         message, fix = f"The disk is full: {path} cannot grow.", "Make room, then go on with --resume."

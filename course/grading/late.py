@@ -38,7 +38,18 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-__all__ = ["FORMAT_VERSION", "Deadline", "Extension", "Penalty", "Policy", "parse_policy", "read_policy"]
+__all__ = [
+    "FORMAT_VERSION",
+    "Deadline",
+    "Extension",
+    "Penalty",
+    "Policy",
+    "in_days",
+    "lateness",
+    "parse_policy",
+    "read_policy",
+    "unknown_names",
+]
 
 FORMAT_VERSION = 1
 _DAY_S = 86_400.0
@@ -189,3 +200,11 @@ def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set
     named.discard("*")
     unknown = [f"exercise {name}" for name in sorted(named - exercises.keys())]
     return unknown + [f"student {name}" for name in sorted({e.student for e in policy.extension} - students)]
+
+
+def in_days(seconds: float) -> str:
+    """A lateness in words, down to the minute."""
+    days, rest = divmod(int(seconds), 86_400)
+    hours, minutes = rest // 3600, rest % 3600 // 60
+    parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * (not days)
+    return " ".join(parts)

@@ -290,10 +290,22 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
 
 
 def export_all(out: Path, results: Results) -> None:
-    """The files that lie beside a gradebook after every run."""
-    write_jsonl(out / "results.jsonl", results.all(), results.course)
-    write_csv(out / "grades.csv", results)
-    write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
+    """The files that lie beside a gradebook after every run.
+
+    Raises:
+        MissingCapabilityError: one cannot be written; the gradebook has everything nevertheless.
+    """
+    try:
+        write_jsonl(out / "results.jsonl", results.all(), results.course)
+        write_csv(out / "grades.csv", results)
+        write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
+    except MissingCapabilityError as error:
+        raise MissingCapabilityError(
+            error.message,
+            help="The gradebook is complete. Make room, then give the same command again (a run with"
+            " --resume): only this is missing. `course grade export` writes it elsewhere.",
+            code=error.code,
+        ) from None
 
 
 @contextlib.contextmanager

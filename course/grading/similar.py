@@ -163,19 +163,23 @@ def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least
 
 
 def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[tuple[int, int]]:
-    """Pairs worth comparing: those with enough rare fingerprints in common, and copies of one another."""
+    """Pairs worth comparing: those with enough rare fingerprints in common, and copies of one another.
+
+    Of many copies each is paired with the first only, the course's own if there is one, and the first alone
+    with everything else: all pairs would be half a million for a thousand, and keep others off the list.
+    """
+    firsts: dict[str, int] = {}
+    for number, document in sorted(enumerate(documents), key=lambda item: not item[1].own):
+        firsts.setdefault(document.prints.whole, number)
+    first = [firsts[document.prints.whole] for document in documents]
     common: Counter[tuple[int, int]] = Counter()
     for owners in having.values():
         if len(owners) <= _COMMON:
-            common.update((one, other) for at, one in enumerate(owners) for other in owners[at + 1 :])
+            alone = [number for number in owners if first[number] == number]
+            common.update((one, other) for at, one in enumerate(alone) for other in alone[at + 1 :])
     found = {pair for pair, count in common.items() if count >= _FEWEST}
-    copies: dict[str, int] = {}
-    for number, document in enumerate(documents):
-        # Of many copies each is paired with the first only: all pairs would be half a million for a thousand.
-        first = copies.setdefault(document.prints.whole, number)
-        if first != number:
-            found.add((first, number))
-    return found
+    copies = ((number, other) for number, other in enumerate(first) if number != other)
+    return found | {(min(pair), max(pair)) for pair in copies}
 
 
 def _pair(exercise: str, first: Document, second: Document, share: float, shared: list[int]) -> Pair:

@@ -1,31 +1,44 @@
-"""A whole class in one run: how much of it is writing, what two graders bring, whether memory stays flat.
+"""A whole class in one run: how much of it is writing, what two graders bring, whether memory stays flat, and
+what a cluster on this machine costs.
 
-    python tests/benchmarks/class_run.py                          all three, on the miniature course
+    python tests/benchmarks/class_run.py                          all four, on the miniature course
     python tests/benchmarks/class_run.py --only memory --submissions 10000
+    python tests/benchmarks/class_run.py --only cluster --workers 2
     python tests/benchmarks/class_run.py --exercise integrators   on the real one
 
-Every figure is a ratio within one run of this script. ``jobs`` needs two processors that nothing else uses.
+Every figure is a ratio within one run of this script. ``jobs`` and ``cluster`` need processors that nothing
+else uses: two, and as many as there are workers.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import os
 import statistics
+import sys
 import tempfile
+import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.catalog.load import Catalog
-from course.grading.run import RunOptions, Summary, grade_class
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from course.catalog.load import Catalog  # noqa: E402
+from course.grading.batch import grade_all  # noqa: E402
+from course.grading.cluster.connect import local_cluster  # noqa: E402
+from course.grading.run import RunOptions, Summary, grade_class  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ROOT = Path(__file__).resolve().parents[2]
+    from course.grading.run import GradeAll
+
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 PAGE = os.sysconf("SC_PAGE_SIZE")
-KINDS = ("write", "jobs", "memory")
+KINDS = ("write", "jobs", "memory", "cluster")
 
 
 def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
@@ -42,7 +55,14 @@ def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> 
         (place / module).write_bytes(model + wrong + b"\n# %d\n" % number)
 
 
-def run(folder: Path, catalog: Catalog, exercise: str, jobs: int, seen: Callable[[int], None]) -> Summary:
+def run(
+    folder: Path,
+    catalog: Catalog,
+    exercise: str,
+    jobs: int,
+    seen: Callable[[int], None],
+    grade: GradeAll = grade_all,
+) -> Summary:
     """One run into a folder of its own."""
     count = 0
 
@@ -53,7 +73,7 @@ def run(folder: Path, catalog: Catalog, exercise: str, jobs: int, seen: Callable
 
     with tempfile.TemporaryDirectory() as scratch:
         options = RunOptions(exercises=(exercise,), graders=jobs, seed=1)
-        summary = grade_class(folder, Path(scratch) / "out", catalog, options, report)
+        summary = grade_class(folder, Path(scratch) / "out", catalog, options, report, grade=grade)
     assert summary.exit_code == 0, summary.troubled[:3]
     return summary
 
@@ -100,6 +120,57 @@ def memory(folder: Path, catalog: Catalog, exercise: str, students: int) -> None
         )
 
 
+@dataclass
+class Cost:
+    """What a run took.
+
+    Attributes:
+        whole_s: wall seconds, the start of graders or of the cluster included.
+        graded_s: of these, from the first tenth of the results to the last of them.
+    """
+
+    whole_s: float
+    graded_s: float
+
+
+def cost(grading: Callable[[Callable[[int], None]], None], students: int) -> Cost:
+    """Time a run that says by its argument how many results there are."""
+    at: list[float] = []
+    started = time.monotonic()
+    grading(lambda _: at.append(time.monotonic()))
+    whole = time.monotonic() - started
+    return Cost(whole, at[-1] - at[students // 10])
+
+
+def cluster_ratio(folder: Path, catalog: Catalog, exercise: str, students: int, workers: int) -> None:
+    """``-j N`` and a cluster of N on this machine, three times each, taking turns; the best of each."""
+    missing = [name for name in ("distributed", "cryptography") if importlib.util.find_spec(name) is None]
+    if missing:
+        print(f"cluster: not measured, {' and '.join(missing)} not installed (the extra `cluster`)")
+        return
+
+    def processes(seen: Callable[[int], None]) -> None:
+        run(folder, catalog, exercise, workers, seen)
+
+    def dask(seen: Callable[[int], None]) -> None:
+        with local_cluster(workers, catalog) as grade:
+            run(folder, catalog, exercise, 1, seen, grade)
+
+    costs: dict[str, list[Cost]] = {"-j": [], "cluster": []}
+    for _ in range(3):
+        costs["-j"].append(cost(processes, students))
+        costs["cluster"].append(cost(dask, students))
+    ratio = {
+        name: min(getattr(one, name) for one in costs["cluster"])
+        / min(getattr(one, name) for one in costs["-j"])
+        for name in ("graded_s", "whole_s")
+    }
+    print(
+        f"cluster: {workers} workers take {ratio['graded_s']:.2f} times as long as -j {workers} (target: at"
+        f" most 1.10); {ratio['whole_s']:.2f} with what starting takes; on {os.cpu_count()} processors"
+    )
+
+
 def graders() -> list[int]:
     """The grader processes this one started."""
     found = []
@@ -123,9 +194,12 @@ def main() -> None:
     parser.add_argument("--only", choices=KINDS, action="append")
     parser.add_argument("--exercise", default="doubling")
     parser.add_argument("--submissions", type=int, default=1000)
+    parser.add_argument("--workers", type=int, default=2, help="of the cluster, and graders beside it")
     arguments = parser.parse_args()
     if arguments.exercise in {path.name for path in (MINI / "exercises").iterdir()}:
         os.environ["COURSE_CONTENT"] = str(MINI)
+    # The workers of a cluster are told by this where the course is.
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     catalog = Catalog()
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / "class"
@@ -138,6 +212,8 @@ def main() -> None:
             jobs_ratio(folder, catalog, arguments.exercise)
         if "memory" in wanted:
             memory(folder, catalog, arguments.exercise, arguments.submissions)
+        if "cluster" in wanted:
+            cluster_ratio(folder, catalog, arguments.exercise, arguments.submissions, arguments.workers)
 
 
 if __name__ == "__main__":

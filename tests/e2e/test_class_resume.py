@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import json
 import os
 import random
@@ -17,6 +18,7 @@ from pathlib import Path
 import pytest
 
 from course.grading.gradebook import Gradebook
+from tests.e2e.processes import below, left_running
 
 ROOT = Path(__file__).resolve().parents[2]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -24,6 +26,7 @@ SOLUTION = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
 WRONG = b"\ndef double(x):\n    return x\n"
 #: Attempts after which a run that never ends would be a failure.
 MOST_ATTEMPTS = 60
+ON_ONE_MACHINE, ON_A_CLUSTER = ("-j", "2"), ("--local-cluster", "2")
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
 
@@ -35,40 +38,58 @@ def make_class(folder: Path, students: int) -> dict[str, float]:
         place = folder / f"student-{number:04}"
         place.mkdir(parents=True)
         wrong = number % 3 == 0
-        (place / "doubling.py").write_bytes(SOLUTION + WRONG * wrong + b"# %d\n" % number)
+        who = b"\ndef who():\n    return %d\n" % number
+        (place / "doubling.py").write_bytes(SOLUTION + WRONG * wrong + who)
         due[place.name] = 6.0 if wrong else 10.0
     return due
+
+
+_TITLE = '    """A negative number becomes more negative"""\n'
+_NOTE = """    import os
+    to = os.open(os.environ["GRADINGS"], os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    os.write(to, b"%d\\n" % submission.call("who"))
+    os.close(to)
+"""
+
+
+def make_course(folder: Path) -> Path:
+    """The miniature course, with a hidden check that notes each grading, kept or not."""
+    shutil.copytree(MINI, folder)
+    checks = folder / "graders" / "doubling" / "checks.py"
+    source = checks.read_text("utf-8")
+    assert _TITLE in source
+    checks.write_text(source.replace(_TITLE, _TITLE + _NOTE), "utf-8")
+    return folder
+
+
+def gradings(scratch: Path) -> Counter[int]:
+    """How often each student was graded, by the check's own count."""
+    return Counter(map(int, (scratch.parent / "gradings").read_text("ascii").split()))
 
 
 def command(*words: object) -> list[str]:
     return [sys.executable, "-m", "course", "grade", "run", *map(str, words), "--exercise", "doubling"]
 
 
-def environment(scratch: Path) -> dict[str, str]:
+def environment(scratch: Path, content: Path = MINI) -> dict[str, str]:
     scratch.mkdir(exist_ok=True)
     path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
-    return {**os.environ, "COURSE_CONTENT": str(MINI), "PYTHONPATH": path, "TMPDIR": str(scratch)}
+    ours = {"COURSE_CONTENT": str(content), "GRADINGS": str(scratch.parent / "gradings")}
+    return {**os.environ, **ours, "PYTHONPATH": path, "TMPDIR": str(scratch)}
 
 
-def below(pid: int) -> dict[int, str]:
-    """The processes a process started, and theirs: id -> command line."""
-    parents, lines = {}, {}
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            fields = (entry / "stat").read_text().rpartition(")")[2].split()
-            parents[int(entry.name)] = int(fields[1])
-            lines[int(entry.name)] = (
-                (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode("utf-8", "replace")
-            )
-    found: dict[int, str] = {}
-    waiting = [pid]
-    while waiting:
-        parent = waiting.pop()
-        for child, its in parents.items():
-            if its == parent and child not in found:
-                found[child] = lines[child]
-                waiting.append(child)
-    return found
+def kind_of(pid: int, mine: dict[int, tuple[int, str]]) -> str:
+    """What a process of a run is there for."""
+    parent, line = mine[pid]
+    if "course.grading.grader" in line:
+        return "grader"
+    if "spawn_main" in line:
+        return "dask worker"
+    while parent in mine:
+        if "course.grading.grader" in mine[parent][1]:
+            return "zygote"
+        parent = mine[parent][0]
+    return "helper"
 
 
 def kill_one(coordinator: subprocess.Popen[bytes], kind: str, rng: random.Random) -> bool:
@@ -77,12 +98,11 @@ def kill_one(coordinator: subprocess.Popen[bytes], kind: str, rng: random.Random
         coordinator.kill()
         return True
     mine = below(coordinator.pid)
-    graders = [pid for pid, line in mine.items() if "course.grading.grader" in line]
-    chosen = graders if kind == "grader" else [pid for pid in mine if pid not in graders]
+    chosen = sorted(pid for pid in mine if kind_of(pid, mine) == kind)
     if not chosen:
         return False
     with contextlib.suppress(ProcessLookupError):
-        os.kill(rng.choice(sorted(chosen)), signal.SIGKILL)
+        os.kill(rng.choice(chosen), signal.SIGKILL)
     return True
 
 
@@ -90,35 +110,60 @@ def count_lines(path: Path) -> int:
     return path.read_bytes().count(b"\n") if path.exists() else 0
 
 
-def disturbed(folder: Path, out: Path, kills: list[str], every: int, rng: random.Random) -> Counter[str]:
-    """Run until everything is graded, killing on the way; returns how often each student was reported."""
+def rounds(kinds: list[str]) -> list[list[str]]:
+    """Deaths by the attempt in which they happen: that of a coordinator ends one."""
+    found: list[list[str]] = [[]]
+    for kind in kinds:
+        found[-1].append(kind)
+        if kind == "coordinator":
+            found.append([])
+    return found
+
+
+def way(kinds: list[str]) -> tuple[str, str]:
+    """Where an attempt grades: on a cluster if a worker of one is to die."""
+    return ON_A_CLUSTER if "dask worker" in kinds else ON_ONE_MACHINE
+
+
+def has_dask() -> bool:
+    return all(importlib.util.find_spec(name) for name in ("distributed", "cryptography"))
+
+
+def disturbed(run: list[str], out: Path, kills: list[str], between: range) -> Counter[str]:
+    """Run until everything is graded, killing on the way; returns how often each student was reported.
+
+    Args:
+        between: how many results there may be between two deaths.
+    """
+    rng = random.Random(20261121)
     reported: Counter[str] = Counter()
-    scratch = out.parent / "scratch"
-    waiting = list(kills)
+    waiting = rounds(kills)
     for attempt in range(MOST_ATTEMPTS):
-        resume = ["--resume"] if out.exists() else []
         log = out.parent / f"log-{attempt}"
-        with log.open("wb") as sink:
+        words = [*run, *way(waiting[0]), *(["--resume"] if out.exists() else [])]
+        with log.open("wb") as sink, log.with_suffix(".words").open("wb") as errors:
             process = subprocess.Popen(
-                command(folder, "--out", out, "-j", 2, "--seed", 9, "--json", *resume),
-                env=environment(scratch), stdout=sink, stderr=subprocess.DEVNULL,
+                words, env=environment(out.parent / "scratch", out.parent / "content"),
+                stdout=sink, stderr=errors,
             )  # fmt: skip
-            goal = rng.randrange(every)
+            goal = rng.choice(between)
             while process.poll() is None:
-                if waiting and count_lines(log) >= goal and kill_one(process, waiting[0], rng):
-                    waiting.pop(0)
-                    goal += 1 + rng.randrange(every)
+                due = bool(waiting[0]) and count_lines(log) >= goal
+                if due and kill_one(process, waiting[0][0], rng):
+                    waiting[0].pop(0)
+                    goal += rng.choice(between)
                 time.sleep(0.01)
+        if process.returncode != 0 and not waiting[0] and len(waiting) > 1:
+            waiting.pop(0)
         for raw in log.read_bytes().splitlines():
             with contextlib.suppress(ValueError):  # the line it was killed in
                 line = json.loads(raw)
                 if line.get("state") == "graded":
                     reported[line["student"]] += 1
-        if process.returncode == 0 and not waiting:
-            return reported
         if process.returncode == 0:
-            kills_left = ", ".join(waiting)
-            pytest.fail(f"the class was graded before these kills: {kills_left}")
+            assert waiting == [[]], f"the class was graded before these deaths: {waiting}"
+            return reported
+        assert process.returncode in {-signal.SIGKILL, 70}, log.with_suffix(".words").read_text("utf-8")
     pytest.fail("it never finished")
 
 
@@ -127,80 +172,104 @@ def scores(out: Path) -> dict[str, float]:
         return {result.key.student: result.verdict.score for result in book.results()}
 
 
-def left_running(marker: Path) -> list[str]:
-    """Processes of this test, which must end by themselves."""
-    deadline = time.monotonic() + 20
-    while True:
-        left = []
-        for entry in Path("/proc").glob("[0-9]*"):
-            with contextlib.suppress(OSError):
-                known = (entry / "environ").read_bytes() + (entry / "cmdline").read_bytes()
-                if str(marker).encode() in known and int(entry.name) != os.getpid():
-                    left.append((entry / "cmdline").read_text("utf-8", "replace"))
-        if not left or time.monotonic() > deadline:
-            return left
-        time.sleep(0.2)
+def outcomes(out: Path) -> dict[str, object]:
+    """By student, what every check gave."""
+    with Gradebook(out / "gradebook.sqlite") as book:
+        return {
+            result.key.student: [(check.id, check.status, check.points) for check in result.verdict.checks]
+            for result in book.results()
+        }
 
 
-def check_undisturbed(tmp_path: Path, students: int, kills: list[str], every: int) -> None:
+def check_undisturbed(tmp_path: Path, students: int, kills: list[str], between: range) -> None:
+    """Kill and resume, then compare with a run that nobody disturbed."""
     due = make_class(tmp_path / "class", students)
-    rng = random.Random(20261121)
-    reported = disturbed(tmp_path / "class", tmp_path / "out", kills, every, rng)
+    make_course(tmp_path / "content")
+    run = command(tmp_path / "class", "--out", tmp_path / "out", "--seed", 9, "--json")
+    reported = disturbed(run, tmp_path / "out", kills, between)
     assert scores(tmp_path / "out") == due
     with Gradebook(tmp_path / "out" / "gradebook.sqlite") as book:
         rows = {name: book.history(name, "doubling") for name in due}
     assert {len(row) for row in rows.values()} == {1}
-    assert max(reported.values()) <= 2, "each is graded once more at most"
+    assert max(reported.values()) == 1, "what was reported is never graded again"
+    assert len(due) - len(reported) <= kills.count("coordinator"), "killed between keeping and saying so"
+    graded = gradings(tmp_path / "scratch")
+    assert len(graded) == students
+    assert max(graded.values()) <= 2, "each is graded once more at most"
     assert not left_running(tmp_path / "scratch")
     assert not list((tmp_path / "scratch").iterdir())
 
 
 def test_a_run_that_is_killed_here_and_there_ends_as_an_undisturbed_one(tmp_path: Path) -> None:
-    check_undisturbed(tmp_path, 100, ["grader", "zygote", "coordinator"], every=25)
+    check_undisturbed(tmp_path, 100, ["grader", "zygote", "coordinator"], range(5, 25))
 
 
 @pytest.mark.soak
 def test_two_thousand_submissions_survive_twenty_kills(tmp_path: Path) -> None:
-    rng = random.Random(5)
-    kinds = ["coordinator"] * 8 + ["grader"] * 6 + ["zygote"] * 6
-    rng.shuffle(kinds)
-    check_undisturbed(tmp_path, 2000, kinds, every=150)
+    kinds = ["coordinator"] * 7 + ["grader"] * 4 + ["zygote"] * 4
+    kinds += ["dask worker" if has_dask() else "grader"] * 5
+    random.Random(5).shuffle(kinds)
+    # The first of the two is more than two workers of a cluster have in hand: nobody is in hand twice.
+    check_undisturbed(tmp_path, 2000, kinds, range(40, 90))
+    run = command(tmp_path / "class", "--out", tmp_path / "calm", "--seed", 9, *ON_ONE_MACHINE, "--quiet")
+    subprocess.run(run, env=environment(tmp_path / "scratch", tmp_path / "content"), check=True)
+    assert outcomes(tmp_path / "out") == outcomes(tmp_path / "calm")
 
 
+#: A run on a disk without room for the gradebook, then with; without room for the pages, then with; one that
+#: may be read only. Prints the exit codes.
 _ON_A_SMALL_DISK = """
-mount -t tmpfs -o size=200k none "$1" || exit 99
-shift
-"$@" > "$LOGS/first" 2>&1; echo $?
-cp -r "$DISK" "$LOGS/kept"
+mount -t tmpfs -o size=200k none "$DISK" || exit 99
+"$@" > "$LOGS/gradebook" 2>&1; echo $?
 mount -o remount,size=50m "$DISK"
-"$@" --resume > "$LOGS/second" 2>&1; echo $?
+"$@" --resume > "$LOGS/room" 2>&1; echo $?
+rm -r "$DISK/out/students" "$DISK/out/report.html"
+mount -o remount,size=$(($(df --output=used -k "$DISK" | tail -n 1) + 200))k "$DISK"
+"$@" --resume > "$LOGS/pages" 2>&1; echo $?
+ls -A "$DISK/out" > "$LOGS/listed"
+mount -o remount,size=50m "$DISK"
+"$@" --resume > "$LOGS/again" 2>&1; echo $?
 cp -r "$DISK/out" "$LOGS/out"
+mount -o remount,ro "$DISK"
+"$@" --resume > "$LOGS/read-only" 2>&1; echo $?
+diff -r "$DISK/out" "$LOGS/out" && echo same
 """
 
 
-def test_a_full_disk_is_said_and_the_run_goes_on_when_there_is_room(tmp_path: Path) -> None:
+def on_a_small_disk(tmp_path: Path) -> tuple[list[str], dict[str, str]]:
+    """What the script printed, and by name what each command said and what was listed."""
     if shutil.which("unshare") is None:
         pytest.skip("needs unshare, to have a small disk")
-    due = make_class(tmp_path / "class", 20)
     disk, logs = tmp_path / "disk", tmp_path / "logs"
     disk.mkdir()
     logs.mkdir()
     run = command(tmp_path / "class", "--out", disk / "out", "--seed", 9)
     as_root = [] if os.getuid() == 0 else ["--user", "--map-root-user"]
     done = subprocess.run(
-        ["unshare", "--mount", *as_root, "sh", "-c", _ON_A_SMALL_DISK, "sh", str(disk), *run],
+        ["unshare", "--mount", *as_root, "sh", "-c", _ON_A_SMALL_DISK, "sh", *run],
         env=environment(tmp_path / "scratch") | {"DISK": str(disk), "LOGS": str(logs)},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     if done.returncode == 99 or "unshare" in done.stderr:
         pytest.skip("no small disk is to be had here")
-    first, second = (
-        (logs / name).read_text("utf-8") if (logs / name).exists() else "" for name in ("first", "second")
-    )
-    assert done.stdout.split() == ["4", "0"], first + second
-    assert "The disk is full" in first
-    assert "--resume" in first
-    before = first.count("/20 student")
+    said = {path.name: path.read_text("utf-8") for path in logs.iterdir() if path.is_file()}
+    return done.stdout.split(), said
+
+
+def test_a_full_disk_is_said_and_the_run_goes_on_when_there_is_room(tmp_path: Path) -> None:
+    due = make_class(tmp_path / "class", 20)
+    printed, said = on_a_small_disk(tmp_path)
+    assert printed == ["4", "0", "4", "0", "4", "same"], said
+    assert "The disk is full" in said["gradebook"]
+    assert "--resume" in said["gradebook"]
+    before = said["gradebook"].count("/20 student")
     assert 0 < before < 20
-    assert second.count("/20 student") == 20 - before, "what was reported is not graded again"
-    assert scores(logs / "out") == due
+    assert said["room"].count("/20 student") == 20 - before, "what was reported is not graded again"
+    assert "cannot be written: No space left on device" in said["pages"]
+    assert ".html" in said["pages"]
+    assert "--resume" in said["pages"]
+    assert not [name for name in said["listed"].split() if name.startswith(".")], "half a page is no page"
+    assert "gradebook.sqlite cannot be written" in said["read-only"]
+    assert "/20 student" not in said["pages"] + said["again"] + said["read-only"]
+    assert scores(tmp_path / "logs" / "out") == due
+    assert len(list((tmp_path / "logs" / "out" / "students").iterdir())) == 20

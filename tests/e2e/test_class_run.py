@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import subprocess
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.contracts.levels import require_level
+from tests.e2e.processes import left_running
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -141,7 +141,7 @@ def test_a_class_of_every_kind_is_graded_as_each_deserves(tmp_path: Path) -> Non
     assert all(line["isolation"] == "L3" for line in results.values() if line["state"] == "graded")
 
     assert not list((tmp_path / "scratch").iterdir())
-    assert not _left_running(str(tmp_path))
+    assert not left_running(tmp_path)
     code, again = grade(tmp_path / "class", tmp_path / "again")
     assert code == 6
     assert _scores(again) == _scores(results)
@@ -153,14 +153,3 @@ def _scores(results: dict[str, dict[str, Any]]) -> dict[str, float]:
 
 def failed_tasks(line: dict[str, Any]) -> set[str]:
     return {check["task"] for check in line["checks"] if check["status"] != "pass"}
-
-
-def _left_running(marker: str) -> list[str]:
-    """Processes of this run: its temporary folder is in their environment or on their command line."""
-    left = []
-    for process in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            known = (process / "environ").read_bytes() + (process / "cmdline").read_bytes()
-            if marker.encode() in known and process.name != str(os.getpid()):
-                left.append((process / "cmdline").read_text("utf-8", "replace"))
-    return left

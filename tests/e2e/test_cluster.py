@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +21,7 @@ from course.grading.gradebook import Gradebook
 from course.grading.intake import read_class
 from course.grading.run import RunOptions, grade_class
 from course.grading.session import grader_version
+from tests.e2e.processes import below, left_running
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,19 +68,8 @@ def scores(out: Path) -> dict[str, Any]:
         }
 
 
-def children(parent: int, what: str) -> list[int]:
-    """The processes that ``parent`` started and whose command line holds ``what``."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            fields = (entry / "stat").read_text().rpartition(")")[2].split()
-            if int(fields[1]) == parent and what.encode() in (entry / "cmdline").read_bytes():
-                found.append(int(entry.name))
-    return found
-
-
 def dask_workers(parent: int) -> list[int]:
-    return children(parent, "spawn_main")
+    return [pid for pid, (its, line) in below(parent).items() if its == parent and "spawn_main" in line]
 
 
 @pytest.fixture
@@ -162,26 +151,12 @@ def command(*words: object) -> list[str]:
     return [*run, "--exercise", "doubling", "--plain", "--isolation", "process"]
 
 
-def left_running(marker: str) -> list[str]:
-    """Processes of one test, which must end by themselves."""
-    deadline = time.monotonic() + 30
-    while True:
-        left = []
-        for entry in Path("/proc").glob("[0-9]*"):
-            with contextlib.suppress(OSError):
-                if marker.encode() in (entry / "environ").read_bytes():
-                    left.append((entry / "cmdline").read_text("utf-8", "replace"))
-        if not left or time.monotonic() > deadline:
-            return left
-        time.sleep(0.2)
-
-
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
 def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
     tmp_path: Path, catalog: Catalog, sign: signal.Signals
 ) -> None:
     """Ctrl-C reaches every process of the terminal, the workers too; kill -9 the coordinator alone."""
-    students = 300
+    students = 120
     make_class(tmp_path / "class", students)
     environment = {**os.environ, "MARKER": str(tmp_path)}
     out = tmp_path / "out"
@@ -205,14 +180,14 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
         words = process.stderr.read()
         process.stdout.read()
     assert process.returncode == (130 if sign is signal.SIGINT else -sign)
-    assert not left_running(str(tmp_path))
+    assert not left_running(tmp_path)
     if sign is signal.SIGINT:
         assert words.strip() == "Interrupted; what was done is kept.", words
     done = len(scores(out))
     assert 0 < done < students
     again = subprocess.run([*run, "--resume"], env=environment, capture_output=True, text=True, check=False)
     assert again.returncode == 0, again.stderr
-    assert again.stdout.count("/300 student") == students - done
+    assert again.stdout.count(f"/{students} student") == students - done
     assert len(scores(out)) == students
 
 
@@ -276,4 +251,4 @@ def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, cat
             tmp_path / "class", tmp_path / "out", catalog, again, lambda *_: None, grade=grade
         )
     assert (summary.already, summary.states["graded"]) == (done, 300)
-    assert not left_running(str(tmp_path))
+    assert not left_running(tmp_path)

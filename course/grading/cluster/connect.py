@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import logging
-import tempfile
 from concurrent.futures import CancelledError
 from functools import cache
 from pathlib import Path
@@ -23,6 +22,7 @@ from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.cluster.coordinator import Lost, grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.session import grader_version
+from course.isolation.launch import private_folder, remove_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -123,8 +123,12 @@ def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:
     import dask
     from distributed import Client, LocalCluster, Security
 
-    scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="course-cluster-"))
+    folder = private_folder()
+    stack.callback(remove_tree, folder)
+    scratch = str(folder)
     settings = {
+        # Dask makes this importable, here and in every worker: never a name that others can know or make.
+        "temporary-directory": scratch,
         # A worker that dies with a batch is reported at once: who is tried again, and where, is decided here.
         "distributed.scheduler.allowed-failures": 0,
         # The folder the command is run in, which may be a student's, never becomes importable.

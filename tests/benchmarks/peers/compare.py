@@ -8,6 +8,7 @@ time), and a notebook with one cell of the student's code and one graded cell pe
 process a command starts, from start to end. Ours is measured twice: on the very same submissions, where
 starting is most of it, and on a class of ``--class``, which is what it is made for; nbgrader is measured
 student by student and on all at once. Scores are compared: whoever grades faster must come to the same.
+A peer takes some ten wall seconds a submission, longer on a busy machine; CPU is hardly touched by that.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import csv
+import io
 import json
 import os
 import subprocess
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 #: What the checks need beside the peer itself.
 NEEDED = ["numpy", "msgspec", "pytest", "ipykernel"]
 PACKAGES = {"nbgrader": ["nbgrader", *NEEDED], "otter": ["otter-grader", *NEEDED]}
+#: Wall seconds after which a command is given up; none has taken a tenth of it.
+PATIENCE_S = 1800
 #: What each is to cost, in units of ours.
 TARGETS = {"nbgrader one by one": 90, "nbgrader whole class": 20, "otter run": 60}
 Scores = dict[str, float]
@@ -52,9 +56,13 @@ def cpu(command: list[str], folder: Path, **environment: str) -> tuple[float, st
     bare = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST_", "JUPYTER"))}
     paths = {"PYTHONPATH": os.pathsep.join([str(ROOT), str(HERE)]), "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
     before = os.times()
-    done = subprocess.run(
-        command, cwd=folder, env={**bare, **paths, **environment}, capture_output=True, text=True, check=False
-    )
+    try:
+        done = subprocess.run(
+            command, cwd=folder, env={**bare, **paths, **environment}, capture_output=True, text=True,
+            check=False, timeout=PATIENCE_S,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        raise NotMeasuredError(f"{' '.join(command[:4])} was not done after {PATIENCE_S} s.") from None
     after = os.times()
     words = done.stdout + done.stderr
     if done.returncode:
@@ -231,6 +239,8 @@ def main() -> None:
     parser.add_argument("--only", choices=sorted(PEERS), action="append")
     parser.add_argument("--venvs", type=Path, help="folder to keep the peers' environments in")
     options = parser.parse_args()
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(line_buffering=True)  # it takes minutes: each line is seen when it is known
     catalog = Catalog()
     exercise = catalog.exercise(options.exercise)
     load = (

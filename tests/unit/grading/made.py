@@ -18,6 +18,7 @@ HOSTILE = [
     "=cmd|' /C calc'!A0", "+1", "-1", "@x", "\tx", "\r\nx", 'a"b', "a,b", "a;b", "a\nb", "é漢字",
     "\x1b[31mred", "'=1+1", "=1+1", "<script>alert(1)</script>", "]]>&amp;", "../../up", "Ada\u202eevoL",
     "\u00a0", "\uff1d1", "O'Neil", "a\x00b", "\ufffe\uffff", "x" * 300,
+    "\U0001f680 Ada", "\U0001f469\u200d\U0001f680", "\u05d0\u05d3\u05d4",
 ]  # fmt: skip
 
 

@@ -6,7 +6,8 @@ import csv
 import dataclasses
 import io
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -19,13 +20,13 @@ from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook import Override, SubmittedAt
 from course.grading.results import Results
 from course.grading.roster import Person, Roster
-from tests.unit.grading.junit_rules import violations
 from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, SECRET, digest, make_book
 from tests.unit.grading.test_results import POLICY
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
 
+JUNIT = Path(__file__).resolve().parents[2] / "fixtures" / "junit.xsd"
 OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"})
 #: Values of hidden checks, in every spelling a file may have them.
 SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
@@ -99,9 +100,30 @@ def test_the_lines_of_json_have_the_very_ids(results: Results, tmp_path: Path) -
     assert by_name["+1"]["checks"][1]["expected"] == SECRET * 2, "the instructor's file has everything"
 
 
-def test_junit_keeps_the_rules_of_jenkins_whatever_the_names(results: Results, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def violations() -> Callable[[bytes], list[str]]:
+    """A validating reader: what the schema has against a file."""
+    xmlschema = pytest.importorskip("xmlschema", reason="needs the extra `dev`: xmlschema is not installed")
+    schema = xmlschema.XMLSchema(JUNIT)
+
+    def found(content: bytes) -> list[str]:
+        errors: Any = schema.iter_errors(io.BytesIO(content))
+        return [f"{error.path}: {error.reason}" for error in errors]
+
+    return found
+
+
+def test_junit_fits_the_schema_whatever_the_names(
+    results: Results, tmp_path: Path, violations: Callable[[bytes], list[str]]
+) -> None:
     content = write(results, "junit", tmp_path).read_bytes()
     assert violations(content) == []
+    # Breaking one thing is noticed: the reader reads.
+    assert violations(content.replace(b'failures="', b'failures="-', 1))
+
+
+def test_junit_counts_right_and_says_whose_it_is(results: Results, tmp_path: Path) -> None:
+    content = write(results, "junit", tmp_path).read_bytes()
     suites = ET.fromstring(content).findall("testsuite")
     assert len(suites) == len(HOSTILE) + 3
     for suite in suites:
@@ -129,7 +151,9 @@ def test_junit_keeps_the_rules_of_jenkins_whatever_the_names(results: Results, t
         b"<report/>",
     ],
 )
-def test_the_rules_refuse_what_the_schema_refuses(content: bytes) -> None:
+def test_the_schema_refuses_what_jenkins_refuses(
+    content: bytes, violations: Callable[[bytes], list[str]]
+) -> None:
     assert violations(content)
 
 

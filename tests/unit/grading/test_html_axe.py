@@ -11,8 +11,11 @@ import pytest
 
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
+from course.grading.fingerprints import Parser
 from course.grading.gradebook import GradedExercise, Override, Result, SubmittedAt
 from course.grading.results import Results
+from course.grading.similar import Document, Pair, Similar
+from course.grading.similar_page import page as similar_page
 from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, WRONG, digest, key, make_book
 from tests.unit.grading.test_html import quiz_verdict
 from tests.unit.grading.test_results import DUE, POLICY
@@ -31,7 +34,12 @@ _FLAGS = [
 ]  # fmt: skip
 _RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 _SCREENS = [(1280, "light"), (1280, "dark"), (390, "light")]
-_PAGES = ["report.html", "students.html", "students/1.html", "students/2.html", "students/3.html"]
+_STUDENTS = ["students/1.html", "students/2.html", "students/3.html"]
+_PAGES = ["report.html", "students.html", "similar.html", *_STUDENTS]
+_ORIGINAL = (
+    "def double(x):\n" + "".join(f"    y{n} = x * {n} + {n % 7}\n" for n in range(60)) + "    return 2 * x\n"
+)
+_COPY = _ORIGINAL.replace("x", "number").replace("y", "value")
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +87,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         book.add_times([SubmittedAt("1 late", "doubling", digest("1 late"), "gradescope", at)])
         book.set_meta(late_policy=POLICY)
         export(Results(book), "html", out, None, ExportOptions())
+    (out / "similar.html").write_text(similar_page(likeness()), "utf-8")
     return out
+
+
+def likeness() -> Similar:
+    """Two copies under hostile names, and what could not be read."""
+    with Parser() as parse:
+        one, two = (
+            Document(name, source, parse(source.encode()))
+            for name, source in ((HOSTILE[0], _ORIGINAL), ("Ada\u202eevoL", _COPY))
+        )
+    passages = (((1, 20), (1, 20)), ((20, 62), (20, 62)), ((1, 5), (40, 44)))
+    pair = Pair("doubling", one, two, 0.973, passages, 62)
+    return Similar([pair, pair], 300, ["<b>bob</b> doubling"], 7)
 
 
 @pytest.mark.parametrize("name", _PAGES)
@@ -90,6 +111,7 @@ def test_axe_finds_nothing(browser: Any, axe: str, folder: Path, name: str, widt
     )
     page = context.new_page()
     page.goto((folder / name).as_uri())
+    page.evaluate("document.querySelectorAll('details').forEach(item => { item.open = true; })")
     page.evaluate(axe)
     run = "tags => axe.run(document, {runOnly: tags}).then(found => found)"
     found = page.evaluate(run, _RULES)
@@ -135,3 +157,62 @@ def test_tables_sort_and_filter_by_keyboard(browser: Any, folder: Path) -> None:
     assert page.get_by_role("status").inner_text() == f"1 of {len(HOSTILE) + 4} shown"
     assert page.locator("tbody tr:visible").count() == 1
     page.close()
+
+
+def printed(browser: Any, path: Path, tmp_path: Path, prepare: str = "") -> list[str]:
+    """The text of each sheet of A4."""
+    pdftotext = shutil.which("pdftotext")
+    if pdftotext is None:
+        pytest.skip("pdftotext (poppler-utils) is missing: what is printed cannot be read back")
+    page = browser.new_page()
+    page.goto(path.as_uri())
+    if prepare:
+        page.evaluate(prepare)
+    page.pdf(path=str(tmp_path / "printed.pdf"), format="A4", prefer_css_page_size=True)
+    page.close()
+    command = [pdftotext, "-layout", str(tmp_path / "printed.pdf"), "-"]
+    done = subprocess.run(command, capture_output=True, check=True)
+    return done.stdout.decode("utf-8").split("\f")[:-1]
+
+
+def test_a_long_table_has_its_headings_on_every_sheet(browser: Any, folder: Path, tmp_path: Path) -> None:
+    many = (
+        "for (const row of [...document.querySelectorAll('tbody tr')])"
+        " for (let n = 0; n < 4; n++) row.after(row.cloneNode(true))"
+    )
+    sheets = printed(browser, folder / "students.html", tmp_path, many)
+    assert len(sheets) > 2
+    assert all("Doubling, of 10" in sheet for sheet in sheets[:-1])
+    assert not [sheet for sheet in sheets if "Show rows with" in sheet]
+    # A heading is never the last thing on a sheet, wherever the sheet happens to end.
+    for lines in range(0, 40, 8):
+        push = f"document.querySelector('header').style.paddingBottom = '{lines}rem'"
+        for sheet in printed(browser, folder / "report.html", tmp_path, push)[:-1]:
+            assert not sheet.strip().endswith(("Points reached", "Students", "Passed")), sheet
+
+
+def test_of_similar_submissions_what_is_open_is_printed(browser: Any, folder: Path, tmp_path: Path) -> None:
+    """Following the link of a pair opens it."""
+    text = "\n".join(printed(browser, folder / "similar.html", tmp_path))
+    assert "97" in text
+    assert "def double(x)" not in text
+    page = browser.new_page()
+    page.goto((folder / "similar.html").as_uri())
+    page.locator("tbody a").first.click()
+    assert page.locator("details[open]").count() == 1
+    page.get_by_label("passage 2, opposite").first.click()
+    assert page.evaluate("location.hash") == "#p1-b-2"
+    page.close()
+    open_first = "document.querySelector('details').open = true"
+    sheets = printed(browser, folder / "similar.html", tmp_path, open_first)
+    (sheet,) = (sheet for sheet in sheets if "and Ada\\u202eevoL: 97" in sheet)
+    assert "def double(x)" in sheet
+    assert "def double(number)" in sheet
+    assert "\n".join(sheets).count("def double(x)") == 1
+
+
+def test_a_students_sheet_is_not_left_empty(browser: Any, folder: Path, tmp_path: Path) -> None:
+    """What does not fit on the first sheet is begun there."""
+    sheets = printed(browser, folder / "students" / "1.html", tmp_path)
+    assert len(sheets) > 1
+    assert "3 of 5 points" in sheets[0], "the quiz, which ends on the second"

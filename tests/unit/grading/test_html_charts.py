@@ -17,7 +17,8 @@ from course.grading.exports.html_report.charts import (
     percent,
     score_bins,
 )
-from course.grading.exports.html_report.words import in_days, when
+from course.grading.exports.html_report.words import when
+from course.grading.late import in_days
 from tests.unit.grading.pages import Page
 
 

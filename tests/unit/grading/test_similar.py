@@ -19,6 +19,7 @@ from course.grading.similar import compare
 from course.grading.similar_page import page
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book
+from tests.unit.grading.pages import Page, faults
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -144,6 +145,22 @@ def test_many_copies_of_one_file_are_all_found_without_all_pairs(tmp_path: Path,
     assert len(found.pairs) == 59
 
 
+def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog) -> None:
+    """Of a few copies, too, each is listed with the first; and that one with whoever is nearly the same."""
+    sources = {f"a {number}": ORIGINAL + f"# {number}\n" for number in range(8)}
+    sources |= {"near": ORIGINAL.replace("return", "print('done')\n    return", 1)}
+    model = (MINI / "solutions" / "doubling" / "doubling.py").read_text("utf-8")
+    sources |= {f"model {number}": model + f"# {number}\n" for number in range(3)}
+    with class_of(tmp_path, sources) as book:
+        found = compare(Results(book), catalog, ("doubling",), at_least=0.6)
+    pairs = {(pair.first.label, pair.second.label) for pair in found.pairs}
+    assert pairs == {
+        *(("a 0", f"a {number}") for number in range(1, 8)),
+        ("a 0", "near"),
+        *((f"model {number}", "the model solution") for number in range(3)),
+    }
+
+
 def test_sources_that_hurt_the_parser_are_named_and_the_rest_compared(
     tmp_path: Path, catalog: Catalog
 ) -> None:
@@ -178,8 +195,10 @@ def test_the_page_shows_text_as_text(tmp_path: Path, catalog: Catalog) -> None:
     assert "<b>ada" not in text
     assert "&lt;b&gt;ada&lt;/b&gt;" in text
     assert "bob&amp;co" in text
-    assert "<mark>" in text
+    assert '<span class="alike">' in text
     assert "http" not in text.replace("http-equiv", "")
+    assert faults(Page(text), scripted=False) == [], "every passage leads to the same one opposite"
+    assert 'href="#p1-b-1"' in text
 
 
 def test_right_solutions_that_were_written_differently_are_not_alike(monkeypatch: pytest.MonkeyPatch) -> None:

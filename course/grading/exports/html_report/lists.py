@@ -14,7 +14,8 @@ from course.grading.exports.html_report.markup import (
     shortened,
     tag,
 )
-from course.grading.exports.html_report.words import in_days, when
+from course.grading.exports.html_report.words import when
+from course.grading.late import in_days
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -136,8 +136,8 @@ def script() -> str:
 
 
 @cache
-def _style() -> str:
-    lines = (_HERE / "page.css").read_text("utf-8").splitlines()
+def _style(more: str) -> str:
+    lines = [*(_HERE / "page.css").read_text("utf-8").splitlines(), *more.splitlines()]
     return "\n".join(line.strip() for line in lines if line.strip())
 
 
@@ -153,8 +153,10 @@ def _policy(scripted: bool) -> str:
     return f"{allowed}; script-src 'sha256-{digest}'"
 
 
-def page(title: str, header: Html, navigation: Html, main: Html, footer: Html, *, scripted: bool) -> Html:
-    """A whole page, with nothing from elsewhere."""
+def page(
+    title: str, header: Html, navigation: Html, main: Html, footer: Html, *, scripted: bool, style: str = ""
+) -> Html:
+    """A whole page, with nothing from elsewhere; ``style`` is what it has beside the style of all pages."""
     head = joined(
         (
             tag("meta", charset="utf-8"),
@@ -163,7 +165,7 @@ def page(title: str, header: Html, navigation: Html, main: Html, footer: Html, *
             tag("meta", name="referrer", content="no-referrer"),
             tag("meta", name="robots", content="noindex"),
             tag("title", spelled_out(title)),
-            tag("style", Html(_style())),
+            tag("style", Html(_style(style))),
         )
     )
     body = tag(

@@ -21,7 +21,8 @@ from course.grading.exports.html_report.markup import (
     shortened,
     tag,
 )
-from course.grading.exports.html_report.words import in_days, when
+from course.grading.exports.html_report.words import when
+from course.grading.late import in_days
 from course.grading.numbers import numbers_of
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.verdict import CheckResult, Problem, Status, Visibility

@@ -1,0 +1,47 @@
+"""Who is running: the process table of Linux, for tests of what a run starts, loses and leaves behind."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from pathlib import Path
+
+__all__ = ["below", "left_running"]
+
+
+def below(pid: int) -> dict[int, tuple[int, str]]:
+    """The processes that a process started, and theirs: id -> parent, command line."""
+    known = {}
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            line = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode("utf-8", "replace")
+            known[int(entry.name)] = (int(fields[1]), line)
+    found: dict[int, tuple[int, str]] = {}
+    waiting = [pid]
+    while waiting:
+        parent = waiting.pop()
+        for child, (its, line) in known.items():
+            if its == parent and child not in found:
+                found[child] = (its, line)
+                waiting.append(child)
+    return found
+
+
+def left_running(marker: object, patience_s: float = 30.0) -> list[str]:
+    """Command lines of other processes with ``marker`` in theirs or in their environment.
+
+    They are given ``patience_s`` wall seconds to end by themselves; those that do not are what is returned.
+    """
+    deadline = time.monotonic() + patience_s
+    while True:
+        left = []
+        for entry in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                known = (entry / "environ").read_bytes() + (entry / "cmdline").read_bytes()
+                if str(marker).encode() in known and int(entry.name) != os.getpid():
+                    left.append((entry / "cmdline").read_text("utf-8", "replace"))
+        if not left or time.monotonic() > deadline:
+            return left
+        time.sleep(0.2)

@@ -1,0 +1,146 @@
+"""A gradebook that is newer, damaged, changed by hand or in use: every command says so and loses nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import sqlite3
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.grading.gradebook import Gradebook
+from course.grading.run import export_all, open_results
+from tests.unit.grading.made import HALF, RIGHT, make_book
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+RUN = ("run", "class", "--out", "out", "--exercise", "doubling")
+WRITING = [
+    (*RUN, "--resume"),
+    ("rerun", "out"),
+    ("override", "out", "ada", "doubling", "--score", "1", "--reason", "x"),
+    ("late", "out", "--clear"),
+]
+READING = [
+    ("rerun", "out", "--dry-run"),
+    ("late", "out"),
+    ("export", "out", "--format", "html", "-o", "elsewhere"),
+    ("export", "out", "--format", "canvas", "-o", "canvas.csv"),
+    ("explain", "out", "ada", "doubling"),
+    ("similar", "out"),
+]
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    folder = tmp_path / "out"
+    make_book(folder, {f"student {number:02}": HALF for number in range(30)} | {"ada": RIGHT}).close()
+    with open_results(folder) as results:
+        export_all(folder, results)
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    (tmp_path / "class" / "ada" / "doubling.py").write_text("def double(x):\n    return 2 * x\n", "utf-8")
+    return folder
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def newer(path: Path) -> None:
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        db.execute("PRAGMA user_version = 99")
+
+
+def overwritten(path: Path) -> None:
+    size = path.stat().st_size
+    with path.open("r+b") as file:
+        file.seek(4096)
+        file.write(b"X" * (size - 8192))
+
+
+def cut(path: Path) -> None:
+    with path.open("r+b") as file:
+        file.truncate(path.stat().st_size // 2)
+
+
+def other(path: Path) -> None:
+    path.write_bytes(b"something else altogether, and long enough for a page of it " * 100)
+
+
+@pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
+@pytest.mark.parametrize(
+    ("spoil", "code", "error", "sentence"),
+    [
+        (newer, 4, "newer_format", "newer version"),
+        (overwritten, 7, "integrity", "is damaged"),
+        (cut, 7, "integrity", "is damaged"),
+        (other, 7, "integrity", "is damaged"),
+    ],
+    ids=["newer", "overwritten", "cut", "other"],
+)
+def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
+    course, out: Path, words, spoil, code: int, error: str, sentence: str
+) -> None:
+    spoil(out / "gradebook.sqlite")
+    before = contents(out.parent)
+    ran = course("grade", *words, "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (code, error)
+    assert sentence in ran.json["error"]["message"]
+    assert ran.json["error"]["help"]
+    assert contents(out.parent) == before
+
+
+@pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
+def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out: Path, words) -> None:
+    with Gradebook(out / "gradebook.sqlite", writing=True) as book:
+        book.set_meta(seed="7")
+        before = contents(out / "students")
+        ran = course("grade", *words, "--json")
+        assert (ran.code, ran.json["error"]["code"]) == (2, "gradebook_locked")
+        assert contents(out / "students") == before
+        book.set_meta(note="still writing")
+    assert not (out.parent / "elsewhere").exists()
+    with Gradebook(out / "gradebook.sqlite") as book:
+        assert book.meta()["note"] == "still writing"
+        assert len(list(book.results())) == 31
+
+
+def test_the_gradebook_is_held_until_the_last_page_is_written(
+    course, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from course.grading import run
+
+    refused = []
+
+    def write_pages(*arguments: object) -> object:
+        refused.append(course("grade", "late", "out", "--clear", "--json").json["error"]["code"])
+        return whole(*arguments)
+
+    whole = run.write_pages
+    monkeypatch.setattr(run, "write_pages", write_pages)
+    ran = course("grade", "override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
+    assert (ran.code, refused) == (0, ["gradebook_locked"])
+    assert "oral exam" in (out / "report.html").read_text("utf-8")
+
+
+def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
+    course, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from course.errors import MissingCapabilityError
+    from course.grading import run
+
+    def write_pages(path: Path, *_: object) -> None:
+        raise MissingCapabilityError(f"{path} cannot be written.", help="-o", code="cannot_write")
+
+    before = contents(out / "students")
+    with monkeypatch.context() as patch:
+        patch.setattr(run, "write_pages", write_pages)
+        words = ("override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
+        ran = course("grade", *words, "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (4, "cannot_write")
+    assert "The gradebook is complete" in ran.json["error"]["help"]
+    assert contents(out / "students") == before
+    assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 1
+    assert course("grade", "late", "out", "--clear").code == 0
+    assert "oral exam" in (out / "report.html").read_text("utf-8")

@@ -53,25 +53,26 @@ def calibrate(seeds: int, mutant_seeds: int) -> Tables:
         tables.variants += 1
         for seed in range(seeds):
             for result in local_run.run(sources[name], [c for c in checks if c.task in tasks], seed):
-                tables.failures += result.status != "pass"
+                tables.expect(result.status == "pass", name, seed, result)
                 tables.used[result.check.id] = max(tables.used[result.check.id], shares[result.check.id])
     for mutant in tomllib.loads((folder / "mutants.toml").read_text())["mutant"]:
         tables.mutants += 1
         for seed in range(mutant_seeds):
             for result in local_run.run(sources["mutants/" + mutant["file"]], checks, seed):
-                _judge(tables, mutant, result, shares[result.check.id], first=seed == 0)
+                _judge(tables, mutant, result, shares[result.check.id], seed)
     return tables
 
 
-def _judge(tables: Tables, mutant, result, share: float, *, first: bool) -> None:
+def _judge(tables: Tables, mutant, result, share: float, seed: int) -> None:
     failed = result.status != "pass"
-    tables.failed_by[result.check.id] += failed and first
+    tables.failed_by[result.check.id] += failed and seed == 0
     if result.check.id == mutant["check"]:
-        tables.failures += not failed or result.finding.diagnosis != mutant["diagnosis"]
+        right = failed and result.finding.diagnosis == mutant["diagnosis"]
+        tables.expect(right, mutant["file"], seed, result)
         low = tables.caught.get(result.check.id, math.inf)
         tables.caught[result.check.id] = min(low, share or math.inf)
     elif failed:  # it loses its own task's points only
-        tables.failures += result.check.task != mutant["task"]
+        tables.expect(result.check.task == mutant["task"], mutant["file"], seed, result)
 
 
 def truths(seeds: int) -> str:

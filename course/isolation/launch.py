@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["command", "copy_flat_files", "environment", "private_folder", "remove_tree"]
 
-_BESIDE = ("wire", "loops", "declared", "worker", "lockdown", "zygote")
+_BESIDE = ("frames", "encoding", "decoding", "wire", "loops", "declared", "worker", "lockdown", "zygote")
 _FLAT_FILES = tuple(f"isolation/{name}.py" for name in _BESIDE)
 _RHS_FILE = "physics/systems.py"
 

@@ -13,22 +13,54 @@ nothing can be un-pickled. One tag byte opens each value::
     y  bytes     u32 length (grader to        p  right-hand side: a str and a dict
                  worker only)                 g  random generator: its seed, int64
 
-This file runs on both sides and is copied next to a stranger's code, so it imports the standard library and
-numpy and nothing of this course. Whatever arrives is a claim by an untrusted sender: every length is
-checked before it is believed, and the one exception that leaves this file is ``WireError``.
+This file and the three it imports run on both sides and are copied next to a stranger's code, so they import
+the standard library and numpy and nothing of this course. Whatever arrives is a claim by an untrusted sender:
+every length is checked before it is believed, and the one exception that leaves these files is ``WireError``.
 """
 
 from __future__ import annotations
 
-import enum
 import struct
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
-import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+if __package__:
+    from course.isolation.decoding import OTHER, Reader, quick
+    from course.isolation.encoding import put
+    from course.isolation.frames import (
+        HEADER,
+        MAX_ARRAY_BYTES,
+        MAX_DEPTH,
+        MAX_DIMENSIONS,
+        MAX_FRAME,
+        MAX_VALUE_BYTES,
+        MAX_VALUES,
+        Kind,
+        Names,
+        Reference,
+        Rhs,
+        Seed,
+        UnsupportedValueError,
+        WireError,
+    )
+else:
+    from decoding import OTHER, Reader, quick  # type: ignore[import-not-found,no-redef]
+    from encoding import put  # type: ignore[import-not-found,no-redef]
+    from frames import (  # type: ignore[import-not-found,no-redef]
+        HEADER,
+        MAX_ARRAY_BYTES,
+        MAX_DEPTH,
+        MAX_DIMENSIONS,
+        MAX_FRAME,
+        MAX_VALUE_BYTES,
+        MAX_VALUES,
+        Kind,
+        Names,
+        Reference,
+        Rhs,
+        Seed,
+        UnsupportedValueError,
+        WireError,
+    )
 
 __all__ = [
     "HEADER",
@@ -40,89 +72,13 @@ __all__ = [
     "MAX_VALUE_BYTES",
     "Codec",
     "Kind",
+    "Names",
     "Reference",
     "Rhs",
     "Seed",
     "UnsupportedValueError",
     "WireError",
 ]
-
-MAX_VALUE_BYTES = 1 << 20  # everything of a frame that is not array data
-MAX_ARRAY_BYTES = 64 << 20  # all arrays of a frame together
-MAX_FRAME = MAX_VALUE_BYTES + MAX_ARRAY_BYTES
-MAX_DEPTH = 32
-MAX_DIMENSIONS = 8
-_RHS_DEPTH = 4  # of the parameters of a right-hand side
-MAX_VALUES = 200_000  # decoding one costs about half a microsecond: a hostile frame costs at most 0.1 s
-
-HEADER = struct.Struct("<IB")
-_U32 = struct.Struct("<I")
-_I64 = struct.Struct("<q")
-_F64 = struct.Struct("<d")
-_SHAPE = struct.Struct("<II")
-_TABLE = b"\x00\x02"  # dtype and dimensions of a table of float64
-_FLOAT64 = np.dtype(np.float64)
-_DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
-_WIDEN = {"f": 0, "i": 1, "u": 1, "b": 2, "c": 3}
-
-
-class Kind(enum.IntEnum):
-    """What a frame is about. The first group goes to the worker, the second comes from it."""
-
-    LOAD = 1  # [files, module name]
-    CALL = 2  # [function, args, kwargs, inspect]
-    MARCH = 3  # [step, [[rhs, q0, v0, t0, h, n], ...]]
-    REPLY = 4  # value of a callback
-    EACH = 6  # [function, [args, ...]]
-    FOLD = 7  # [function, state, [args, ...], which element is the next state or None, keys to keep or None]
-    REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
-    READY = 15  # None: locked down, and nothing of the submission has run yet
-    LOADED = 16  # [names of functions]
-    REFUSED = 17  # {stage, type, message, line, text}
-    RESULT = 18  # value
-    RAISED = 19  # {type, message, line, function, frames}
-    CALLBACK = 20  # [number of the callable, kwargs or None, *args]
-
-
-class WireError(Exception):
-    """What arrived is not a frame this protocol has."""
-
-
-class UnsupportedValueError(Exception):
-    """A value that cannot cross; the message names its type in words for the student."""
-
-
-@dataclass(frozen=True, slots=True)
-class Rhs:
-    """A named right-hand side and its plain parameters, built where it is evaluated."""
-
-    name: str
-    params: dict[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class Seed:
-    """A random generator, as the seed it is built from on the other side."""
-
-    value: int
-
-
-@dataclass(frozen=True, slots=True)
-class Reference:
-    """A callable by number. ``mine``: the receiver holds it and has said so before."""
-
-    number: int
-    mine: bool
-
-
-class Names(Protocol):
-    """How one side turns what it holds into references and back."""
-
-    def lower(self, value: Any) -> Reference | Rhs | Seed | None:
-        """What stands for ``value`` on the wire, or None if it cannot cross."""
-
-    def raise_(self, value: Reference | Rhs | Seed) -> Any:
-        """What a reference, right-hand side or seed that arrived stands for here."""
 
 
 class Codec:
@@ -144,7 +100,7 @@ class Codec:
             UnsupportedValueError: something in ``value`` cannot cross, or it is too large or too deep.
         """
         parts: list[bytes] = []
-        arrays = _put(value, parts, self._names, MAX_DEPTH)
+        arrays = put(value, parts, self._names, MAX_DEPTH)
         body = b"".join(parts)
         if len(body) - arrays > MAX_VALUE_BYTES or arrays > MAX_ARRAY_BYTES:
             raise UnsupportedValueError("a value that is too large (1 MB of plain values, 64 MB of arrays)")
@@ -157,10 +113,10 @@ class Codec:
             WireError: the body is malformed in any way.
         """
         try:
-            value = _quick(body)
-            if value is not _OTHER:
+            value = quick(body)
+            if value is not OTHER:
                 return value
-            reader = _Reader(body, self._names, self._accept_bytes)
+            reader = Reader(body, self._names, self._accept_bytes)
             value = reader.take(MAX_DEPTH)
         except WireError:
             raise
@@ -171,348 +127,3 @@ class Codec:
         if len(body) - reader.bulk > MAX_VALUE_BYTES:
             raise WireError("more than 1 MB of plain values")
         return value
-
-
-def _put(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
-    """Append the encoding of ``value`` to ``parts``; returns how many bytes of it are array data."""
-    return _PUT.get(type(value), _put_other)(value, parts, names, depth)
-
-
-def _put_none(_value: None, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    parts.append(b"N")
-    return 0
-
-
-def _put_bool(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    parts.append(b"T" if value else b"F")
-    return 0
-
-
-def _put_int(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    try:
-        parts.append(b"i" + _I64.pack(value))
-    except struct.error:
-        raise UnsupportedValueError("an integer beyond 64 bits") from None
-    return 0
-
-
-def _put_float(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    parts += (b"f", _F64.pack(value))
-    return 0
-
-
-def _put_str(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    raw = value.encode("utf-8", "replace")
-    parts.append(b"s" + _U32.pack(len(raw)) + raw)
-    return 0
-
-
-def _put_bytes(value: bytes, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    parts.append(b"y" + _U32.pack(len(value)) + value)
-    return len(value)
-
-
-def _put_list(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
-    if depth <= 0:
-        raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
-    parts.append(b"l" + _U32.pack(len(value)))
-    arrays = 0
-    for item in value:
-        put = _PUT.get(type(item), _put_other)
-        arrays += put(item, parts, names, depth - 1)
-    return arrays
-
-
-def _put_dict(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
-    if depth <= 0:
-        raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
-    parts.append(b"d" + _U32.pack(len(value)))
-    arrays = 0
-    for key, item in value.items():
-        if not isinstance(key, str):
-            raise UnsupportedValueError(f"a dict with a key that is not a str but {_name_of(key)}")
-        raw = key.encode("utf-8", "replace")
-        parts.append(_U32.pack(len(raw)) + raw)
-        arrays += _put(item, parts, names, depth - 1)
-    return arrays
-
-
-def _put_array(value: Any, parts: list[bytes], _names: Names | None, _depth: int) -> int:
-    if value.dtype is _FLOAT64 and value.ndim == 1:  # what nearly every call and callback carries
-        raw = value.tobytes()
-        parts += (b"v", _U32.pack(len(value)), raw)
-        return len(raw)
-    if value.dtype is _FLOAT64 and value.ndim == 2:
-        raw = value.tobytes()
-        parts += (b"a" + _TABLE, _SHAPE.pack(*value.shape), raw)
-        return len(raw)
-    code = _WIDEN.get(value.dtype.kind)
-    if code is None:
-        raise UnsupportedValueError(f"an array of dtype {value.dtype}")
-    if value.ndim > MAX_DIMENSIONS:
-        raise UnsupportedValueError(f"an array of {value.ndim} dimensions")
-    raw = value.astype(_DTYPES[code], copy=False).tobytes()
-    parts.append(b"a%c%c" % (code, value.ndim) + b"".join(map(_U32.pack, value.shape)) + raw)
-    return len(raw)
-
-
-def _put_other(value: Any, parts: list[bytes], names: Names | None, depth: int) -> int:
-    """Everything whose exact type has no entry: numpy scalars, subclasses, callables, strangers."""
-    if isinstance(value, np.ndarray):
-        return _put_array(np.asarray(value), parts, names, depth)
-    if isinstance(value, np.generic):
-        if value.dtype.kind not in _WIDEN:
-            raise UnsupportedValueError(f"a numpy scalar of dtype {value.dtype}")
-        if value.dtype.kind == "c":
-            return _put_array(np.asarray(value), parts, names, depth)
-        return _put(value.item() if value.dtype.itemsize <= 8 else float(value), parts, names, depth)
-    if isinstance(value, complex):
-        return _put_array(np.asarray(complex(value)), parts, names, depth)
-    for base, put in _BASES:
-        if isinstance(value, base):
-            return put(value, parts, names, depth)
-    lowered = names.lower(value) if names is not None else None
-    if isinstance(lowered, Reference):
-        parts.append((b"c" if lowered.mine else b"w") + _U32.pack(lowered.number))
-    elif isinstance(lowered, Rhs):
-        parts.append(b"p")
-        _put_str(lowered.name, parts, None, 1)
-        _put_dict(lowered.params, parts, None, min(depth, _RHS_DEPTH))
-    elif isinstance(lowered, Seed):
-        parts.append(b"g" + _I64.pack(lowered.value))
-    else:
-        raise UnsupportedValueError(f"a value of type {_name_of(value)}")
-    return 0
-
-
-def _name_of(value: Any) -> str:
-    return str(type(value).__name__)[:80]
-
-
-_PUT: dict[type, Callable[[Any, list[bytes], Names | None, int], int]] = {
-    float: _put_float,
-    np.float64: _put_float,
-    np.ndarray: _put_array,
-    int: _put_int,
-    list: _put_list,
-    tuple: _put_list,
-    type(None): _put_none,
-    bool: _put_bool,
-    str: _put_str,
-    dict: _put_dict,
-    bytes: _put_bytes,
-}
-#: Subclasses arrive as the plain value they extend; bool before int, since every bool is an int.
-_BASES: tuple[tuple[type, Callable[[Any, list[bytes], Names | None, int], int]], ...] = (
-    (bool, _put_bool),
-    (float, _put_float),
-    (int, _put_int),
-    (str, _put_str),
-    (list, _put_list),
-    (tuple, _put_list),
-    (dict, _put_dict),
-)
-
-_N, _T, _F, _I, _FL, _S, _Y = (ord(tag) for tag in "NTFifsy")
-_L, _D, _A, _V, _C, _W, _P, _G = (ord(tag) for tag in "ldavcwpg")
-
-
-_OTHER = object()
-_QUICK_COUNT = 64
-
-
-def _quick(body: bytes) -> Any:  # noqa: PLR0911 - it gives up at the first thing it does not know
-    """A vector, or a short list of numbers, words, vectors and tables: what a callback and its answer are.
-
-    Twenty thousand of them pass in a second, so they are read in one loop; ``_OTHER`` stands for anything
-    else, which takes the long way from the start.
-    """
-    if len(body) > MAX_VALUE_BYTES:  # larger ones must not be copied twice
-        return _OTHER
-    if body[0] == _V:
-        values, end = _quick_vector(body, 1)
-        return values if end == len(body) else _OTHER
-    if body[0] != _L:
-        return _OTHER
-    count, at = _U32.unpack_from(body, 1)[0], 5
-    if count > _QUICK_COUNT:
-        return _OTHER
-    items: list[Any] = []
-    for _ in range(count):
-        if body[at] == _FL:
-            items.append(_F64.unpack_from(body, at + 1)[0])
-            at += 9
-            continue
-        read = _QUICK.get(body[at])
-        if read is None:
-            return _OTHER
-        value, at = read(body, at + 1)
-        if value is _OTHER:
-            return _OTHER
-        items.append(value)
-    # A length that runs past the end shows here.
-    return items if at == len(body) else _OTHER
-
-
-def _quick_vector(body: bytes, at: int) -> tuple[Any, int]:
-    end = at + 4 + 8 * _U32.unpack_from(body, at)[0]
-    # Writable, and aligned as malloc aligns.
-    return (np.frombuffer(bytearray(body[at + 4 : end]), _FLOAT64) if end <= len(body) else _OTHER), end
-
-
-def _quick_table(body: bytes, at: int) -> tuple[Any, int]:
-    if body[at : at + 2] != _TABLE:
-        return _OTHER, at
-    rows, columns = _SHAPE.unpack_from(body, at + 2)
-    end = at + 10 + 8 * rows * columns
-    # Empty ones may have extents that overflow: those are for the careful reader.
-    if end > len(body) or not rows * columns:
-        return _OTHER, at
-    return np.frombuffer(bytearray(body[at + 10 : end]), _FLOAT64).reshape(rows, columns), end
-
-
-def _quick_text(body: bytes, at: int) -> tuple[Any, int]:
-    end = at + 4 + _U32.unpack_from(body, at)[0]
-    return (body[at + 4 : end].decode("utf-8") if end <= len(body) else _OTHER), end
-
-
-_QUICK: dict[int, Callable[[bytes, int], tuple[Any, int]]] = {
-    _V: _quick_vector,
-    _A: _quick_table,
-    _S: _quick_text,
-    _I: lambda body, at: (_I64.unpack_from(body, at)[0], at + 8),
-    _N: lambda _body, at: (None, at),
-    _T: lambda _body, at: (True, at),
-    _F: lambda _body, at: (False, at),
-}
-
-
-class _Reader:
-    """Walks one body; ``at`` is where the next value starts."""
-
-    __slots__ = ("_accept_bytes", "_names", "_values", "at", "body", "bulk")
-
-    def __init__(self, body: bytes, names: Names | None, accept_bytes: bool) -> None:
-        self.body = body
-        self.at = 0
-        self._names = names
-        self._accept_bytes = accept_bytes
-        self._values = MAX_VALUES
-        self.bulk = 0  # bytes of arrays and files so far
-
-    def take(self, depth: int) -> Any:  # noqa: PLR0911 - one return per kind of value
-        at = self.at
-        tag = self.body[at]
-        self.at = at + 1
-        self._values -= 1
-        if self._values < 0:
-            raise WireError(f"more than {MAX_VALUES} values")
-        if tag == _FL:
-            self.at = at + 9
-            return _F64.unpack_from(self.body, at + 1)[0]
-        if tag in (_V, _A):
-            return self._array(vector=tag == _V)
-        if tag == _I:
-            self.at = at + 9
-            return _I64.unpack_from(self.body, at + 1)[0]
-        if tag in _CONSTANTS:
-            return _CONSTANTS[tag]
-        if tag == _S:
-            return self._text()
-        if tag in (_L, _D):
-            if depth <= 0:
-                raise WireError(f"nested more than {MAX_DEPTH} deep")
-            return self._list(depth - 1) if tag == _L else self._dict(depth - 1)
-        return self._rare(tag, depth)
-
-    def _rare(self, tag: int, depth: int) -> Any:
-        if tag == _Y and self._accept_bytes:
-            raw = self._raw()
-            self.bulk += len(raw)
-            return raw
-        if self._names is None:
-            raise WireError(f"unexpected tag {tag}")
-        if tag in (_C, _W):
-            # "c": the receiver (this side) holds it; "w": the sender does.
-            return self._names.raise_(Reference(self._u32(), mine=tag == _C))
-        if tag == _P:
-            # One inside another would recurse without ever using up the depth.
-            if depth <= 0 or self.body[self.at] != _S:
-                raise WireError("a right-hand side in another form")
-            name, params = self.take(0), self.take(min(depth, _RHS_DEPTH))
-            if not isinstance(params, dict):
-                raise WireError("a right-hand side in another form")
-            return self._names.raise_(Rhs(name, params))
-        if tag == _G:
-            self.at += 8
-            return self._names.raise_(Seed(_I64.unpack_from(self.body, self.at - 8)[0]))
-        raise WireError(f"unexpected tag {tag}")
-
-    def _u32(self) -> int:
-        at = self.at
-        self.at = at + 4
-        return int(_U32.unpack_from(self.body, at)[0])
-
-    def _raw(self) -> bytes:
-        size = self._u32()
-        raw = self.body[self.at : self.at + size]
-        if len(raw) != size:
-            raise WireError("a length that runs past the end")
-        self.at += size
-        return raw
-
-    def _text(self) -> str:
-        size = _U32.unpack_from(self.body, self.at)[0]
-        # Before it is decoded: one wide character makes text take four bytes for each of its letters.
-        if self.at + 4 + size - self.bulk > MAX_VALUE_BYTES:
-            raise WireError("more than 1 MB of plain values")
-        return self._raw().decode("utf-8")
-
-    def _count(self) -> int:
-        count = self._u32()
-        if count > len(self.body) - self.at:
-            raise WireError("more elements than bytes")
-        return count
-
-    def _list(self, depth: int) -> list[Any]:
-        return [self.take(depth) for _ in range(self._count())]
-
-    def _dict(self, depth: int) -> dict[str, Any]:
-        result: dict[str, Any] = {}
-        for _ in range(self._count()):
-            key = self._text()
-            if key in result:
-                raise WireError("a key that appears twice")
-            result[key] = self.take(depth)
-        return result
-
-    def _array(self, *, vector: bool) -> np.ndarray[Any, Any]:
-        if vector:
-            code = 0
-            shape: tuple[int, ...] = (self._u32(),)
-        else:
-            code, ndim = self.body[self.at], self.body[self.at + 1]
-            self.at += 2
-            if code >= len(_DTYPES) or ndim > MAX_DIMENSIONS:
-                raise WireError("an array of unknown dtype or too many dimensions")
-            shape = tuple(self._u32() for _ in range(ndim))
-        dtype = _DTYPES[code]
-        elements = 1
-        padded = 1  # numpy refuses shapes whose non-zero extents overflow even when the array is empty
-        for extent in shape:
-            elements *= extent
-            padded *= max(extent, 1)
-        size = elements * dtype.itemsize
-        self.bulk += size
-        if self.bulk > MAX_ARRAY_BYTES or padded * dtype.itemsize > MAX_ARRAY_BYTES:
-            raise WireError("more than 64 MB of arrays")
-        if self.at + size > len(self.body):
-            raise WireError("an array that runs past the end")
-        raw = np.frombuffer(self.body, np.uint8 if code == 2 else dtype, elements, self.at)
-        self.at += size
-        # A bool array whose bytes are not 0 or 1 would compare in undefined ways: "!= 0" normalises.
-        values = raw != 0 if code == 2 else raw.copy()
-        return values.reshape(shape)
-
-
-_CONSTANTS = {_N: None, _T: True, _F: False}

@@ -321,7 +321,18 @@ def _described(error: BaseException) -> dict[str, Any]:
     return described
 
 
-_OWN = ("worker", "zygote", "lockdown", "wire", "loops", "declared", "systems")
+_OWN = (
+    "worker",
+    "zygote",
+    "lockdown",
+    "frames",
+    "encoding",
+    "decoding",
+    "wire",
+    "loops",
+    "declared",
+    "systems",
+)
 _OWN_FILES = tuple(f"{name}.py" for name in _OWN)
 
 

@@ -1,0 +1,86 @@
+"""What both ends of the wire agree on: limits, kinds of message, and what stands for what cannot cross."""
+
+from __future__ import annotations
+
+import enum
+import struct
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+MAX_VALUE_BYTES = 1 << 20  # everything of a frame that is not array data
+MAX_ARRAY_BYTES = 64 << 20  # all arrays of a frame together
+MAX_FRAME = MAX_VALUE_BYTES + MAX_ARRAY_BYTES
+MAX_DEPTH = 32
+MAX_DIMENSIONS = 8
+RHS_DEPTH = 4  # of the parameters of a right-hand side
+MAX_VALUES = 200_000  # decoding one costs about half a microsecond: a hostile frame costs at most 0.1 s
+
+HEADER = struct.Struct("<IB")
+U32 = struct.Struct("<I")
+I64 = struct.Struct("<q")
+F64 = struct.Struct("<d")
+SHAPE = struct.Struct("<II")
+TABLE = b"\x00\x02"  # dtype and dimensions of a table of float64
+FLOAT64 = np.dtype(np.float64)
+DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
+
+
+class Kind(enum.IntEnum):
+    """What a frame is about. The first group goes to the worker, the second comes from it."""
+
+    LOAD = 1  # [files, module name]
+    CALL = 2  # [function, args, kwargs, inspect]
+    MARCH = 3  # [step, [[rhs, q0, v0, t0, h, n], ...]]
+    REPLY = 4  # value of a callback
+    EACH = 6  # [function, [args, ...]]
+    FOLD = 7  # [function, state, [args, ...], which element is the next state or None, keys to keep or None]
+    REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
+    READY = 15  # None: locked down, and nothing of the submission has run yet
+    LOADED = 16  # [names of functions]
+    REFUSED = 17  # {stage, type, message, line, text}
+    RESULT = 18  # value
+    RAISED = 19  # {type, message, line, function, frames}
+    CALLBACK = 20  # [number of the callable, kwargs or None, *args]
+
+
+class WireError(Exception):
+    """What arrived is not a frame this protocol has."""
+
+
+class UnsupportedValueError(Exception):
+    """A value that cannot cross; the message names its type in words for the student."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rhs:
+    """A named right-hand side and its plain parameters, built where it is evaluated."""
+
+    name: str
+    params: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Seed:
+    """A random generator, as the seed it is built from on the other side."""
+
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A callable by number. ``mine``: the receiver holds it and has said so before."""
+
+    number: int
+    mine: bool
+
+
+class Names(Protocol):
+    """How one side turns what it holds into references and back."""
+
+    def lower(self, value: Any) -> Reference | Rhs | Seed | None:
+        """What stands for ``value`` on the wire, or None if it cannot cross."""
+
+    def raise_(self, value: Reference | Rhs | Seed) -> Any:
+        """What a reference, right-hand side or seed that arrived stands for here."""

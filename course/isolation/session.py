@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from course.isolation import wire
 from course.isolation.failures import IsolationError, StudentFailure, printable
 from course.isolation.levels import START_TIMEOUT
+from course.isolation.reports import claimed_text, raised
 from course.physics import systems
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ _HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
 #: What the callbacks of one call may carry in all; a check may keep every argument it is given.
 _CALLBACK_BYTES = 16 << 20
-_MAX_FRAMES = 12  # of a traceback
 _TICK_S = 0.1  # how often a blocked read looks at the clock; it ends by the deadline plus this
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
@@ -260,7 +260,7 @@ class Connection:
             return frozenset(name for name in value if isinstance(name, str))
         if kind == Kind.REFUSED and isinstance(value, dict):
             stage = "syntax" if value.get("stage") == "syntax" else "import"
-            raise LoadRefusedError(stage, self._raised(value), _text(value.get("text")))
+            raise LoadRefusedError(stage, self._raised(value), claimed_text(value.get("text")))
         raise LoadRefusedError("crash", self._breach("an answer of another form"))
 
     def _await_lockdown(self) -> None:
@@ -280,40 +280,9 @@ class Connection:
         self.deadline = deadline + monotonic() - start
 
     def _raised(self, value: Any) -> StudentFailure:
-        """The exception a worker reports, with nothing taken for granted about the report."""
-        if not isinstance(value, dict):
-            return self._breach("an exception in another form")
-        kind = _text(value.get("type"), 100)
-        message = _text(value.get("message"))
-        if kind == "UnsupportedValue":
-            return StudentFailure("protocol", type=kind, message=message)
+        """The exception a worker reports."""
         source = self._files[self._main].decode("utf-8", "replace").splitlines()
-        frames = [
-            (frame[1], _text(frame[2], 100))
-            for frame in _items(value.get("frames"), _MAX_FRAMES)
-            if isinstance(frame, list) and len(frame) == 3 and _text(frame[0]) == self._main
-            if self._is_line(frame[1], source)
-        ]
-        line = frames[-1][0] if frames else None
-        if self._is_line(value.get("line"), source):
-            line = value["line"]
-        bases = [_text(base, 100) for base in _items(value.get("bases"), _MAX_FRAMES)]
-        return StudentFailure(
-            "memory" if "MemoryError" in bases else "error",
-            type=kind,
-            message=message,
-            line=line,
-            traceback="\n".join(
-                f"{self._main}:{number} in {function}\n    {_text(source[number - 1].strip(), 200)}".rstrip()
-                for number, function in frames
-            ),
-            bases=bases,
-        )
-
-    @staticmethod
-    def _is_line(number: Any, source: list[str]) -> bool:
-        """Whether the file has that line: any other number would be a way to carry a value out."""
-        return type(number) is int and 0 < number <= len(source)
+        return raised(value, self._main, source) or self._breach("an exception in another form")
 
     # -- frames ---------------------------------------------------------------------------------------
 
@@ -385,15 +354,6 @@ class Connection:
         end = self._finish()
         how = f"signal {end.signal}" if end and end.signal else f"exit code {end.code if end else 0}"
         return StudentFailure("crash", type=how, message=f"its process ended by itself ({how})")
-
-
-def _text(value: Any, limit: int = 2000) -> str:
-    return printable(value, limit) if isinstance(value, str) else ""
-
-
-def _items(value: Any, limit: int) -> list[Any]:
-    """The last of what a list holds, nothing if it is no list."""
-    return value[-limit:] if isinstance(value, list) else []
 
 
 def _few_numbers(value: Any) -> bool:

@@ -61,7 +61,7 @@ def spoiled(value, bad):
     return value if isinstance(value, bool) else bad
 
 '''
-#: Wall seconds a check waits. A right function needs far less, on a machine that has other work to do too; one
+#: Wall seconds a check waits. A right function needs far less, on a machine with other work to do too; one
 #: that never answers is waited for by each check of its task. Checks of sim-to-real compute for a second.
 LATE = 60.0
 SOON = {"sim-to-real": 15.0}

@@ -195,6 +195,9 @@ class Worker:
             with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
                 handle.write(content)
         sys.path.insert(0, os.getcwd())  # noqa: PTH109 - pathlib is not worth its import here
+        for name in files:  # one of them may be called as one of ours
+            if name[:-3] in _OWN:
+                sys.modules.pop(name[:-3], None)
         imports = declared.Imports(self._imports | {name[:-3] for name in files}, self._imports)
         sys.meta_path.insert(0, imports)
         try:
@@ -341,8 +344,6 @@ def run(sock: socket.socket, imports: frozenset[str]) -> None:
     sys.stdout = CappedText(1)
     sys.stderr = CappedText(2)
     gc.enable()
-    for name in _OWN:  # a submission may have a file of that name
-        sys.modules.pop(name, None)
     worker = Worker(sock, imports)
     try:
         worker.serve()

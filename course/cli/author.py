@@ -116,15 +116,15 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
     from course.cli.author_schemas import AuthorNew
 
     console = current()
-    shown = tuple(shown(path, catalog) for path in files)
+    written = tuple(shown(path, catalog) for path in files)
     console.heading(f"Wrote {kind} {name}.")
-    for path in shown:
+    for path in written:
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, where it is to be read.")
     then = "sandbox play" if kind == "scene" else "author check"
     console.note(f"Fill in what is marked, then run: course {then} {name}")
-    console.emit(AuthorNew(kind=kind, id=name, files=shown))
+    console.emit(AuthorNew(kind=kind, id=name, files=written))
     return 0
 
 

@@ -209,9 +209,12 @@ class Worker:
         try:
             try:
                 module = _run(code, main)
-            except declared.ImportNotDeclaredError:
+            except declared.ImportNotDeclaredError as refused:
                 imports.stand_in(source)
-                module = _run(code, main)
+                try:
+                    module = _run(code, main)
+                except Exception:  # noqa: BLE001 - it cannot be loaded without that package
+                    raise refused from None
         except BaseException as error:  # noqa: BLE001 - SystemExit at import is an answer too
             self._send(Kind.REFUSED, {"stage": "import", **_described(error)})
             return

@@ -9,51 +9,30 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-if __package__:
-    from course.isolation.frames import (
-        DTYPES,
-        F64,
-        FLOAT64,
-        I64,
-        MAX_ARRAY_BYTES,
-        MAX_DEPTH,
-        MAX_DIMENSIONS,
-        MAX_VALUE_BYTES,
-        MAX_VALUES,
-        RHS_DEPTH,
-        SHAPE,
-        TABLE,
-        U32,
-        Reference,
-        Rhs,
-        Seed,
-        WireError,
-    )
-else:
-    from frames import (  # type: ignore[import-not-found,no-redef]
-        DTYPES,
-        F64,
-        FLOAT64,
-        I64,
-        MAX_ARRAY_BYTES,
-        MAX_DEPTH,
-        MAX_DIMENSIONS,
-        MAX_VALUE_BYTES,
-        MAX_VALUES,
-        RHS_DEPTH,
-        SHAPE,
-        TABLE,
-        U32,
-        Reference,
-        Rhs,
-        Seed,
-        WireError,
-    )
+from .frames import (
+    DTYPES,
+    F64,
+    FLOAT64,
+    I64,
+    MAX_ARRAY_BYTES,
+    MAX_DEPTH,
+    MAX_DIMENSIONS,
+    MAX_VALUE_BYTES,
+    MAX_VALUES,
+    RHS_DEPTH,
+    SHAPE,
+    TABLE,
+    U32,
+    Reference,
+    Rhs,
+    Seed,
+    WireError,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from course.isolation.frames import Names
+    from .frames import Names
 
 __all__ = ["OTHER", "Reader", "quick"]
 

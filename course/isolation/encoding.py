@@ -7,45 +7,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-if __package__:
-    from course.isolation.frames import (
-        DTYPES,
-        F64,
-        FLOAT64,
-        I64,
-        MAX_DEPTH,
-        MAX_DIMENSIONS,
-        RHS_DEPTH,
-        SHAPE,
-        TABLE,
-        U32,
-        Reference,
-        Rhs,
-        Seed,
-        UnsupportedValueError,
-    )
-else:
-    from frames import (  # type: ignore[import-not-found,no-redef]
-        DTYPES,
-        F64,
-        FLOAT64,
-        I64,
-        MAX_DEPTH,
-        MAX_DIMENSIONS,
-        RHS_DEPTH,
-        SHAPE,
-        TABLE,
-        U32,
-        Reference,
-        Rhs,
-        Seed,
-        UnsupportedValueError,
-    )
+from .frames import (
+    DTYPES,
+    F64,
+    FLOAT64,
+    I64,
+    MAX_DEPTH,
+    MAX_DIMENSIONS,
+    RHS_DEPTH,
+    SHAPE,
+    TABLE,
+    U32,
+    Reference,
+    Rhs,
+    Seed,
+    UnsupportedValueError,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from course.isolation.frames import Names
+    from .frames import Names
 
 __all__ = ["put"]
 

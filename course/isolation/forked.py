@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ZygoteSpawner"]
 
-_INSIDE = "/course-worker"  # where the flat files appear inside bubblewrap
+_INSIDE = "/course-worker"  # where the worker's files appear inside bubblewrap
 _PACKAGES = "/packages"
 
 
@@ -46,7 +46,7 @@ class ZygoteSpawner:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             with theirs:
-                launch.copy_flat_files(self._folder)
+                launch.copy_worker_files(self._folder)
                 self._process = self._run(self._command(theirs.fileno()), theirs.fileno())
             self._control.settimeout(START_TIMEOUT)
             self._check_start(self._view)

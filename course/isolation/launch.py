@@ -15,13 +15,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from course.isolation.view import View
 
-__all__ = ["command", "copy_flat_files", "environment", "private_folder", "remove_tree"]
+__all__ = ["command", "copy_worker_files", "environment", "private_folder", "remove_tree"]
 
-_BESIDE = ("frames", "encoding", "decoding", "wire", "loops", "declared", "worker", "lockdown", "zygote")
-_FLAT_FILES = tuple(f"isolation/{name}.py" for name in _BESIDE)
-_RHS_FILE = "physics/systems.py"
-
-
+#: What runs beside a stranger's code is copied as a package of its own, laid out as here: its files import
+#: each other by the same relative names in both places.
+_PACKAGE = "course_worker"
+_COPIED = (
+    *(f"isolation/{name}.py" for name in ("frames", "encoding", "decoding", "wire")),
+    *(f"isolation/{name}.py" for name in ("loops", "declared", "worker", "lockdown", "zygote")),
+    "physics/systems.py",
+)
 _PREFIX = "course-worker-"
 
 
@@ -49,16 +52,23 @@ def _is_alive(pid: int) -> bool:
     return True
 
 
-def copy_flat_files(target: Path) -> None:
-    package = Path(__file__).resolve().parents[1]
-    for name in (*_FLAT_FILES, _RHS_FILE):
-        shutil.copy(package / name, target)
+def copy_worker_files(target: Path) -> None:
+    """Put what runs in a worker into a folder, readable by whoever the worker becomes."""
+    course = Path(__file__).resolve().parents[1]
+    package = target / _PACKAGE
+    for folder in (package, package / "isolation", package / "physics"):
+        folder.mkdir()
+        (folder / "__init__.py").touch()
+    for name in _COPIED:
+        shutil.copy(course / name, package / name)
+    for path in (package, *package.rglob("*")):
+        path.chmod(0o755 if path.is_dir() else 0o644)
 
 
 def command(view: View, folder: str, config: dict[str, Any]) -> list[str]:
     # -S and -s: no site-packages, so nothing but the declared packages on the path; -P: no current folder.
     flags = ["-S", "-s", "-P", "-B"]
-    return [str(view.interpreter), *flags, f"{folder}/zygote.py", json.dumps(config)]
+    return [str(view.interpreter), *flags, f"{folder}/{_PACKAGE}/isolation/zygote.py", json.dumps(config)]
 
 
 def environment() -> dict[str, str]:

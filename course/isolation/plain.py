@@ -29,7 +29,7 @@ class ProcessSpawner:
     def __init__(self, view: View, imports: tuple[str, ...], limits: Limits) -> None:
         self.level = Level.L1
         self._folder = launch.private_folder()
-        launch.copy_flat_files(self._folder)
+        launch.copy_worker_files(self._folder)
         self._view = view
         self._imports = imports
         self._limits = limits

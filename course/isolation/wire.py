@@ -23,44 +23,24 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-if __package__:
-    from course.isolation.decoding import OTHER, Reader, quick
-    from course.isolation.encoding import put
-    from course.isolation.frames import (
-        HEADER,
-        MAX_ARRAY_BYTES,
-        MAX_DEPTH,
-        MAX_DIMENSIONS,
-        MAX_FRAME,
-        MAX_VALUE_BYTES,
-        MAX_VALUES,
-        Kind,
-        Names,
-        Reference,
-        Rhs,
-        Seed,
-        UnsupportedValueError,
-        WireError,
-    )
-else:
-    from decoding import OTHER, Reader, quick  # type: ignore[import-not-found,no-redef]
-    from encoding import put  # type: ignore[import-not-found,no-redef]
-    from frames import (  # type: ignore[import-not-found,no-redef]
-        HEADER,
-        MAX_ARRAY_BYTES,
-        MAX_DEPTH,
-        MAX_DIMENSIONS,
-        MAX_FRAME,
-        MAX_VALUE_BYTES,
-        MAX_VALUES,
-        Kind,
-        Names,
-        Reference,
-        Rhs,
-        Seed,
-        UnsupportedValueError,
-        WireError,
-    )
+from .decoding import OTHER, Reader, quick
+from .encoding import put
+from .frames import (
+    HEADER,
+    MAX_ARRAY_BYTES,
+    MAX_DEPTH,
+    MAX_DIMENSIONS,
+    MAX_FRAME,
+    MAX_VALUE_BYTES,
+    MAX_VALUES,
+    Kind,
+    Names,
+    Reference,
+    Rhs,
+    Seed,
+    UnsupportedValueError,
+    WireError,
+)
 
 __all__ = [
     "HEADER",

@@ -25,14 +25,8 @@ import numpy as np
 if TYPE_CHECKING:
     import socket
 
-if __package__:  # imported as part of the course (type checking, tests); a copy stands alone
-    from course.isolation import declared, loops, wire
-    from course.physics import systems
-else:
-    import declared  # type: ignore[import-not-found,no-redef]
-    import loops  # type: ignore[import-not-found,no-redef]
-    import systems  # type: ignore[import-not-found,no-redef]
-    import wire  # type: ignore[import-not-found,no-redef]
+from ..physics import systems
+from . import declared, loops, wire
 
 __all__ = ["CappedText", "Worker"]
 
@@ -195,9 +189,6 @@ class Worker:
             with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
                 handle.write(content)
         sys.path.insert(0, os.getcwd())  # noqa: PTH109 - pathlib is not worth its import here
-        for name in files:  # one of them may be called as one of ours
-            if name[:-3] in _OWN:
-                sys.modules.pop(name[:-3], None)
         imports = declared.Imports(self._imports | {name[:-3] for name in files}, self._imports)
         sys.meta_path.insert(0, imports)
         try:
@@ -311,7 +302,7 @@ def _described(error: BaseException) -> dict[str, Any]:
     frames = [
         [frame.f_code.co_filename[:200], line, frame.f_code.co_name[:100]]
         for frame, line in itertools.islice(traceback.walk_tb(error.__traceback__), 1000)
-        if not frame.f_code.co_filename.endswith(_OWN_FILES)
+        if not frame.f_code.co_filename.startswith(_OWN_FOLDER)
     ]
     described: dict[str, Any] = {
         "type": type(error).__name__[:100],
@@ -327,19 +318,7 @@ def _described(error: BaseException) -> dict[str, Any]:
     return described
 
 
-_OWN = (
-    "worker",
-    "zygote",
-    "lockdown",
-    "frames",
-    "encoding",
-    "decoding",
-    "wire",
-    "loops",
-    "declared",
-    "systems",
-)
-_OWN_FILES = tuple(f"{name}.py" for name in _OWN)
+_OWN_FOLDER = os.path.dirname(__file__)  # noqa: PTH120 - pathlib is not worth its import here
 
 
 def run(sock: socket.socket, imports: frozenset[str]) -> None:

@@ -40,7 +40,7 @@ def main() -> None:
     sys.path[:0] = config["path"]
     for name in (*_COMMON, *_NUMPY, *config["imports"]):
         importlib.import_module(name)
-    import worker  # type: ignore[import-not-found]
+    from course_worker.isolation import worker  # type: ignore[import-not-found]
 
     imports = frozenset(config["imports"])
     if config["level"] == "L1":
@@ -67,7 +67,7 @@ def _serve_here(config: dict[str, Any], imports: frozenset[str], worker: Any) ->
 
 
 def _fork_on_request(config: dict[str, Any], imports: frozenset[str], worker: Any) -> None:
-    import lockdown  # type: ignore[import-not-found]
+    from course_worker.isolation import lockdown
 
     control = socket.socket(fileno=config["control"])
     control.set_inheritable(False)
@@ -121,7 +121,7 @@ def _become_worker(
     worker: Any,
 ) -> None:
     """In the fork: keep one socket and one output file, give everything else up, serve. Never returns."""
-    import lockdown
+    from course_worker.isolation import lockdown
 
     try:
         _keep_only(descriptors[0], descriptors[1], rules)
@@ -167,7 +167,7 @@ def _keep_only(sock: int, output: int, rules: int) -> None:
 
 
 def _refuse(sock: socket.socket, message: str) -> None:
-    import wire  # type: ignore[import-not-found]
+    from course_worker.isolation import wire
 
     sock.sendall(wire.Codec().encode(wire.Kind.REFUSED, message))
 

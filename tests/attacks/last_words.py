@@ -4,7 +4,7 @@ import atexit
 import gc
 import weakref
 
-import wire
+from course_worker.isolation import wire
 
 
 def forge(*_):

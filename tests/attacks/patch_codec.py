@@ -1,6 +1,6 @@
 """Makes the codec beside it answer every question with True."""
 
-import wire
+from course_worker.isolation import wire
 
 original = wire.Codec.encode
 

@@ -4,5 +4,5 @@ import sys
 import types
 
 for name in list(sys.modules):
-    if name in ("worker", "wire", "systems", "lockdown", "zygote", "__main__", "socket"):
+    if name.rpartition(".")[2] in ("worker", "wire", "systems", "lockdown", "zygote", "__main__", "socket"):
         sys.modules[name] = types.ModuleType(name)

@@ -2,7 +2,7 @@
 
 import threading
 
-import wire
+from course_worker.isolation import wire
 
 
 def scale(values, factor):

@@ -210,14 +210,14 @@ def test_a_layer_that_fails_stops_the_worker_before_any_stranger_runs(
     level: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     require_level(level)
-    copy = launch.copy_flat_files
+    copy = launch.copy_worker_files
 
     def sabotaged(target: Path) -> None:
         copy(target)
-        with (target / "lockdown.py").open("a", encoding="utf-8") as handle:
+        with (target / "course_worker" / "isolation" / "lockdown.py").open("a", encoding="utf-8") as handle:
             handle.write("\n\ndef apply_seccomp(program):\n    raise LockdownError(0, 'sabotaged')\n")
 
-    monkeypatch.setattr(launch, "copy_flat_files", sabotaged)
+    monkeypatch.setattr(launch, "copy_worker_files", sabotaged)
     found = spawner(Level(level), ("numpy",))
     try:
         with pytest.raises(IsolationError, match="sabotaged"):
@@ -239,15 +239,15 @@ def test_the_canary_notices_a_layer_that_does_nothing(
     level: str, layer: str, escape: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     require_level(level)
-    copy = launch.copy_flat_files
+    copy = launch.copy_worker_files
 
     def without(target: Path) -> None:
         copy(target)
-        with (target / "lockdown.py").open("a", encoding="utf-8") as handle:
+        with (target / "course_worker" / "isolation" / "lockdown.py").open("a", encoding="utf-8") as handle:
             handle.write(f"\n\ndef {layer}(*_):\n    pass\n")
             handle.write("\n\ndef apply_limits(**_):\n    pass\n")  # or they would stop the fork as well
 
-    monkeypatch.setattr(launch, "copy_flat_files", without)
+    monkeypatch.setattr(launch, "copy_worker_files", without)
     with pytest.raises(IsolationError, match=escape):
         open_spawner(("numpy",), at_least=Level(level), at_most=Level(level))
 

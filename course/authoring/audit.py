@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from course.authoring.files import audit_files, blanks_in, find_blanks
-from course.authoring.grading import OpenGrader, grading_session
+from course.authoring.grading import GradeSources, declared_checks, grade_sources
 from course.authoring.lessons import audit_lesson, audit_syllabus
 from course.authoring.links import LinkChecker
 from course.authoring.proofs import Proof, Prover, plan
@@ -43,15 +43,15 @@ def audit(
     only: str | None = None,
     *,
     on_progress: Progress | None = None,
-    open_grader: OpenGrader = grading_session,
+    grade: GradeSources = grade_sources,
 ) -> AuditReport:
     """Check the course, or one lesson or exercise of it.
 
     Args:
         catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise or a question; None for everything.
-        on_progress: told before each step how many of how many are done.
-        open_grader: gives the grader of an exercise.
+        on_progress: told at the start and after each submission how many of how many are graded.
+        grade: gives the verdicts on submissions.
 
     Raises:
         MissingCapabilityError: this installation has no solutions or no hidden graders.
@@ -75,7 +75,7 @@ def audit(
     questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
     read = [_read(catalog, exercise_id, findings) for exercise_id in exercises]
     candidates = [candidate for candidate in read if candidate is not None]
-    graded, isolation = _grade(catalog, candidates, findings, on_progress, open_grader)
+    graded, isolation = _grade(catalog, candidates, findings, on_progress, grade)
     return AuditReport(
         problems=findings.sorted(),
         lessons=lessons,
@@ -121,12 +121,15 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
             exercise = catalog.read_exercise(exercise_id)
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
-            candidate = _Candidate(exercise, checks, plan(catalog, exercise, own))
+            proofs = plan(catalog, exercise, own)
+            # Checks that lack a marker would only fail again, all at once and less clearly.
+            if not own.of("check"):
+                declared_checks(exercise, catalog)
+                candidate = _Candidate(exercise, checks, proofs)
     except ContentError as error:
         own.add_error(error)
     findings.problems += own.problems
-    # Checks that lack a marker would only fail again, all at once and less clearly.
-    return None if own.of("check") else candidate
+    return candidate
 
 
 def _check_readmes(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
@@ -142,25 +145,22 @@ def _grade(
     candidates: list[_Candidate],
     findings: Findings,
     on_progress: Progress | None,
-    open_grader: OpenGrader,
+    grade: GradeSources,
 ) -> tuple[int, str]:
     """Grade everything that was planned; how many submissions that were, and at which protection level."""
-    total = sum(len(candidate.proofs) for candidate in candidates)
-    done, isolation = 0, ""
+    work: list[tuple[Prover, Proof]] = []
     for candidate in candidates:
-        exercise = candidate.exercise
-        entries = solutions_folder(catalog, exercise) / "mutants.toml"
-        prover = Prover(exercise, candidate.checks, entries, findings)
-        try:
-            with open_grader(exercise, catalog) as grade:
-                for proof in candidate.proofs:
-                    if on_progress:
-                        on_progress(done, total, f"{exercise.id}: {proof.role} {proof.path.name}")
-                    prover.prove(proof, grade)
-                    done += 1
-        except ContentError as error:  # checks that cannot be collected
-            findings.add_error(error)
-        isolation = prover.isolation
+        entries = solutions_folder(catalog, candidate.exercise) / "mutants.toml"
+        prover = Prover(candidate.exercise, candidate.checks, entries, findings)
+        work += [(prover, proof) for proof in candidate.proofs]
     if on_progress:
-        on_progress(done, total, "")
-    return done, isolation
+        on_progress(0, len(work), "")
+    isolation = ""
+    verdicts = grade([(prover.exercise, proof.source) for prover, proof in work])
+    for done, (index, verdict) in enumerate(verdicts, start=1):
+        prover, proof = work[index]
+        prover.judge(proof, verdict)
+        isolation = verdict.isolation or isolation
+        if on_progress:
+            on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.path.name}")
+    return len(work), isolation

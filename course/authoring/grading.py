@@ -2,38 +2,50 @@
 
 from __future__ import annotations
 
-import contextlib
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from contextlib import AbstractContextManager
+    from collections.abc import Callable, Iterator, Sequence
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.grading.collected import Check
     from course.grading.verdict import Verdict
 
-__all__ = ["Grade", "OpenGrader", "declared_checks", "grading_session"]
+__all__ = ["GradeSources", "declared_checks", "grade_sources"]
 
-Grade: TypeAlias = "Callable[[bytes], Verdict]"
-OpenGrader: TypeAlias = "Callable[[Exercise, Catalog], AbstractContextManager[Grade]]"
+#: Gradings of small exercises that take as long as starting one more process for them.
+_WORTH_A_GRADER = 15
+
+GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator[tuple[int, Verdict]]]"
 
 
-@contextlib.contextmanager
-def grading_session(exercise: Exercise, catalog: Catalog) -> Iterator[Grade]:
-    """Grade sources with all checks of an exercise, as a grading run would.
+def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
+    """Grade sources with all checks of their exercises, as a grading run would, on every processor.
 
-    The seed is fixed: an audit of the same files gives the same answer.
+    The seed is fixed: the same files get the same verdicts, whichever of them are done first.
+
+    Args:
+        sources: exercise and submission of each.
+
+    Yields:
+        Index and verdict, in the order in which they are reached.
+
+    Raises:
+        CourseError: nothing can be graded here.
     """
-    from course.grading.session import GradingSession, Submission
+    from course.engines.machine import this_machine
+    from course.grading.batch import BatchOptions, grade_all
+    from course.grading.intake import Entry
+    from course.grading.session import Submission
 
-    with GradingSession(exercise, catalog, scope="full", seed=0) as session:
-
-        def grade(source: bytes) -> Verdict:
-            return session.grade(Submission(files={exercise.module: source}))
-
-        yield grade
+    entries = (
+        Entry(str(index), exercise, Submission(files={exercise.module: source}))
+        for index, (exercise, source) in enumerate(sources)
+    )
+    graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
+    for graded in grade_all(entries, BatchOptions(graders=graders, at_least="L1", seed=0)):
+        yield int(graded.entry.student), graded.verdict
 
 
 def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:

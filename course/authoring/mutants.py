@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.authoring.grading import OpenGrader, grading_session
+from course.authoring.grading import GradeSources, grade_sources
 from course.authoring.variants import compose, solution_path, solutions_folder
 from course.grading.verdict import Status
 
@@ -60,7 +60,7 @@ def run_mutants(
     exercise: Exercise,
     *,
     on_progress: Progress | None = None,
-    open_grader: OpenGrader = grading_session,
+    grade: GradeSources = grade_sources,
 ) -> tuple[MutantOutcome, ...]:
     """Grade every mutant of an exercise and compare with what mutants.toml says.
 
@@ -70,15 +70,14 @@ def run_mutants(
     mutants = catalog.mutants(exercise)
     solution = solution_path(catalog, exercise)
     sources = [compose(solution, mutant_path(catalog, exercise, mutant)) for mutant in mutants]
-    outcomes = []
-    with open_grader(exercise, catalog) as grade:
-        for done, (mutant, source) in enumerate(zip(mutants, sources, strict=True)):
-            if on_progress:
-                on_progress(done, len(mutants), f"{exercise.id}: {mutant.file}")
-            outcomes.append(outcome_of(mutant, grade(source)))
+    verdicts: dict[int, Verdict] = {}
     if on_progress:
-        on_progress(len(mutants), len(mutants), "")
-    return tuple(outcomes)
+        on_progress(0, len(mutants), "")
+    for index, verdict in grade([(exercise, source) for source in sources]):
+        verdicts[index] = verdict
+        if on_progress:
+            on_progress(len(verdicts), len(mutants), f"{exercise.id}: {mutants[index].file}")
+    return tuple(outcome_of(mutant, verdicts[index]) for index, mutant in enumerate(mutants))
 
 
 def outcome_of(mutant: Mutant, verdict: Verdict) -> MutantOutcome:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from course.authoring.grading import Grade
     from course.authoring.report import Findings
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise, Mutant
@@ -125,22 +124,19 @@ def _add(
 
 
 class Prover:
-    """Grades the proofs of one exercise and reports what does not hold."""
+    """Reports what the gradings of one exercise's proofs do not bear out."""
 
     def __init__(
         self, exercise: Exercise, checks: tuple[CheckSource, ...], mutants_toml: Path, findings: Findings
     ) -> None:
-        self._exercise = exercise
+        self.exercise = exercise
         self._checks = {check.id: check for check in checks}
         self._mutants_toml = mutants_toml
         self._findings = findings
         self._public = public_numbers(exercise)
-        self.isolation = ""
 
-    def prove(self, proof: Proof, grade: Grade) -> None:
-        """Grade one proof and report."""
-        verdict = grade(proof.source)
-        self.isolation = verdict.isolation
+    def judge(self, proof: Proof, verdict: Verdict) -> None:
+        """Report what is wrong with the verdict on one proof."""
         if self._is_our_fault(proof, verdict):
             return
         if proof.mutant is not None:
@@ -162,7 +158,7 @@ class Prover:
         """Report checks that broke instead of checking."""
         if verdict.state == "grader_error" and verdict.error:
             self._findings.add(
-                self._exercise.checks_path,
+                self.exercise.checks_path,
                 None,
                 "grader",
                 f"the checks break on {proof.path.name}: {verdict.error.message}",
@@ -171,7 +167,7 @@ class Prover:
         for check in verdict.checks:
             if check.status is Status.GRADER_ERROR:
                 self._findings.add(
-                    *self._place(check.id, self._exercise.checks_path),
+                    *self._place(check.id, self.exercise.checks_path),
                     "grader",
                     f"check {check.id} breaks on {proof.path.name}: {check.message}",
                     "Correct the check; whatever a student returns must be a finding.",
@@ -187,7 +183,7 @@ class Prover:
                     f"the untouched stub passes check {check.id} of task {check.task}.",
                     "Let the check fail on code that does nothing.",
                 )
-        for task in self._exercise.task:
+        for task in self.exercise.task:
             if not any(c.task == task.id and c.status is not Status.PASS for c in verdict.checks):
                 self._findings.add(
                     proof.path,
@@ -212,7 +208,7 @@ class Prover:
         ran = {check.id for check in verdict.checks}
         for check_id in sorted(ran ^ set(self._checks)):
             self._findings.add(
-                *self._place(check_id, self._exercise.checks_path),
+                *self._place(check_id, self.exercise.checks_path),
                 "check",
                 f"check {check_id} ran, but no plain function declares it."
                 if check_id in ran
@@ -229,7 +225,7 @@ class Prover:
             if check.visibility is Visibility.HIDDEN and check.status is Status.FAIL:
                 for number in _leaks(check, self._public):
                     self._findings.add(
-                        *self._place(check.id, self._exercise.checks_path),
+                        *self._place(check.id, self.exercise.checks_path),
                         "leak",
                         f"hidden check {check.id} shows the number {number} in its words.",
                         "Say it in words; put values into input, expected and actual, which are not shown.",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +15,7 @@ from course.catalog.locate import content
 from course.grading.verdict import CheckResult, Status, Verdict, Visibility
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from course.authoring.report import AuditProblem, AuditReport
     from course.catalog.models import Exercise
@@ -46,23 +45,14 @@ class Oracle:
         self.changes: dict[str, Callable[[Verdict], Verdict]] = {}
         self.graded: list[str] = []
 
-    @contextlib.contextmanager
-    def open(self, exercise: Exercise, catalog: Catalog) -> Iterator[Callable[[bytes], Verdict]]:
-        graders = catalog.content.graders
-        assert graders is not None
-        checks = (
-            *checks_in(exercise.checks_path, parse(exercise.checks_path), hidden=False),
-            *checks_in(path := graders / exercise.id / "checks.py", parse(path), hidden=True),
-        )
-        names = self._names(exercise, catalog)
-
-        def grade(source: bytes) -> Verdict:
+    def grade(self, sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
+        catalog = Catalog()
+        for index, (exercise, source) in enumerate(sources):
+            names = self._names(exercise, catalog)
             name = next((n for text, n in names.items() if source.decode().endswith(text)), "?")
             self.graded.append(name)
-            verdict = _verdict(exercise, catalog, checks, name)
-            return self.changes.get(name, lambda v: v)(verdict)
-
-        yield grade
+            verdict = _verdict(exercise, catalog, _checks(exercise, catalog), name)
+            yield index, self.changes.get(name, lambda v: v)(verdict)
 
     @staticmethod
     def _names(exercise: Exercise, catalog: Catalog) -> dict[str, str]:
@@ -73,6 +63,15 @@ class Oracle:
         names[(folder / exercise.module).read_text(encoding="utf-8")] = "solution"
         names[exercise.stub_path.read_text(encoding="utf-8")] = "stub"
         return names
+
+
+def _checks(exercise: Exercise, catalog: Catalog) -> tuple[CheckSource, ...]:
+    graders = catalog.content.graders
+    assert graders is not None
+    return (
+        *checks_in(exercise.checks_path, parse(exercise.checks_path), hidden=False),
+        *checks_in(path := graders / exercise.id / "checks.py", parse(path), hidden=True),
+    )
 
 
 def _verdict(exercise: Exercise, catalog: Catalog, checks: tuple[CheckSource, ...], name: str) -> Verdict:
@@ -117,7 +116,7 @@ def oracle() -> Oracle:
 @pytest.fixture
 def run(mini: Path, oracle: Oracle) -> Callable[..., AuditReport]:
     """Audit the copy with the oracle."""
-    return lambda only=None: audit(Catalog(content()), only, open_grader=oracle.open)
+    return lambda only=None: audit(Catalog(content()), only, grade=oracle.grade)
 
 
 @pytest.fixture

@@ -226,7 +226,7 @@ def test_small_numbers_and_public_checks_may_be_said(
 
 def test_progress_counts_up_to_the_end(mini: Path, oracle: Any) -> None:
     steps: list[tuple[int, int, str]] = []
-    report = audit(Catalog(), on_progress=lambda *step: steps.append(step), open_grader=oracle.open)
+    report = audit(Catalog(), on_progress=lambda *step: steps.append(step), grade=oracle.grade)
     assert [done for done, _, _ in steps] == [*range(14), 14]
     assert {total for _, total, _ in steps} == {report.graded}
-    assert steps[0][2] == "doubling: stub doubling.py"
+    assert steps[1][2] == "doubling: stub doubling.py"

@@ -62,9 +62,11 @@ def make_course(folder: Path) -> Path:
     return folder
 
 
-def gradings(scratch: Path) -> Counter[int]:
+def gradings(scratch: Path) -> Counter[str]:
     """How often each student was graded, by the check's own count."""
-    return Counter(map(int, (scratch.parent / "gradings").read_text("ascii").split()))
+    noted = scratch.parent / "gradings"
+    numbers = noted.read_text("ascii").split() if noted.exists() else []
+    return Counter(f"student-{int(number):04}" for number in numbers)
 
 
 def command(*words: object) -> list[str]:
@@ -106,8 +108,15 @@ def kill_one(coordinator: subprocess.Popen[bytes], kind: str, rng: random.Random
     return True
 
 
-def count_lines(path: Path) -> int:
-    return path.read_bytes().count(b"\n") if path.exists() else 0
+def said(log: Path) -> list[str]:
+    """The students whose results a run has reported so far."""
+    found = []
+    for raw in log.read_bytes().splitlines():
+        with contextlib.suppress(ValueError):  # the line it was killed in
+            line = json.loads(raw)
+            if line.get("state") == "graded":
+                found.append(line["student"])
+    return found
 
 
 def rounds(kinds: list[str]) -> list[list[str]]:
@@ -132,34 +141,37 @@ def has_dask() -> bool:
 def disturbed(run: list[str], out: Path, kills: list[str], between: range) -> Counter[str]:
     """Run until everything is graded, killing on the way; returns how often each student was reported.
 
+    A death waits until whoever was being graded when its time came is done, so that no grading that
+    one death cut short is cut short by the next one too.
+
     Args:
         between: how many results there may be between two deaths.
     """
     rng = random.Random(20261121)
     reported: Counter[str] = Counter()
     waiting = rounds(kills)
+    scratch = out.parent / "scratch"
     for attempt in range(MOST_ATTEMPTS):
         log = out.parent / f"log-{attempt}"
-        words = [*run, *way(waiting[0]), *(["--resume"] if out.exists() else [])]
+        kept = set(scores(out)) if attempt else set()
+        words = [*run, *way(waiting[0]), *(["--resume"] if attempt else [])]
         with log.open("wb") as sink, log.with_suffix(".words").open("wb") as errors:
             process = subprocess.Popen(
-                words, env=environment(out.parent / "scratch", out.parent / "content"),
-                stdout=sink, stderr=errors,
-            )  # fmt: skip
+                words, env=environment(scratch, out.parent / "content"), stdout=sink, stderr=errors
+            )
             goal = rng.choice(between)
+            begun: set[str] | None = None
             while process.poll() is None:
-                due = bool(waiting[0]) and count_lines(log) >= goal
-                if due and kill_one(process, waiting[0][0], rng):
-                    waiting[0].pop(0)
-                    goal += rng.choice(between)
+                if waiting[0] and log.read_bytes().count(b"\n") >= goal:
+                    done = said(log)
+                    begun = set(gradings(scratch)) if begun is None else begun
+                    if begun <= kept.union(done) and kill_one(process, waiting[0][0], rng):
+                        waiting[0].pop(0)
+                        goal, begun = len(done) + rng.choice(between), None
                 time.sleep(0.01)
         if process.returncode != 0 and not waiting[0] and len(waiting) > 1:
             waiting.pop(0)
-        for raw in log.read_bytes().splitlines():
-            with contextlib.suppress(ValueError):  # the line it was killed in
-                line = json.loads(raw)
-                if line.get("state") == "graded":
-                    reported[line["student"]] += 1
+        reported.update(said(log))
         if process.returncode == 0:
             assert waiting == [[]], f"the class was graded before these deaths: {waiting}"
             return reported
@@ -209,7 +221,6 @@ def test_two_thousand_submissions_survive_twenty_kills(tmp_path: Path) -> None:
     kinds = ["coordinator"] * 7 + ["grader"] * 4 + ["zygote"] * 4
     kinds += ["dask worker" if has_dask() else "grader"] * 5
     random.Random(5).shuffle(kinds)
-    # The first of the two is more than two workers of a cluster have in hand: nobody is in hand twice.
     check_undisturbed(tmp_path, 2000, kinds, range(40, 90))
     run = command(tmp_path / "class", "--out", tmp_path / "calm", "--seed", 9, *ON_ONE_MACHINE, "--quiet")
     subprocess.run(run, env=environment(tmp_path / "scratch", tmp_path / "content"), check=True)

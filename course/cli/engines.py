@@ -14,6 +14,7 @@ from course.errors import MissingCapabilityError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from course.cli.console import Console
     from course.cli.engines_schemas import Engine, Engines, EngineScenario
     from course.cli.sim_schemas import SimFile
     from course.engines.results import Comparison, EngineState
@@ -95,7 +96,7 @@ def compare(
     Each engine runs in a process of its own; one that crashes or hangs is a line that says so. What is not
     installed is shown from a reference measurement, marked as such. Exit code 4 if nothing could be run.
     """
-    from course.cli import engines_files, engines_screen, sim_files
+    from course.cli import engines_screen, sim_files
     from course.cli.meter import meter
     from course.engines.compare import Request
     from course.engines.compare import compare as run_comparison
@@ -111,6 +112,20 @@ def compare(
         comparison = run_comparison(request, progress)
     said = findings(comparison.rows)
     engines_screen.show(console, comparison, said)
+    plots, table = _write(console, comparison, plot, csv)
+    code = 0 if comparison.ran else MissingCapabilityError.exit_code
+    if code:
+        console.line(("No engine could be run on this machine.", "bold"))
+    console.emit(_reply(comparison, said, code, plots, table))
+    return code
+
+
+def _write(
+    console: Console, comparison: Comparison, plot: Path | None, csv: Path | None
+) -> tuple[tuple[SimFile, ...], SimFile | None]:
+    """Write the figures and the table that were asked for, and say where they are."""
+    from course.cli import engines_files, sim_files
+
     plots: tuple[SimFile, ...] = ()
     if plot:
         with console.working("Drawing"):
@@ -123,11 +138,7 @@ def compare(
         if file.backup:
             console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
         console.line(f"Wrote {file.path}")
-    code = 0 if comparison.ran else MissingCapabilityError.exit_code
-    if code:
-        console.line(("No engine could be run on this machine.", "bold"))
-    console.emit(_reply(comparison, said, code, plots, table))
-    return code
+    return plots, table
 
 
 def _step(text: str) -> float:

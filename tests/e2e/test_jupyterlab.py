@@ -209,10 +209,7 @@ def _wait_for_check(page: Any, text: str, *, absent: bool = False) -> None:
 
 
 def test_the_sandbox_moves_and_a_body_can_be_dragged(open_notebook: Any) -> None:
-    pytest.importorskip("anywidget")
-    page = open_notebook("sandbox.ipynb")
-    _run(page, "from course.notebooks.sandbox import play")
-    _run(page, 'play("head-on")')
+    page = _play(open_notebook, "head-on")
     widget = page.locator(".sandbox")
     canvas = widget.locator("canvas.world")
     canvas.wait_for()
@@ -236,10 +233,7 @@ def test_the_sandbox_moves_and_a_body_can_be_dragged(open_notebook: Any) -> None
 
 
 def test_a_narrow_cell_puts_the_panel_below_the_world(open_notebook: Any) -> None:
-    pytest.importorskip("anywidget")
-    page = open_notebook("sandbox.ipynb")
-    _run(page, "from course.notebooks.sandbox import play")
-    _run(page, 'play("newtons-cradle")')
+    page = _play(open_notebook, "newtons-cradle")
     panel, stage = page.locator(".sandbox .panel"), page.locator(".sandbox .stage")
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== ''")
     wide = stage.bounding_box(), panel.bounding_box()
@@ -257,10 +251,7 @@ def test_a_narrow_cell_puts_the_panel_below_the_world(open_notebook: Any) -> Non
 
 
 def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook: Any) -> None:
-    pytest.importorskip("anywidget")
-    page = open_notebook("sandbox.ipynb")
-    _run(page, "from course.notebooks.sandbox import play")
-    _run(page, 'play("newtons-cradle")')
+    page = _play(open_notebook, "newtons-cradle")
     canvas = page.locator(".sandbox canvas.world")
     canvas.wait_for()
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== ''")
@@ -270,6 +261,15 @@ def test_keys_for_the_world_are_not_shortcuts_of_jupyter(open_notebook: Any) -> 
         page.keyboard.press(key)
     page.locator(".sandbox .events li").first.wait_for()
     assert page.locator(".jp-Cell").count() == cells
+
+
+def _play(open_notebook: Any, scene: str) -> Any:
+    """A page with the sandbox's notebook, in which a scene waits in a cell."""
+    pytest.importorskip("anywidget")
+    page = open_notebook("sandbox.ipynb")
+    _run(page, "from course.notebooks.sandbox import play")
+    _run(page, f'play("{scene}")')
+    return page
 
 
 def _run(page: Any, text: str) -> None:

@@ -21,6 +21,9 @@ from course.errors import MissingCapabilityError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import uvicorn
+    from starlette.types import ASGIApp
+
     from course.sandbox.loading import Chosen
     from course.sandbox.predicting import Comparison
     from course.sandbox.scene import Scene
@@ -83,7 +86,6 @@ def play(
     import uvicorn
 
     from course.sandbox.views.web_app import make_app
-    from course.sandbox.views.web_messages import MAX_REQUEST
     from course.sandbox.views.web_session import Session
 
     session = Session(world, chosen or _as_it_is(scene), guess=guess, keep=keep)
@@ -100,26 +102,34 @@ def play(
         app = make_app(
             session, number, token, ready=lambda: _invite(address, say, show=open_browser), failed=failed
         )
-        config = uvicorn.Config(
-            app,
-            log_config=None,
-            log_level="critical",
-            access_log=False,
-            ws="websockets-sansio",
-            # A little above what is answered: what is beyond this ends the connection.
-            ws_max_size=4 * MAX_REQUEST,
-            ws_max_queue=16,
-            ws_per_message_deflate=False,
-            limit_concurrency=64,
-            timeout_graceful_shutdown=1,
-            proxy_headers=False,
-            server_header=False,
-        )
-        server = uvicorn.Server(config)
+        server = uvicorn.Server(_configured(app))
         with contextlib.suppress(KeyboardInterrupt):
             server.run(sockets=[listener])
     if failures:
         raise failures[0]
+
+
+def _configured(app: ASGIApp) -> uvicorn.Config:
+    """A server for one user: it says nothing, and takes no message larger than what is answered."""
+    import uvicorn
+
+    from course.sandbox.views.web_messages import MAX_REQUEST
+
+    return uvicorn.Config(
+        app,
+        log_config=None,
+        log_level="critical",
+        access_log=False,
+        ws="websockets-sansio",
+        # A little above what is answered: what is beyond this ends the connection.
+        ws_max_size=4 * MAX_REQUEST,
+        ws_max_queue=16,
+        ws_per_message_deflate=False,
+        limit_concurrency=64,
+        timeout_graceful_shutdown=1,
+        proxy_headers=False,
+        server_header=False,
+    )
 
 
 def _invite(address: str, say: Callable[[str], None], *, show: bool) -> None:

@@ -1,6 +1,7 @@
 """Full marks under every seed: gradings of the model solution and of each accepted variant, in workers.
 
     python tests/benchmarks/calibration/seeds.py EXERCISE... [--seeds 1000] [--accepted 200] [--own]
+        [--variant NAME]
 
 Each seed is a grading run of its own, with its own hidden draws; everything else is what `course grade run`
 does. A grading that is not full marks is printed with the check, the seed and the finding, and the exit code
@@ -33,13 +34,16 @@ if TYPE_CHECKING:
     from course.grading.verdict import Verdict
 
 
-def grade_all(exercise_id: str, seeds: int, accepted: int, first: int, *, own: bool) -> int:
+def grade_all(
+    exercise_id: str, seeds: int, accepted: int, first: int, *, own: bool, variants: list[str]
+) -> int:
     """Grade under many seeds; how many gradings were not full marks."""
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     solution = solution_path(catalog, exercise)
     sources = {solution.name: (solution.read_bytes(), seeds)}
-    for path in accepted_files(catalog, exercise):
+    paths = [path for path in accepted_files(catalog, exercise) if not variants or path.stem in variants]
+    for path in paths:
         sources[f"accepted/{path.name}"] = (compose(solution, path), accepted)
     wrong = 0
     # What is asked is whether the answer is right: a machine that does other work too must not cost a mark.
@@ -97,9 +101,10 @@ def main() -> int:
     parser.add_argument("--accepted", type=int, default=200, help="for each accepted variant")
     parser.add_argument("--first", type=int, default=1, help="the first seed")
     parser.add_argument("--own", action="store_true", help="variants: only the tasks they do differently")
+    parser.add_argument("--variant", action="append", default=[], help="only this one; repeatable")
     options = parser.parse_args()
     counts = options.seeds, options.accepted, options.first
-    wrong = [grade_all(name, *counts, own=options.own) for name in options.exercise]
+    wrong = [grade_all(name, *counts, own=options.own, variants=options.variant) for name in options.exercise]
     return int(any(wrong))
 
 

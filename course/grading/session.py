@@ -102,14 +102,10 @@ class GradingSession:
         self.scope = scope
         self._timeout = timeout
         self._seed = seed
-        self._pin = _pinned(processor)
-        self._pin.__enter__()
-        try:
-            self._checks = CollectedChecks(check_files(exercise, catalog, scope))
+        self._processor = _choose(processor)
+        self._checks = CollectedChecks(check_files(exercise, catalog, scope))
+        with _kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, level, at_least)
-        except BaseException:
-            self._pin.__exit__(None, None, None)
-            raise
         self.level: str = self._spawner.level.value
 
     @property
@@ -127,7 +123,6 @@ class GradingSession:
         """End the sandbox; safe to call twice."""
         self._spawner.close()
         self._checks.close()
-        self._pin.__exit__(None, None, None)
 
     def grade(self, submission: Submission, *, only: str | None = None) -> Verdict:
         """The verdict on one submission.
@@ -138,7 +133,8 @@ class GradingSession:
         Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error". What
         is said of a notebook's module is said of its cells.
         """
-        verdict = self._grade(submission, only)
+        with _kept_on(self._processor):
+            verdict = self._grade(submission, only)
         record = submission.files.get(RECORD)
         if record is None:
             return verdict
@@ -172,19 +168,20 @@ class GradingSession:
             UngradableError: it cannot be loaded.
             InternalError: the sandbox broke.
         """
-        try:
-            remote = self._load(submission)
-        except LoadRefusedError as refused:
-            problem = load_problem(refused, self.exercise.module)
-            raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
-        except IsolationError as error:
-            raise InternalError(f"The submission could not be run: {error}.") from None
-        try:
-            remote.begin_check()
-            return use(remote)
-        finally:
-            with contextlib.suppress(IsolationError):
-                remote.close()
+        with _kept_on(self._processor):
+            try:
+                remote = self._load(submission)
+            except LoadRefusedError as refused:
+                problem = load_problem(refused, self.exercise.module)
+                raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
+            except IsolationError as error:
+                raise InternalError(f"The submission could not be run: {error}.") from None
+            try:
+                remote.begin_check()
+                return use(remote)
+            finally:
+                with contextlib.suppress(IsolationError):
+                    remote.close()
 
     # -- checks ---------------------------------------------------------------------------------------
 
@@ -338,20 +335,26 @@ def _open(imports: tuple[str, ...], level: Level | str | None, at_least: Level |
         ) from None
 
 
+def _choose(processor: int | None) -> int | None:
+    """The processor to grade on; None where processes are not kept on one."""
+    if not hasattr(os, "sched_getaffinity"):
+        return None
+    available = sorted(os.sched_getaffinity(0))
+    return random.choice(available) if processor is None else available[processor % len(available)]
+
+
 @contextlib.contextmanager
-def _pinned(processor: int | None) -> Iterator[None]:
-    """Keep this process, and the workers it starts, on one processor.
+def _kept_on(processor: int | None) -> Iterator[None]:
+    """Keep this thread, and the processes it starts, on one processor meanwhile.
 
     Grader and worker take turns and never run at once. On one processor a callback costs about a third of
     what waking another processor does, and the processor's caches stay warm.
     """
-    if not hasattr(os, "sched_getaffinity"):
+    if processor is None:
         yield
         return
     before = os.sched_getaffinity(0)
-    available = sorted(before)
-    chosen = random.choice(available) if processor is None else available[processor % len(available)]
-    os.sched_setaffinity(0, {chosen})
+    os.sched_setaffinity(0, {processor})
     try:
         yield
     finally:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,22 @@ if TYPE_CHECKING:
 def grade(session: GradingSession, source: bytes | str) -> Verdict:
     raw = source.encode() if isinstance(source, str) else source
     return session.grade(Submission({"doubling.py": raw}))
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
+def test_only_while_it_grades_does_a_session_stay_on_one_processor(
+    catalog: Catalog, doubling: Exercise, solution: bytes
+) -> None:
+    free = os.sched_getaffinity(0)
+    first, second = (GradingSession(doubling, catalog, processor=number) for number in range(2))
+    assert os.sched_getaffinity(0) == free
+    seen = [first.using(Submission({"doubling.py": solution}), lambda _: os.sched_getaffinity(0))]
+    first.close()  # not in the order in which they were opened
+    seen.append(second.using(Submission({"doubling.py": solution}), lambda _: os.sched_getaffinity(0)))
+    second.close()
+    assert os.sched_getaffinity(0) == free
+    assert [len(processors) for processors in seen] == [1, 1]
+    assert len(set.union(*seen)) == min(2, len(free))
 
 
 def results(verdict: Verdict, task: str) -> list[CheckResult]:

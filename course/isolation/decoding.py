@@ -5,6 +5,7 @@ Whatever is read here was written by a stranger: every length is checked before 
 
 from __future__ import annotations
 
+from array import array
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 __all__ = ["OTHER", "Reader", "quick"]
 
 _N, _T, _F, _I, _FL, _S, _Y = (ord(tag) for tag in "NTFifsy")
-_L, _D, _A, _V, _C, _W, _P, _G = (ord(tag) for tag in "ldavcwpg")
+_L, _D, _R, _TB, _A, _V, _C, _W, _P, _G = (ord(tag) for tag in "ldrtavcwpg")
 
 
 #: Stands for what ``quick`` leaves to the careful reader.
@@ -45,7 +46,7 @@ OTHER = object()
 _QUICK_COUNT = 64
 
 
-def quick(body: bytes) -> Any:  # noqa: PLR0911 - it gives up at the first thing it does not know
+def quick(body: bytes | memoryview) -> Any:  # noqa: PLR0911 - it gives up at the first thing it does not know
     """A vector, or a short list of numbers, words, vectors and tables: what a callback and its answer are.
 
     Twenty thousand of them pass in a second, so they are read in one loop; ``OTHER`` stands for anything
@@ -78,13 +79,13 @@ def quick(body: bytes) -> Any:  # noqa: PLR0911 - it gives up at the first thing
     return items if at == len(body) else OTHER
 
 
-def _quick_vector(body: bytes, at: int) -> tuple[Any, int]:
+def _quick_vector(body: bytes | memoryview, at: int) -> tuple[Any, int]:
     end = at + 4 + 8 * U32.unpack_from(body, at)[0]
     # Writable, and aligned as malloc aligns.
     return (np.frombuffer(bytearray(body[at + 4 : end]), FLOAT64) if end <= len(body) else OTHER), end
 
 
-def _quick_table(body: bytes, at: int) -> tuple[Any, int]:
+def _quick_table(body: bytes | memoryview, at: int) -> tuple[Any, int]:
     if body[at : at + 2] != TABLE:
         return OTHER, at
     rows, columns = SHAPE.unpack_from(body, at + 2)
@@ -95,14 +96,20 @@ def _quick_table(body: bytes, at: int) -> tuple[Any, int]:
     return np.frombuffer(bytearray(body[at + 10 : end]), FLOAT64).reshape(rows, columns), end
 
 
-def _quick_text(body: bytes, at: int) -> tuple[Any, int]:
+def _quick_row(body: bytes | memoryview, at: int) -> tuple[Any, int]:
+    end = at + 4 + 8 * U32.unpack_from(body, at)[0]
+    return (array("d", bytes(body[at + 4 : end])).tolist() if end <= len(body) else OTHER), end
+
+
+def _quick_text(body: bytes | memoryview, at: int) -> tuple[Any, int]:
     end = at + 4 + U32.unpack_from(body, at)[0]
-    return (body[at + 4 : end].decode("utf-8") if end <= len(body) else OTHER), end
+    return (str(body[at + 4 : end], "utf-8") if end <= len(body) else OTHER), end
 
 
-_QUICK: dict[int, Callable[[bytes, int], tuple[Any, int]]] = {
+_QUICK: dict[int, Callable[[bytes | memoryview, int], tuple[Any, int]]] = {
     _V: _quick_vector,
     _A: _quick_table,
+    _R: _quick_row,
     _S: _quick_text,
     _I: lambda body, at: (I64.unpack_from(body, at)[0], at + 8),
     _N: lambda _body, at: (None, at),
@@ -116,7 +123,7 @@ class Reader:
 
     __slots__ = ("_accept_bytes", "_names", "_values", "at", "body", "bulk")
 
-    def __init__(self, body: bytes, names: Names | None, accept_bytes: bool) -> None:
+    def __init__(self, body: bytes | memoryview, names: Names | None, accept_bytes: bool) -> None:
         self.body = body
         self.at = 0
         self._names = names
@@ -143,10 +150,12 @@ class Reader:
             return _CONSTANTS[tag]
         if tag == _S:
             return self._text()
-        if tag in (_L, _D):
+        if tag == _R:
+            return self._row()
+        if tag in (_L, _D, _TB):
             if depth <= 0:
                 raise WireError(f"nested more than {MAX_DEPTH} deep")
-            return self._list(depth - 1) if tag == _L else self._dict(depth - 1)
+            return (self._list if tag == _L else self._dict if tag == _D else self._records)(depth - 1)
         return self._rare(tag, depth)
 
     def _rare(self, tag: int, depth: int) -> Any:
@@ -179,7 +188,7 @@ class Reader:
 
     def _raw(self) -> bytes:
         size = self._u32()
-        raw = self.body[self.at : self.at + size]
+        raw = bytes(self.body[self.at : self.at + size])
         if len(raw) != size:
             raise WireError("a length that runs past the end")
         self.at += size
@@ -209,6 +218,34 @@ class Reader:
                 raise WireError("a key that appears twice")
             result[key] = self.take(depth)
         return result
+
+    def _row(self) -> list[float]:
+        """A list of floats."""
+        count = self._u32()
+        self._count_values(count)
+        start, self.at = self.at, self.at + 8 * count
+        if self.at > len(self.body):
+            raise WireError("a list that runs past the end")
+        return array("d", bytes(self.body[start : self.at])).tolist()
+
+    def _records(self, depth: int) -> list[dict[str, Any]]:
+        """Dicts with the same keys, from one list for each key."""
+        columns: dict[str, list[Any]] = {}
+        for _ in range(self._count()):
+            key = self._text()
+            if key in columns or self.body[self.at] not in (_L, _R, _TB):
+                raise WireError("records in another form")
+            columns[key] = self.take(depth)
+        lengths = {len(column) for column in columns.values()}
+        if len(lengths) != 1:
+            raise WireError("records of different lengths")
+        self._count_values(lengths.pop())
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+    def _count_values(self, count: int) -> None:
+        self._values -= count
+        if self._values < 0:
+            raise WireError(f"more than {MAX_VALUES} values")
 
     def _array(self, *, vector: bool) -> np.ndarray[Any, Any]:
         if vector:

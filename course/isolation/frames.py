@@ -27,6 +27,13 @@ FLOAT64 = np.dtype(np.float64)
 DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
 
 
+def room_for(size: int, begun: bytes) -> memoryview:
+    """Room for a frame whose first bytes have come: memory is taken only as the others do."""
+    room = np.empty(size, np.uint8).data
+    room[: len(begun)] = begun
+    return room
+
+
 class Kind(enum.IntEnum):
     """What a frame is about. The first group goes to the worker, the second comes from it."""
 

@@ -65,10 +65,11 @@ def fold(
 
     Args:
         carry: which element of a returned sequence is the next state; None if the whole value is.
-        keep: of states that are dicts, the keys to record; the last state is recorded whole.
+        keep: of states that are dicts, the keys to record.
 
     Returns:
-        The states, the first one included; with ``carry``, the returned values, whole.
+        The states, the first one included; with ``carry``, the returned values, whole. And with ``keep``,
+        the last of them whole, else None.
     """
     record = [] if carry is not None else [_snapshot(_part(state, keep))]
     value = state
@@ -76,9 +77,7 @@ def fold(
         value = function(state, *args)
         record.append(_snapshot(_part(value, keep)))
         state = value if carry is None else value[carry]
-    if keep is not None and record:
-        record[-1] = _snapshot(value)
-    return record
+    return [record, None if keep is None else _snapshot(value)]
 
 
 def _part(value: Any, keep: list[str] | None) -> Any:

@@ -154,21 +154,22 @@ class Connection:
         Args:
             marches: [right-hand side, q0, v0, t0, h, n] each.
         """
-        return self._batch(Kind.MARCH, [step, marches], step, len(marches))
+        return self._batch(self._ask(Kind.MARCH, [step, marches], step), len(marches))
 
     def each(self, function: str, calls: list[list[Any]]) -> list[Any]:
         """What ``function`` returns for each list of arguments; the loop runs beside the student's code."""
-        return self._batch(Kind.EACH, [function, calls], function, len(calls))
+        return self._batch(self._ask(Kind.EACH, [function, calls], function), len(calls))
 
     def fold(
         self, function: str, state: Any, calls: list[list[Any]], carry: int | None, keep: list[str] | None
     ) -> list[Any]:
         """The states that ``function(state, *args)`` goes through; see ``loops.fold``."""
-        length = len(calls) + (carry is None)
-        return self._batch(Kind.FOLD, [function, state, calls, carry, keep], function, length)
+        answer = self._ask(Kind.FOLD, [function, state, calls, carry, keep], function)
+        record, last = self._batch(answer, 2)
+        record = self._batch(record, len(calls) + (carry is None))
+        return [*record[:-1], last] if keep is not None else record
 
-    def _batch(self, kind: wire.Kind, request: list[Any], function: str, length: int) -> list[Any]:
-        answer = self._ask(kind, request, function)
+    def _batch(self, answer: Any, length: int) -> list[Any]:
         if isinstance(answer, list) and len(answer) == length:
             return answer
         raise self._breach("a batch of another length")
@@ -286,8 +287,8 @@ class Connection:
 
     # -- frames ---------------------------------------------------------------------------------------
 
-    def _send(self, frame: bytes) -> None:
-        rest: bytes | memoryview = frame
+    def _send(self, frame: bytearray) -> None:
+        rest: bytearray | memoryview = frame if len(frame) <= _SEND else memoryview(frame)
         while rest:
             try:
                 # In pieces: a write waits anew whenever the other side has read a little of it.
@@ -302,40 +303,45 @@ class Connection:
                 raise self._ended() from None
 
     def _receive(self) -> tuple[int, Any]:
-        buffer = self._buffer or self._read(_RECV)
+        buffer = self._buffer or self._read(self._sock.recv, _RECV)
         while len(buffer) < 5:
-            buffer += self._read(_RECV)
+            buffer += self._read(self._sock.recv, _RECV)
         length, kind = _HEADER(buffer)
         if not 0 < length <= wire.MAX_FRAME:
             raise self._breach("a frame of impossible length")
         end = 4 + length
-        if len(buffer) < end:
-            rest = bytearray(buffer)
-            while len(rest) < end:
-                rest += self._read(min(end - len(rest), 1 << 20))
-                self._check_deadline()  # one that trickles never lets a read block
-            buffer = bytes(rest)
-        self._buffer = buffer[end:]
         self._received += end
+        if len(buffer) >= end:
+            body: bytes | memoryview = buffer[5:end]
+            self._buffer = buffer[end:]
+        else:
+            body, self._buffer = self._read_rest(buffer, end)[5:], b""
         if monotonic() > self.deadline:
             raise self._timeout()  # a worker that keeps calling back never lets a read block
         try:
-            return kind, self._codec.decode(buffer[5:end])
+            return kind, self._codec.decode(body)
         except wire.WireError as error:
             raise self._breach(str(error)) from None
 
-    def _read(self, size: int) -> bytes:
+    def _read_rest(self, begun: bytes, end: int) -> memoryview:
+        frame, at = wire.room_for(end, begun), len(begun)
+        while at < end:
+            at += self._read(self._sock.recv_into, frame[at:])
+            self._check_deadline()  # one that trickles never lets a read block
+        return frame
+
+    def _read(self, receive: Callable[[Any], Any], what: Any) -> Any:
         while True:
             try:
-                chunk = self._sock.recv(size)
+                received = receive(what)
             except (BlockingIOError, TimeoutError):
                 self._check_deadline()
                 continue
             except OSError:
                 raise self._ended() from None
-            if not chunk:
+            if not received:
                 raise self._ended()
-            return chunk
+            return received
 
     def _check_deadline(self) -> None:
         if monotonic() > self.deadline:

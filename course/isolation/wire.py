@@ -9,9 +9,13 @@ nothing can be un-pickled. One tag byte opens each value::
     i  int64     8 bytes                      d  dict    u32 count, (u32 length, UTF-8) and value each
     f  float64   8 bytes                      a  array   dtype byte, ndim byte, u32 each, raw little-endian
     v  vector    u32 count, raw float64       c  callable held by the receiver     u32
-    s  str       u32 length, UTF-8            w  callable held by the sender       u32
-    y  bytes     u32 length (grader to        p  right-hand side: a str and a dict
-                 worker only)                 g  random generator: its seed, int64
+    r  floats    u32 count, raw float64       w  callable held by the sender       u32
+    s  str       u32 length, UTF-8            p  right-hand side: a str and a dict
+    y  bytes     u32 length (grader to        g  random generator: its seed, int64
+                 worker only)                 t  dicts with the same keys: u32 count of keys,
+                                                 (u32 length, UTF-8) and a list of values each
+
+A list of nothing but floats goes as ``r``, one of dicts with the same keys as ``t``; both arrive as lists.
 
 This file and the three it imports run on both sides and are copied next to a stranger's code, so they import
 the standard library and numpy and nothing of this course. Whatever arrives is a claim by an untrusted sender:
@@ -40,6 +44,7 @@ from .frames import (
     Seed,
     UnsupportedValueError,
     WireError,
+    room_for,
 )
 
 __all__ = [
@@ -58,7 +63,11 @@ __all__ = [
     "Seed",
     "UnsupportedValueError",
     "WireError",
+    "room_for",
 ]
+
+
+_NO_HEADER = bytes(HEADER.size)
 
 
 class Codec:
@@ -73,20 +82,22 @@ class Codec:
         self._names = names
         self._accept_bytes = accept_bytes
 
-    def encode(self, kind: int, value: Any) -> bytes:
+    def encode(self, kind: int, value: Any) -> bytearray:
         """One frame.
 
         Raises:
             UnsupportedValueError: something in ``value`` cannot cross, or it is too large or too deep.
         """
-        parts: list[bytes] = []
+        parts: list[bytes | memoryview] = [_NO_HEADER]
         arrays = put(value, parts, self._names, MAX_DEPTH)
-        body = b"".join(parts)
-        if len(body) - arrays > MAX_VALUE_BYTES or arrays > MAX_ARRAY_BYTES:
+        frame = bytearray().join(parts)
+        size = len(frame) - HEADER.size
+        if size - arrays > MAX_VALUE_BYTES or arrays > MAX_ARRAY_BYTES:
             raise UnsupportedValueError("a value that is too large (1 MB of plain values, 64 MB of arrays)")
-        return HEADER.pack(len(body) + 1, kind) + body
+        HEADER.pack_into(frame, 0, size + 1, kind)
+        return frame
 
-    def decode(self, body: bytes) -> Any:
+    def decode(self, body: bytes | memoryview) -> Any:
         """The value of a frame's body (what follows the header).
 
         Raises:

@@ -136,16 +136,17 @@ class Worker:
             buffer += chunk
         length, kind = _HEADER(buffer)
         end = 4 + length
-        if len(buffer) < end:
-            rest = bytearray(buffer)
-            while len(rest) < end:
-                chunk = self._sock.recv(min(end - len(rest), 1 << 20))
-                if not chunk:
-                    raise EOFError
-                rest += chunk
-            buffer = bytes(rest)
-        self._buffer = buffer[end:]
-        return kind, self._codec.decode(buffer[5:end])
+        if len(buffer) >= end:
+            self._buffer = buffer[end:]
+            return kind, self._codec.decode(buffer[5:end])
+        frame, at = wire.room_for(end, buffer), len(buffer)
+        self._buffer = b""
+        while at < end:
+            size = self._sock.recv_into(frame[at:])
+            if not size:
+                raise EOFError
+            at += size
+        return kind, self._codec.decode(frame[5:])
 
     def _send(self, kind: wire.Kind, value: Any) -> None:
         self._sock.sendall(self._codec.encode(kind, value))

@@ -52,10 +52,10 @@ class LocalSubmission:
         function = self._function(name)
         escaped: list[BaseException] = []
         given = [[_given(arg, escaped) for arg in args] for args in calls]
-        values = _guarded(lambda: loops.fold(function, _plain(state), given, carry, keep))
+        values, last = _guarded(lambda: loops.fold(function, _plain(state), given, carry, keep))
         if escaped:
             raise escaped[0]
-        return [_plain(value) for value in values]
+        return [_plain(value) for value in (values if keep is None else [*values[:-1], last])]
 
     def ref(self, name: str) -> Any:
         """The student's own function, to be passed back as an argument."""

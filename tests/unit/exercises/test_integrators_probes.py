@@ -129,7 +129,7 @@ COUNTING = {
 }
 
 
-@pytest.mark.parametrize(("code", "count"), COUNTING.items(), ids=str)
+@pytest.mark.parametrize(("code", "count"), COUNTING.items(), ids=map(str, COUNTING))
 def test_the_rule_behind_a_wrong_number_of_samples_is_recognised(code, count):
     def integrate(step, accel, q0, v0, t_end, h):
         n = count(t_end, h)

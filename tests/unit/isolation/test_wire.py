@@ -30,7 +30,10 @@ _ARRAYS = hnp.arrays(_DTYPES, _SHAPES)
 _VALUES = st.recursive(
     _SCALARS | _ARRAYS,
     lambda inner: (
-        st.lists(inner, max_size=6) | st.dictionaries(st.text("abcé", max_size=3), inner, max_size=4)
+        st.lists(inner, max_size=6)
+        | st.dictionaries(st.text("abcé", max_size=3), inner, max_size=4)
+        | st.lists(st.floats(), min_size=1, max_size=4)
+        | st.lists(st.fixed_dictionaries({"a": inner, "é": st.floats()}), min_size=2, max_size=4)
     ),
     max_leaves=25,
 )
@@ -54,7 +57,7 @@ class Names:
         return self.held[value.number] if isinstance(value, Reference) else value
 
 
-def _body(value: Any, names: Any = None) -> bytes:
+def _body(value: Any, names: Any = None) -> bytearray:
     return Codec(names).encode(Kind.RESULT, value)[5:]
 
 
@@ -77,7 +80,9 @@ def _same(a: Any, b: Any) -> bool:
 
 @given(_VALUES)
 def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
-    assert _same(value, Codec().decode(_body(value)))
+    body = _body(value)
+    assert _same(value, Codec().decode(bytes(body)))
+    assert _same(value, Codec().decode(memoryview(body)))
 
 
 @given(
@@ -87,6 +92,7 @@ def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
         | st.floats()
         | st.integers(-9, 9)
         | st.text(max_size=5)
+        | st.lists(st.floats(), max_size=5)
         | hnp.arrays(
             st.sampled_from([np.float64, np.int64, np.bool_]), hnp.array_shapes(min_dims=0, min_side=0)
         ),
@@ -154,7 +160,7 @@ def test_subclasses_arrive_as_the_value_they_extend() -> None:
         np.datetime64(0, "s"),
         np.zeros((1,) * 9),
         "x" * (wire.MAX_VALUE_BYTES + 1),
-        [0.0] * 130_000,
+        [0.0] * 140_000,
         np.broadcast_to(0.0, wire.MAX_ARRAY_BYTES // 8 + 1),
     ],
     ids=lambda value: type(value).__name__,
@@ -188,7 +194,8 @@ def test_a_damaged_frame_gives_a_value_or_a_wire_error(value: Any, data: st.Data
 @given(
     st.binary(max_size=2000)
     | st.lists(
-        st.sampled_from([b"l\1\0\0\0", b"p", b"s", b"v", b"a\0\1", b"d\1\0\0\0", b"N"]), max_size=300
+        st.sampled_from([b"l\1\0\0\0", b"p", b"s", b"v", b"a\0\1", b"d\1\0\0\0", b"t\1\0\0\0", b"r", b"N"]),
+        max_size=300,
     ).map(b"".join),
     _VALUES,
     st.data(),
@@ -198,7 +205,7 @@ def test_long_run_of_hostile_frames(body: bytes, value: Any, data: st.DataObject
     _decode_or_refuse(_damaged(_body(value), data), Names())
 
 
-def _damaged(body: bytes, data: st.DataObject) -> bytes:
+def _damaged(body: bytearray, data: st.DataObject) -> bytes:
     damaged = bytearray(body)
     for _ in range(data.draw(st.integers(1, 4))):
         if damaged:
@@ -230,6 +237,10 @@ def _u32(number: int) -> bytes:
     return struct.pack("<I", number)
 
 
+def _key(text: str) -> bytes:
+    return _u32(len(text)) + text.encode("ascii")
+
+
 _HOSTILE = {
     "nothing": b"",
     "unknown tag": b"?",
@@ -242,6 +253,23 @@ _HOSTILE = {
     "text past the end": b"s" + _u32(10) + b"abc",
     "text that is no UTF-8": b"s" + _u32(2) + b"\xed\xa0",
     "a key twice": b"d" + _u32(2) + (_u32(1) + b"kT") * 2,
+    "floats past the end": b"r" + _u32(3) + b"\0" * 16,
+    "more floats than bytes": b"l" + _u32(1) + b"r" + _u32(0xFFFFFFFF),
+    "too many floats": b"l" + _u32(2) + (b"r" + _u32(110_000) + b"\0" * 880_000) * 2,
+    "records without keys": b"t" + _u32(0),
+    "records of different lengths": b"t"
+    + _u32(2)
+    + _key("a")
+    + b"l"
+    + _u32(1)
+    + b"N"
+    + _key("b")
+    + b"l"
+    + _u32(0),
+    "records with a key twice": b"t" + _u32(2) + (_key("a") + b"l" + _u32(1) + b"N") * 2,
+    "records from something else than lists": b"t" + _u32(1) + _key("a") + b"d" + _u32(0),
+    "records that end early": b"t" + _u32(1) + _key("a"),
+    "deep records": (b"t" + _u32(1) + _key("a")) * (wire.MAX_DEPTH + 1) + b"l" + _u32(0),
     "array past the end": b"v" + _u32(3) + b"\0" * 16,
     "array of unknown dtype": b"a\x04\x01" + _u32(0),
     "array of nine dimensions": b"a\x00\x09" + _u32(0) * 9,
@@ -256,8 +284,9 @@ _HOSTILE = {
 
 @pytest.mark.parametrize("body", _HOSTILE.values(), ids=_HOSTILE.keys())
 def test_a_hostile_body_is_a_wire_error(body: bytes) -> None:
-    with pytest.raises(WireError):
-        Codec(Names()).decode(body)
+    for same in (body, memoryview(body)):
+        with pytest.raises(WireError):
+            Codec(Names()).decode(same)
 
 
 _WIDE = "\U0001f600".encode()
@@ -268,6 +297,8 @@ _HEAVY = {
     "wide text": b"s" + _u32((60 << 20) + 4) + _WIDE + b"a" * (60 << 20),
     "wide key": b"d" + _u32(1) + _u32((60 << 20) + 4) + _WIDE + b"a" * (60 << 20) + b"N",
     "many texts": b"l" + _u32(60) + (b"s" + _u32(1 << 20) + b"a" * (1 << 20)) * 60,
+    "records": b"t" + _u32(1) + _key("a") + b"l" + _u32(99_000) + b"N" * 99_000,
+    "rows": b"l" + _u32(66_000) + (b"r" + _u32(1) + b"\0" * 8) * 66_000,
     "empty arrays": b"l" + _u32(199_000) + (b"v" + _u32(0)) * 199_000,
 }
 

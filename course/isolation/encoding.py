@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 __all__ = ["put"]
 
+_PLAIN_LISTS = frozenset((list, tuple))
 _FLOATS = frozenset((float, np.float64))
 #: Arrays from this size on are not copied before the frame is put together, bytes.
 _LARGE = 1 << 14
@@ -82,7 +83,7 @@ def _put_bytes(value: bytes, parts: Parts, _names: Names | None, _depth: int) ->
 def _put_list(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
     if depth <= 0:
         raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
-    if value:
+    if value and type(value) in _PLAIN_LISTS:  # a relative may lie about what is in it
         first = type(value[0])
         if first in _FLOATS and _FLOATS.issuperset(map(type, value)):
             parts += (b"r", U32.pack(len(value)), array("d", value).tobytes())

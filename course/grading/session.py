@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["GradingSession", "Scope", "Submission", "grader_version"]
+__all__ = ["GradingSession", "Scope", "Submission", "grader_version", "kept_on"]
 
 Scope = Literal["public", "full"]
 T = TypeVar("T")
@@ -104,7 +104,7 @@ class GradingSession:
         self._seed = seed
         self._processor = _choose(processor)
         self._checks = CollectedChecks(check_files(exercise, catalog, scope))
-        with _kept_on(self._processor):  # the workers inherit it
+        with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, level, at_least)
         self.level: str = self._spawner.level.value
 
@@ -133,7 +133,7 @@ class GradingSession:
         Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error". What
         is said of a notebook's module is said of its cells.
         """
-        with _kept_on(self._processor):
+        with kept_on(self._processor):
             verdict = self._grade(submission, only)
         record = submission.files.get(RECORD)
         if record is None:
@@ -168,7 +168,7 @@ class GradingSession:
             UngradableError: it cannot be loaded.
             InternalError: the sandbox broke.
         """
-        with _kept_on(self._processor):
+        with kept_on(self._processor):
             try:
                 remote = self._load(submission)
             except LoadRefusedError as refused:
@@ -344,7 +344,7 @@ def _choose(processor: int | None) -> int | None:
 
 
 @contextlib.contextmanager
-def _kept_on(processor: int | None) -> Iterator[None]:
+def kept_on(processor: int | None) -> Iterator[None]:
     """Keep this thread, and the processes it starts, on one processor meanwhile.
 
     Grader and worker take turns and never run at once. On one processor a callback costs about a third of

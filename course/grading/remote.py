@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BUDGET_S", "RemoteSubmission"]
 
-#: Wall seconds one submission has in all; checks left over are timeouts.
+#: Wall seconds one submission has in all; what is left over when they are gone ends as a timeout.
 BUDGET_S = 60.0
 
 
@@ -47,6 +47,8 @@ class RemoteSubmission:
         self._end = monotonic() + BUDGET_S
         self._deadline = min(monotonic() + timeout, self._end)
         self._printed_before = 0
+        self._task, self._began = "", monotonic()
+        self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
     @property
@@ -148,9 +150,18 @@ class RemoteSubmission:
 
     # -- for the grader -------------------------------------------------------------------------------
 
-    def begin_check(self) -> None:
-        """Start the clock of one check."""
-        self._deadline = min(monotonic() + self._timeout, self._end)
+    def begin_check(self, task: str = "") -> None:
+        """Start the clock of one check.
+
+        The checks of a task have together half of the time that is left when the first of them begins: a
+        function that never answers costs its own task, however many checks that has.
+        """
+        now = monotonic()
+        if self._task:
+            self._left[self._task] -= now - self._began
+        left = self._left.setdefault(task, (self._end - now) / 2)
+        self._task, self._began = task, now
+        self._deadline = min(now + min(self._timeout, left), self._end)
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 

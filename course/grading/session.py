@@ -207,7 +207,7 @@ class GradingSession:
 
     def _run_one(self, check: Check, remote: RemoteSubmission) -> CheckResult:
         start = perf_counter()
-        remote.begin_check()
+        remote.begin_check(check.task)
         outcome = self._checks.run(check, remote)
         duration_ms = (perf_counter() - start) * 1e3
         if outcome is None:

@@ -42,7 +42,7 @@ class Unprotected(GradingSession):
     def _load(self, submission: Submission) -> Any:
         loaded: Any = LocalSubmission(submission.files[self.exercise.module].decode(), self._seed)
         loaded.functions = frozenset(vars(loaded._module))
-        loaded.begin_check = lambda: None
+        loaded.begin_check = lambda _task: None
         loaded.printed = lambda: ""
         loaded.close = lambda: None
         return loaded

@@ -25,6 +25,16 @@ def grade(session: GradingSession, source: bytes | str) -> Verdict:
     return session.grade(Submission({"doubling.py": raw}))
 
 
+def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checks = sum(check.task == "double" for check in session.checks)
+    monkeypatch.setattr("course.grading.remote.BUDGET_S", float(checks))  # each waits for a second
+    verdict = grade(session, solution + b"\ndef double(x):\n    while True:\n        pass\n")
+    assert {str(check.status) for check in results(verdict, "double")} <= {"timeout", "skipped"}
+    assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
+
+
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
 def test_only_while_it_grades_does_a_session_stay_on_one_processor(
     catalog: Catalog, doubling: Exercise, solution: bytes

@@ -26,7 +26,7 @@ named = words.named
 @pytest.mark.points(7)
 def test_plan_gaps_kept(submission):
     """Each gap is measured as the plan says, and its threshold is one that can be kept and that matters"""
-    plan = submission.call("plan")
+    plan = execution.plan(submission)
     gaps = words.gaps_of(plan)
     judge.expect_enough(gaps)
     for i, gap in enumerate(gaps):
@@ -57,7 +57,7 @@ def test_plan_gaps_kept(submission):
 @pytest.mark.points(5)
 def test_plan_executed(submission):
     """Executed on three fleets with sound parts, the plan keeps what it promises"""
-    plan = kit.as_record(submission.call("plan"), words.PLAN_KEYS)
+    plan = kit.as_record(execution.plan(submission), words.PLAN_KEYS)
     box = words.box_of(plan)
     kit.expect_bounded(
         reference.box_success(submission.seed, box),

@@ -34,6 +34,15 @@ def _kept(submission, name, make):
     return value
 
 
+def plan(submission):
+    """What ``plan`` returns.
+
+    Raises:
+        StudentFailure: nothing.
+    """
+    return _kept(submission, "plan", lambda: submission.call("plan"))
+
+
 def command(submission):
     """The submission's own excitation for twenty seconds, shape (2000,), N.
 
@@ -127,7 +136,7 @@ def box(submission):
     """The plan's own box if it is one that sound tuning does well with, else the fleet's."""
 
     def make():
-        own = words.box_of(kit.as_record(submission.call("plan"), words.PLAN_KEYS))
+        own = words.box_of(kit.as_record(plan(submission), words.PLAN_KEYS))
         sound = reference.box_success(submission.seed, own) >= 0.97
         return {k: list(ends) for k, ends in own.items()} if sound else None
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 #: What the checks need beside the peer itself.
-NEEDED = ["numpy", "msgspec", "pytest", "ipykernel"]
+NEEDED = ["numpy", "msgspec", "pymunk", "pytest", "ipykernel"]
 PACKAGES = {"nbgrader": ["nbgrader", *NEEDED], "otter": ["otter-grader", *NEEDED]}
 #: Wall seconds after which a command is given up; none has taken a tenth of it.
 PATIENCE_S = 1800

@@ -26,7 +26,8 @@ SOLUTION = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
 WRONG = b"\ndef double(x):\n    return x\n"
 #: Attempts after which a run that never ends would be a failure.
 MOST_ATTEMPTS = 60
-ON_ONE_MACHINE, ON_A_CLUSTER = ("-j", "2"), ("--local-cluster", "2")
+GRADERS = 2
+ON_ONE_MACHINE, ON_A_CLUSTER = ("-j", str(GRADERS)), ("--local-cluster", str(GRADERS))
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
 
@@ -45,15 +46,21 @@ def make_class(folder: Path, students: int) -> dict[str, float]:
 
 
 _TITLE = '    """A negative number becomes more negative"""\n'
-_NOTE = """    import os
+#: Bytes of a note.
+_WIDTH = 6
+_NOTE = """    import os, time
     to = os.open(os.environ["GRADINGS"], os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-    os.write(to, b"%d\\n" % submission.call("who"))
+    os.write(to, b"%05d\\n" % submission.call("who"))
+    turn = os.lseek(to, 0, os.SEEK_CUR)
     os.close(to)
+    gate = os.environ.get("GATE")
+    while gate and os.stat(gate).st_size < turn:
+        time.sleep(0.002)
 """
 
 
 def make_course(folder: Path) -> Path:
-    """The miniature course, with a hidden check that notes each grading, kept or not."""
+    """The miniature course, with a hidden check that notes each grading, kept or not, and waits at a gate."""
     shutil.copytree(MINI, folder)
     checks = folder / "graders" / "doubling" / "checks.py"
     source = checks.read_text("utf-8")
@@ -62,21 +69,22 @@ def make_course(folder: Path) -> Path:
     return folder
 
 
-def gradings(scratch: Path) -> Counter[str]:
-    """How often each student was graded, by the check's own count."""
-    noted = scratch.parent / "gradings"
-    numbers = noted.read_text("ascii").split() if noted.exists() else []
-    return Counter(f"student-{int(number):04}" for number in numbers)
+def noted(scratch: Path) -> list[str]:
+    """Who was graded, by the check's own account, as often and in the order as they were."""
+    path = scratch.parent / "gradings"
+    numbers = path.read_text("ascii").split() if path.exists() else []
+    return [f"student-{int(number):04}" for number in numbers]
 
 
 def command(*words: object) -> list[str]:
     return [sys.executable, "-m", "course", "grade", "run", *map(str, words), "--exercise", "doubling"]
 
 
-def environment(scratch: Path, content: Path = MINI) -> dict[str, str]:
+def environment(scratch: Path, content: Path = MINI, gate: Path | None = None) -> dict[str, str]:
     scratch.mkdir(exist_ok=True)
     path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     ours = {"COURSE_CONTENT": str(content), "GRADINGS": str(scratch.parent / "gradings")}
+    ours |= {"GATE": str(gate)} if gate else {}
     return {**os.environ, **ours, "PYTHONPATH": path, "TMPDIR": str(scratch)}
 
 
@@ -87,6 +95,8 @@ def kind_of(pid: int, mine: dict[int, tuple[int, str]]) -> str:
         return "grader"
     if "spawn_main" in line:
         return "dask worker"
+    if "bwrap" not in line and line == mine.get(parent, (0, ""))[1]:
+        return "worker"  # a zygote's fork: its death is the student's code's own
     while parent in mine:
         if "course.grading.grader" in mine[parent][1]:
             return "zygote"
@@ -94,18 +104,11 @@ def kind_of(pid: int, mine: dict[int, tuple[int, str]]) -> str:
     return "helper"
 
 
-def kill_one(coordinator: subprocess.Popen[bytes], kind: str, rng: random.Random) -> bool:
-    """Kill a process of this run; False if there is none of that kind."""
-    if kind == "coordinator":
-        coordinator.kill()
-        return True
+def kill_one(coordinator: subprocess.Popen[bytes], kind: str, rng: random.Random) -> None:
+    """Kill a process of this run."""
     mine = below(coordinator.pid)
-    chosen = sorted(pid for pid in mine if kind_of(pid, mine) == kind)
-    if not chosen:
-        return False
-    with contextlib.suppress(ProcessLookupError):
-        os.kill(rng.choice(chosen), signal.SIGKILL)
-    return True
+    of_that_kind = sorted(pid for pid in mine if kind_of(pid, mine) == kind)
+    os.kill(coordinator.pid if kind == "coordinator" else rng.choice(of_that_kind), signal.SIGKILL)
 
 
 def said(log: Path) -> list[str]:
@@ -138,36 +141,68 @@ def has_dask() -> bool:
     return all(importlib.util.find_spec(name) for name in ("distributed", "cryptography"))
 
 
+class Gate:
+    """Lets a number of gradings pass, so that a class is never over before the deaths it is to survive.
+
+    Both graders of a run wait here in the middle of a grading, each for its turn, when a death comes.
+    """
+
+    def __init__(self, out: Path, between: range) -> None:
+        self.path = out.parent / "gate"
+        self._scratch = out.parent / "scratch"
+        self._between = between
+        self._rng = random.Random(20261121)
+        self._cut: set[str] = set()
+        self._let(self._rng.choice(between))
+
+    def _let(self, gradings: int) -> None:
+        self._open_to = gradings
+        with self.path.open("ab") as file:
+            file.truncate(gradings * _WIDTH)
+
+    def holds(self, reported: set[str]) -> bool:
+        """Whether both graders wait, and none of whom a death would interrupt was interrupted before."""
+        names = noted(self._scratch)
+        if len(names) < self._open_to + GRADERS:
+            return False
+        if self._cut & (set(names) - reported):
+            self._let(self._open_to + 1)
+            return False
+        return True
+
+    def kill(self, coordinator: subprocess.Popen[bytes], kind: str, reported: set[str]) -> None:
+        """Kill a process of the run that waits, and let what is left of it go on."""
+        names = noted(self._scratch)
+        kill_one(coordinator, kind, self._rng)
+        self._cut |= set(names) - reported
+        self._let(len(names) + self._rng.choice(self._between))
+
+    def open(self) -> None:
+        """Let everybody pass."""
+        self._let(10**6)
+
+
 def disturbed(run: list[str], out: Path, kills: list[str], between: range) -> Counter[str]:
     """Run until everything is graded, killing on the way; returns how often each student was reported.
 
-    A death waits until whoever was being graded when its time came is done, so that no grading that
-    one death cut short is cut short by the next one too.
-
     Args:
-        between: how many results there may be between two deaths.
+        between: how many gradings there may be between two deaths.
     """
-    rng = random.Random(20261121)
     reported: Counter[str] = Counter()
     waiting = rounds(kills)
-    scratch = out.parent / "scratch"
+    gate = Gate(out, between)
     for attempt in range(MOST_ATTEMPTS):
         log = out.parent / f"log-{attempt}"
         kept = set(scores(out)) if attempt else set()
         words = [*run, *way(waiting[0]), *(["--resume"] if attempt else [])]
+        settings = environment(out.parent / "scratch", out.parent / "content", gate.path)
         with log.open("wb") as sink, log.with_suffix(".words").open("wb") as errors:
-            process = subprocess.Popen(
-                words, env=environment(scratch, out.parent / "content"), stdout=sink, stderr=errors
-            )
-            goal = rng.choice(between)
-            begun: set[str] | None = None
+            process = subprocess.Popen(words, env=settings, stdout=sink, stderr=errors)
             while process.poll() is None:
-                if waiting[0] and log.read_bytes().count(b"\n") >= goal:
-                    done = said(log)
-                    begun = set(gradings(scratch)) if begun is None else begun
-                    if begun <= kept.union(done) and kill_one(process, waiting[0][0], rng):
-                        waiting[0].pop(0)
-                        goal, begun = len(done) + rng.choice(between), None
+                if not any(waiting):
+                    gate.open()
+                elif waiting[0] and gate.holds(done := kept.union(said(log))):
+                    gate.kill(process, waiting[0].pop(0), done)
                 time.sleep(0.01)
         if process.returncode != 0 and not waiting[0] and len(waiting) > 1:
             waiting.pop(0)
@@ -205,8 +240,9 @@ def check_undisturbed(tmp_path: Path, students: int, kills: list[str], between: 
     assert {len(row) for row in rows.values()} == {1}
     assert max(reported.values()) == 1, "what was reported is never graded again"
     assert len(due) - len(reported) <= kills.count("coordinator"), "killed between keeping and saying so"
-    graded = gradings(tmp_path / "scratch")
+    graded = Counter(noted(tmp_path / "scratch"))
     assert len(graded) == students
+    assert sum(graded.values()) >= students + len(kills), "each death cut somebody's grading short"
     assert max(graded.values()) <= 2, "each is graded once more at most"
     assert not left_running(tmp_path / "scratch")
     assert not list((tmp_path / "scratch").iterdir())

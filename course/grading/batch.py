@@ -41,7 +41,7 @@ __all__ = [
     "without_grading",
 ]
 
-#: Deaths of graders after which a submission is our fault and no longer tried.
+#: Deaths of graders after which a submission is our fault and no longer tried, or no grader can start at all.
 MAX_TRIES = 3
 _TICK_S = 0.5
 
@@ -133,6 +133,7 @@ class _Coordinator:
         self._graders: dict[int, _Grader] = {}
         self._selector = selectors.DefaultSelector()
         self._hang_s = hang_s(options.timeout)  # only a fault of ours gets here
+        self._false_starts = 0
 
     def run(self) -> Iterator[Graded]:
         for number in range(self._options.graders):
@@ -206,12 +207,13 @@ class _Coordinator:
         """Take a grader's answer, or note its death, and give it or its successor more to do."""
         assert grader.process.stdout is not None
         frame = read_frame(grader.process.stdout)
-        if not grader.ready:
-            if frame is None:
-                raise InternalError("A grader process cannot start; what it printed is above.")
-            grader.ready = True
+        if not grader.ready and frame is not None:
+            grader.ready, self._false_starts = True, 0
             return
         work, grader.work = grader.work, None
+        if not grader.ready:
+            self._start_again(grader, work)
+            return
         if frame is None:
             self._bury(grader)
             if work is not None:
@@ -223,6 +225,20 @@ class _Coordinator:
             assert work is not None
             assert answer.verdict is not None
             self._done.append(Graded(work.entry, answer.verdict))
+        self._feed(grader.number)
+
+    def _start_again(self, grader: _Grader, work: _Work | None) -> None:
+        """Replace a grader that died before any submission came near it.
+
+        Raises:
+            InternalError: none can start.
+        """
+        self._false_starts += 1
+        if self._false_starts >= MAX_TRIES:
+            raise InternalError("A grader process cannot start; what it printed is above.")
+        self._bury(grader)
+        if work is not None:
+            self._again.append(work)
         self._feed(grader.number)
 
     def _retry(self, work: _Work) -> None:

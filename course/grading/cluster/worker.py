@@ -125,15 +125,16 @@ class _WarmGrader:
         return None if frame is None else msgspec.msgpack.decode(frame, type=Answer)
 
     def _start(self) -> subprocess.Popen[bytes]:
-        number, self._seat = _take_seat()
-        process = self._process = start_grader(msgspec.structs.replace(self.config, processor=number))
-        assert process.stdout is not None
-        if read_frame(process.stdout) is None:
+        for _ in range(MAX_TRIES):
+            number, self._seat = _take_seat()
+            process = self._process = start_grader(msgspec.structs.replace(self.config, processor=number))
+            assert process.stdout is not None
+            if read_frame(process.stdout) is not None:
+                return process
             self.close()
-            raise InternalError(
-                "A grader process cannot start there.", help="The worker's log has what it printed."
-            )
-        return process
+        raise InternalError(
+            "A grader process cannot start there.", help="The worker's log has what it printed."
+        )
 
     def close(self) -> None:
         """End the process; the next job gets another one."""

@@ -1,4 +1,4 @@
-"""Gradebooks made by hand, for tests of what is made from them."""
+"""Gradebooks made by hand, for tests of what is made from them; and graders that die young."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from course.grading.session import Submission
 from course.grading.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Callable
     from pathlib import Path
+
+    from course.grading.grader import Config
 
 SECRET = 1234.5678
 
@@ -99,3 +103,19 @@ def make_book(path: Path, verdicts: dict[str, Verdict], *, writing: bool = True)
     for student, found in verdicts.items():
         book.add(Result(key(student), found), {"doubling.py": student.encode()})
     return book
+
+
+def stillborn(
+    start: Callable[[Config], subprocess.Popen[bytes]], deaths: int
+) -> Callable[[Config], subprocess.Popen[bytes]]:
+    """What starts a grader, except that so many of the first ones die before they are ready."""
+    dying = iter(range(deaths))
+
+    def start_or_die(config: Config) -> subprocess.Popen[bytes]:
+        process = start(config)
+        if next(dying, None) is not None:
+            process.kill()
+            process.wait()
+        return process
+
+    return start_or_die

@@ -26,6 +26,7 @@ from course.grading.grader import Answer, Job
 from course.grading.intake import Entry
 from course.grading.session import Submission, grader_version
 from course.grading.verdict import Problem, Verdict
+from tests.unit.grading.made import stillborn
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -380,6 +381,15 @@ def test_a_submission_that_ends_three_graders_costs_its_worker_nothing(
     assert second.verdict is not None
     assert second.verdict.state == "graded"
     assert len(started) == MAX_TRIES + 1
+
+
+def test_a_grader_that_dies_while_it_starts_is_replaced(
+    at_work: Callable[..., Answers], monkeypatch: pytest.MonkeyPatch, solution: bytes
+) -> None:
+    monkeypatch.setattr(worker, "start_grader", stillborn(worker.start_grader, MAX_TRIES - 1))
+    (answer,) = at_work([Job("doubling", {"doubling.py": solution})]).answers
+    assert answer.verdict is not None
+    assert answer.verdict.state == "graded"
 
 
 def test_a_grader_that_died_between_batches_is_replaced(

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from course.errors import UsageError
-from course.grading.batch import BatchOptions, Graded, grade_all
+from course.errors import InternalError, UsageError
+from course.grading import batch
+from course.grading.batch import MAX_TRIES, BatchOptions, Graded, grade_all
 from course.grading.gradebook import Gradebook
 from course.grading.intake import read_class
 from course.grading.run import RunOptions, grade_class, open_results
 from course.grading.verdict import Verdict
+from tests.unit.grading.made import stillborn
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -123,6 +125,23 @@ def test_a_grader_that_dies_costs_no_other_submission(
                 os.kill(pid, signal.SIGKILL)
     assert len(found) == 8
     assert {verdict.state for verdict in found.values()} == {"graded"}
+
+
+@pytest.mark.parametrize("deaths", [MAX_TRIES - 1, MAX_TRIES])
+def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, doubling: Exercise, solution: bytes, deaths: int
+) -> None:
+    make_class(tmp_path / "class", solution, 2)
+    monkeypatch.setattr(batch, "start_grader", stillborn(batch.start_grader, deaths))
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    graded = grade_all(entries, BatchOptions(at_least="L1"))
+    if deaths < MAX_TRIES:
+        assert sorted((one.entry.student, one.verdict.state) for one in graded) == [
+            ("student-000", "graded"), ("student-001", "graded"),
+        ]  # fmt: skip
+    else:
+        with pytest.raises(InternalError, match="cannot start"):
+            list(graded)
 
 
 def _children(parent: int) -> list[int]:

@@ -63,7 +63,11 @@ def run(
     seen: Callable[[int], None],
     grade: GradeAll = grade_all,
 ) -> Summary:
-    """One run into a folder of its own."""
+    """One run into a folder of its own, beside the class and removed with it.
+
+    Removing it before the next run would slow that one down: a file system is loath to use again what was
+    given up seconds ago, and making a file takes ten times as long meanwhile.
+    """
     count = 0
 
     def report(*_: object) -> None:
@@ -71,9 +75,9 @@ def run(
         count += 1
         seen(count)
 
-    with tempfile.TemporaryDirectory() as scratch:
-        options = RunOptions(exercises=(exercise,), graders=jobs, seed=1)
-        summary = grade_class(folder, Path(scratch) / "out", catalog, options, report, grade=grade)
+    out = Path(tempfile.mkdtemp(prefix="run-", dir=folder.parent)) / "out"
+    options = RunOptions(exercises=(exercise,), graders=jobs, seed=1)
+    summary = grade_class(folder, out, catalog, options, report, grade=grade)
     assert summary.exit_code == 0, summary.troubled[:3]
     return summary
 

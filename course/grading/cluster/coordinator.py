@@ -30,8 +30,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Lost", "Outcome", "Workers", "grade_on"]
 
-#: Submissions in a batch. Sending one costs some milliseconds, grading one some tens.
-_MOST = 8
+#: Submissions in a batch, at first and at most. In between, so many as take a worker about ``_BATCH_S`` wall
+#: seconds: sending a batch costs all processes together some 20 ms, and results are seen batch by batch.
+_FIRST, _MOST = 8, 64
+_BATCH_S = 1.0
+#: Batches a worker has: one in hand, and one so that it need not wait for the next.
+_AHEAD = 2
 #: Bytes of files in a batch; Dask takes more, and warns.
 _MOST_BYTES = 1_000_000
 _TICK_S = 1.0
@@ -116,6 +120,7 @@ class _Coordinator:
         self._arrived: queue.SimpleQueue[tuple[int, Outcome]] = queue.SimpleQueue()
         self._done: deque[Graded] = deque()
         self._places = 1
+        self._size = _FIRST
         self._asked_at = self._seen_at = float("-inf")
 
     def run(self) -> Iterator[Graded]:
@@ -134,7 +139,7 @@ class _Coordinator:
 
     def _fill(self) -> None:
         self._count_places()
-        while len(self._flying) < self._places and (batch := self._next()):
+        while len(self._flying) < _AHEAD * self._places and (batch := self._next()):
             number = next(self._numbers)
             self._flying[number] = batch
             options = self._options
@@ -155,7 +160,7 @@ class _Coordinator:
         self._read_ahead()
         if self._waiting:
             # Smaller towards the end, so that all workers are done at about the same time.
-            size = max(1, min(_MOST, len(self._waiting) // (2 * self._places)))
+            size = max(1, min(self._size, len(self._waiting) // (2 * self._places)))
             batch = [self._waiting.popleft()]
             room = _MOST_BYTES - _bytes(batch[0])
             while len(batch) < size and (room := room - _bytes(self._waiting[0])) >= 0:
@@ -168,7 +173,7 @@ class _Coordinator:
 
     def _read_ahead(self) -> None:
         """Read so many submissions that the size of a batch can be chosen by what is left."""
-        while len(self._waiting) < 2 * self._places * _MOST:
+        while len(self._waiting) < 2 * self._places * self._size:
             entry = next(self._entries, None)
             if entry is None:
                 return
@@ -216,6 +221,8 @@ class _Coordinator:
                 help="Install the same checkout of the course on every machine, and restart the workers.",
                 code="version_mismatch",
             )
+        if reply.seconds > 0:
+            self._size = max(1, min(_MOST, int(_BATCH_S * len(batch) / reply.seconds)))
         for work, answer in zip(batch, reply.answers, strict=False):
             if answer.error is not None:
                 problem = answer.error

@@ -18,7 +18,7 @@ __all__ = ["FORMAT", "Answers", "Batch", "decode_answers", "decode_batch", "enco
 T = TypeVar("T", "Batch", "Answers")
 
 #: Grows when a message changes its meaning.
-FORMAT = 1
+FORMAT = 2
 
 
 class Batch(msgspec.Struct, frozen=True):
@@ -46,11 +46,13 @@ class Answers(msgspec.Struct, frozen=True):
         host: the worker's machine, for messages.
         answers: one for each job, in order, but none after one that is an error. An answer with neither
             verdict nor error is of a submission that no grader survived.
+        seconds: wall time the worker spent on the batch.
     """
 
     format: int
     host: str
     answers: tuple[Answer, ...]
+    seconds: float
 
 
 def encode(message: Batch | Answers) -> bytes:

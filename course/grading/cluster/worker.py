@@ -14,6 +14,7 @@ import os
 import socket
 import sys
 import threading
+import time
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -44,10 +45,12 @@ def grade_batch(payload: bytes) -> bytes:
     """The answers to a batch, both as they cross the wire."""
     batch = decode_batch(payload)
     host = socket.gethostname()
+    started = time.monotonic()
     if batch is None:
         said = "The worker speaks another version of the protocol than the coordinator"
-        return encode(Answers(FORMAT, host, (version_mismatch(said),)))
-    return encode(Answers(FORMAT, host, tuple(_answers(batch))))
+        return encode(Answers(FORMAT, host, (version_mismatch(said),), 0.0))
+    answers = tuple(_answers(batch))
+    return encode(Answers(FORMAT, host, answers, time.monotonic() - started))
 
 
 def version_mismatch(what: str) -> Answer:

@@ -69,6 +69,7 @@ class FakeWorkers:
         places: how many batches they take at once.
         deadly: whether a batch takes its worker with it.
         together: whether all batches of a round are then lost, as if one process graded them all.
+        each_s: wall seconds they say a submission takes them.
     """
 
     def __init__(
@@ -79,8 +80,10 @@ class FakeWorkers:
         deadly: Callable[[Batch], bool] = lambda _: False,
         together: bool = False,
         deaths: int = 1,
+        each_s: float = 0.0,
     ) -> None:
         self._places = places
+        self._each_s = each_s
         self._answer = answer
         self._deadly = deadly
         self._together = together
@@ -111,7 +114,8 @@ class FakeWorkers:
             if mine or (self._together and any(dead)):
                 done(Lost(self._deaths))
             else:
-                done(encode(Answers(FORMAT, "there", tuple(map(self._answer, batch.jobs)))))
+                answers = tuple(map(self._answer, batch.jobs))
+                done(encode(Answers(FORMAT, "there", answers, self._each_s * len(answers))))
 
 
 def entries_of(exercise: Exercise, count: int, special: dict[int, bytes] | None = None) -> list[Entry]:
@@ -143,12 +147,22 @@ def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling
     assert states.pop("s003") == "ungradable"
     assert set(states.values()) == {"graded"}
     sizes = [[len(batch.jobs) for batch in batches] for batches in workers.rounds]
-    assert max(map(len, sizes)) <= 3
+    assert max(map(len, sizes)) <= 2 * 3, "one in hand and one waiting for each"
     assert sizes[0][0] == 8
     assert sizes[-1][-1] == 1
     assert {(batch.seed, job.version) for row in workers.rounds for batch in row for job in batch.jobs} == {
         (5, "v1")
     }
+
+
+@pytest.mark.parametrize(("each_s", "largest"), [(0.02, 50), (0.001, 64), (0.3, 8), (2.0, 8)])
+def test_a_batch_is_about_a_second_of_work(doubling: Exercise, each_s: float, largest: int) -> None:
+    """The first ones, sent before anything is known, have eight submissions."""
+    workers = FakeWorkers(1, each_s=each_s)
+    assert len(grade(workers, entries_of(doubling, 600))) == 600
+    sizes = [len(batch.jobs) for row in workers.rounds for batch in row]
+    assert max(sizes) == largest
+    assert sizes[5] == max(1, min(int(1 / each_s), 64))
 
 
 def test_large_submissions_travel_in_small_batches(doubling: Exercise) -> None:
@@ -290,6 +304,8 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -
     seen: list[Any] = []
 
     class Client:
+        status = "running"
+
         def submit(self, *_: Any, **__: Any) -> Any:
             return self
 
@@ -303,13 +319,16 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -
     absent = RuntimeError("while reading the graph")
     absent.__cause__ = ModuleNotFoundError("No module named 'course'")
     for client.future in (
-        Future("finished", value=b"x"), Future("error", killed), Future("cancelled"), Future("lost"),
+        Future("finished", value=b"x"), Future("error", killed), Future("lost"), Future("cancelled"),
         Future("error", absent), Future("error", ZeroDivisionError("1/0")),
     ):  # fmt: skip
         connect.DaskWorkers(client).send(b"", seen.append)
-    assert seen[:2] == [b"x", Lost(4)]
-    codes = [error.code for error in seen[2:]]
-    assert codes == ["no_scheduler", "no_scheduler", "version_mismatch", "internal"]
+    assert seen[:3] == [b"x", Lost(4), Lost(1)]
+    codes = [error.code for error in seen[3:]]
+    assert codes == ["no_scheduler", "version_mismatch", "internal"]
+    client.future, client.status = Future("lost"), "connecting"
+    connect.DaskWorkers(client).send(b"", seen.append)
+    assert seen[-1].code == "no_scheduler"
 
 
 # -- a worker, with a real grader process -----------------------------------------------------------------

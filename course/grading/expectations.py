@@ -185,12 +185,12 @@ def expect_array(
     """
     wanted = np.asarray(expected, dtype=float)
     array = as_array(actual, wanted.shape, quantity)
-    scale = float(np.max(np.abs(wanted), initial=0.0))
+    scale = float(np.max(np.abs(wanted), initial=0.0)) if rel else 0.0
     with np.errstate(all="ignore"):
-        off = ~(np.abs(array - wanted) <= abs + rel * scale)
-    if not off.any():
+        met = np.abs(array - wanted) <= abs + rel * scale
+    if met.all():
         return
-    first = tuple(int(i) for i in np.argwhere(off)[0])
+    first = tuple(int(i) for i in np.argwhere(~met)[0])
     label = quantity + "".join(f"[{i}]" for i in (first if t is None else first[1:]))
     if t is not None:
         finding.setdefault(

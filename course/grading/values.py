@@ -117,19 +117,15 @@ def as_list(value: Any, name: str = "the result", length: int | None = None) -> 
 def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") -> Array:
     """Real numbers of this shape; None in ``shape`` stands for any length. Nested lists count."""
     array = _real(value)
-    fits = array is not None and array.ndim == len(shape)
-    wanted = (
-        "(" + ", ".join("N" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
-    )
     if array is None:
-        _refuse(value, name, "an array of numbers", f"numbers of shape {wanted}")
-    if not fits or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True)):
+        _refuse(value, name, "an array of numbers", f"numbers of shape {_spelled(shape)}")
+    if array.ndim != len(shape) or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True)):
         raise CheckFailed(
             Finding(
                 message=f"{_capital(name)} has the wrong shape.",
                 help="Print its `numpy.shape` and compare it with the shape in the README's contract.",
                 diagnosis="WRONG_SHAPE",
-                expected=f"shape {wanted}",
+                expected=f"shape {_spelled(shape)}",
                 actual=f"shape {array.shape}",
             )
         )
@@ -253,6 +249,12 @@ def _is_numeric(value: Any) -> bool:
     if isinstance(value, list | tuple):
         return all(map(_is_numeric, value))
     return isinstance(value, np.ndarray | int | float)
+
+
+def _spelled(shape: Sequence[int | None]) -> str:
+    """A shape as Python prints one, with N for any length."""
+    lengths = ", ".join("N" if n is None else str(n) for n in shape)
+    return f"({lengths},)" if len(shape) == 1 else f"({lengths})"
 
 
 def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:

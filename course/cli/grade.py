@@ -9,6 +9,7 @@ import typer
 
 from course.cli.completion import exercise_ids
 from course.cli.console import Console, current
+from course.grading.numbers import LARGEST_SEED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,7 +58,8 @@ def run(
         ),
     ] = "auto",
     seed: Annotated[
-        int | None, typer.Option("--seed", min=0, help="Draw hidden inputs as an earlier run did.")
+        int | None,
+        typer.Option("--seed", min=0, max=LARGEST_SEED, help="Draw hidden inputs as an earlier run did."),
     ] = None,
     layout: Annotated[
         str,

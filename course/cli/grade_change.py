@@ -200,9 +200,10 @@ def late(
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
         unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
         names = {f"student {name}" for name in _everybody(results)}
+        graded = {item.id: item for item in results.exercises()}
         unknown = sorted({f"student {item.student}" for item in known} - names)
+        unknown += sorted({f"exercise {item.exercise}" for item in known if item.exercise not in graded})
         if results.policy is not None:
-            graded = {item.id: item for item in results.exercises()}
             unknown += unknown_names(results.policy, graded, _everybody(results))
     if console.json:
         console.emit(

@@ -9,6 +9,7 @@ import typer
 
 from course.cli.completion import exercise_ids
 from course.cli.console import Console, current
+from course.grading.numbers import LARGEST_SEED
 
 if TYPE_CHECKING:
     from course.grading.exports.selection import ExportOptions, Written
@@ -48,7 +49,9 @@ def export(
         list[str] | None,
         typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
     ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", min=0, help="Of an autograder without OUT.")] = None,
+    seed: Annotated[
+        int | None, typer.Option("--seed", min=0, max=LARGEST_SEED, help="Of an autograder without OUT.")
+    ] = None,
     timeout: Annotated[
         float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="Of an autograder, per check.")
     ] = 10.0,
@@ -104,11 +107,14 @@ def _from_gradebook(
             _print_lines(console, results, options)
             return None
         written = write(results, name, out, output, options)
-        if people is not None:
-            try:
+        is_new = people is not None and opened.book.meta().get("roster") != people.dump()
+    if people is not None and is_new:
+        try:
+            # Its extensions count: what lies beside the gradebook is written anew.
+            with open_results(out, writing=True) as opened:
                 opened.book.set_meta(roster=people.dump())
-            except CourseError as error:  # the export itself is complete
-                console.warn(f"The roster was not remembered: {error.message}")
+        except CourseError as error:  # the export itself is complete
+            console.warn(f"The roster was not remembered: {error.message}")
     return written
 
 

@@ -45,6 +45,8 @@ _CANVAS = re.compile(
     r"(?P<name>.*?)(?P<late>_LATE)?_(?P<key>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>.+)", re.S
 )
 _METADATA = "submission_metadata.yml"
+#: What can be handed in, by the ends of its names.
+_HANDED_IN = (".py", ".ipynb", ".zip")
 _MAX_METADATA = 200 << 20
 _SHOWN = 5
 
@@ -162,14 +164,12 @@ def _recognised(folder: Path, names: list[str]) -> str:
     moodle = [name for name in names if _MOODLE.fullmatch(name)]
     canvas = [name for name in names if name not in folders and _CANVAS.fullmatch(name)]
     if moodle:
-        odd = [name for name in folders if name not in moodle]
-        layout, sure = "moodle", not odd
-    elif canvas and not folders:
-        odd = [name for name in names if name not in canvas]
-        layout, sure = "canvas", not odd
+        layout, odd = "moodle", [name for name in folders if name not in moodle]
+    elif canvas and (not folders or any(map(_may_be_handed_in, canvas))):
+        layout, odd = "canvas", [name for name in names if name not in canvas]
     else:
         return "folders"
-    if not sure:
+    if odd:
         listed = ", ".join(_text(name) for name in odd[:_SHOWN]) + (", ..." if len(odd) > _SHOWN else "")
         raise UsageError(
             f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
@@ -179,22 +179,30 @@ def _recognised(folder: Path, names: list[str]) -> str:
     return layout
 
 
+def _may_be_handed_in(name: str) -> bool:
+    return name.lower().endswith(_HANDED_IN)
+
+
 def _text(name: str) -> str:
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 def _folders(folder: Path, names: list[str]) -> ClassList:
     """One folder per student; names are made unique where the file system's are not text."""
-    found: dict[str, Path] = {}
+    found = ClassList("folders")
+    owned: dict[str, Path] = {}
     for raw in names:
         path = folder / raw
         if not (path.is_dir() or path.is_symlink()):
-            continue
+            if _may_be_handed_in(raw):
+                found.unrecognised.append(f"{_text(raw)}: lies beside the students' folders, in nobody's")
+            continue  # a class list, notes: no submission of anybody's
         name = _text(raw)
-        while name in found:
+        while name in owned:
             name += "'"
-        found[name] = path
-    return ClassList("folders", [Student(name, Place(path)) for name, path in found.items()])
+        owned[name] = path
+    found.students = [Student(name, Place(path)) for name, path in owned.items()]
+    return found
 
 
 def _moodle(folder: Path, names: list[str]) -> ClassList:
@@ -207,10 +215,10 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
         if match is None:
             found.unrecognised.append(f"{_text(raw)}: not a name that Moodle gives")
             continue
-        if match["plugin"] != "file":
-            continue  # text typed into the platform, comments: no files of the student's
         student = _text(f"{match['name']}_{match['key']}")
         people[student] = FromDownload("moodle", match["key"], _text(match["name"]))
+        if match["plugin"] != "file":
+            continue  # text typed into the platform, comments: no files of the student's
         if (folder / raw).is_dir() or not match["file"]:
             owned[student] = folder / raw
         else:
@@ -219,7 +227,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
         if student in owned and student in shared:
             found.unrecognised.append(f"{student}: both a folder and files of their own")
             continue
-        place = Place(owned[student]) if student in owned else Place(folder, tuple(shared[student]))
+        place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
         found.students.append(Student(student, place, identity))
     return found
 

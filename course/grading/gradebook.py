@@ -22,11 +22,14 @@ import msgspec
 from course.errors import CourseError, IntegrityError
 from course.grading.gradebook_file import (
     FORMAT_VERSION,
+    SEAL,
     begin_writing,
     create,
     explained,
     open_file,
     release,
+    seal,
+    unseal,
 )
 from course.grading.records import FromDownload, GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.verdict import Verdict, finite
@@ -72,6 +75,7 @@ class Gradebook:
         self.write_s = 0.0
         self._writing = create or writing
         self._begun = False
+        self._changed = False
         self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         if create:
             _create(path)
@@ -91,8 +95,10 @@ class Gradebook:
     def close(self) -> None:
         """Put everything into the one file and close it."""
         try:
-            if self._begun:
-                with explained(self.path):
+            with explained(self.path):
+                if self._changed:
+                    seal(self._db)
+                if self._begun:
                     release(self._db)
         finally:
             self._db.close()
@@ -102,7 +108,7 @@ class Gradebook:
     def meta(self) -> dict[str, str]:
         """Facts about the run: course, version, seed, late policy, roster, ..."""
         with explained(self.path):
-            return dict(self._db.execute("SELECT key, value FROM meta ORDER BY key"))
+            return dict(self._db.execute("SELECT key, value FROM meta WHERE key != ? ORDER BY key", (SEAL,)))
 
     def set_meta(self, **facts: str | None) -> None:
         """Record facts about the run; None removes one."""
@@ -316,8 +322,11 @@ class Gradebook:
                 self._begun = True
             self._db.execute("BEGIN IMMEDIATE")
             try:
+                if not self._changed:
+                    unseal(self._db)
                 yield
                 self._db.execute("COMMIT")
+                self._changed = True
             except BaseException:
                 with contextlib.suppress(sqlite3.Error):
                     self._db.execute("ROLLBACK")

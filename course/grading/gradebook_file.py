@@ -5,11 +5,15 @@ arrives (about 0.05 ms): a process that is killed loses nothing that was reporte
 power leaves a consistent file that lacks the last seconds. Held exclusively, that mode needs no shared memory
 and so works on network folders; closing puts the file back into the ordinary mode, in which it is one file
 that can be copied.
+
+Closing also seals it: a digest over every row is kept in it and compared whenever it is opened. The first
+write breaks the seal, so a file whose writer was killed has none, and is taken as it is.
 """
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import itertools
 import os
 import sqlite3
@@ -21,9 +25,22 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["FORMAT_VERSION", "begin_writing", "create", "explained", "open_file", "release"]
+__all__ = [
+    "FORMAT_VERSION",
+    "SEAL",
+    "begin_writing",
+    "create",
+    "explained",
+    "open_file",
+    "release",
+    "seal",
+    "unseal",
+]
 
-FORMAT_VERSION = 2
+#: 2 had no seal, and is read as it is.
+FORMAT_VERSION = 3
+#: The name of the seal among the facts about a run.
+SEAL = "seal"
 _DAMAGED = "Restore it from a backup, or grade into a new folder; nothing in this one was mended or removed."
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
@@ -62,6 +79,17 @@ CREATE TABLE results (
     UNIQUE (student, exercise, submission_sha256, grader_version, seed, run)
 );
 """
+_SEALED = (
+    f"SELECT * FROM meta WHERE key != '{SEAL}' ORDER BY key",
+    "SELECT * FROM runs ORDER BY number",
+    "SELECT * FROM exercises ORDER BY id",
+    "SELECT * FROM students ORDER BY student",
+    "SELECT sha256 FROM submissions ORDER BY sha256",
+    "SELECT * FROM times ORDER BY student, exercise, submission_sha256, source",
+    "SELECT * FROM overrides ORDER BY number",
+    "SELECT number, run, student, exercise, submission_sha256, grader_version, seed, graded_at,"
+    " verdict_sha256 FROM results ORDER BY number",
+)
 #: Format 1 had results alone, and in them a lateness that was never filled in.
 _FROM_1 = f"""
 ALTER TABLE results RENAME TO results_1;
@@ -102,7 +130,7 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
             help="Wait for it to end, or name another --out.",
             code="gradebook_locked",
         )
-    if "no such table" in words or "no such column" in words:
+    if "no such table" in words or "no such column" in words or "decode" in words:
         return IntegrityError(
             f"{path} is damaged: {words}.",
             help=_DAMAGED,
@@ -196,7 +224,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         # Before the first look at a file in write-ahead mode: held alone it needs no shared memory.
         db.execute("PRAGMA locking_mode = EXCLUSIVE")
     version = _checked_format(db, path)
-    if version < FORMAT_VERSION:
+    if version == 1:
         db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;")
     if writing:
         # The lock is the operating system's, so it ends with the process however that ends.
@@ -206,6 +234,30 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         release(db)  # a run was killed: what it left beside the file goes into it
         db.execute("PRAGMA locking_mode = NORMAL")
         db.execute("SELECT count(*) FROM meta").fetchone()
+    kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
+    if kept is not None and kept[0] != _digest(db):
+        raise IntegrityError(f"{path} is damaged: it is not what was written.", help=_DAMAGED)
+
+
+def seal(db: sqlite3.Connection) -> None:
+    """Note what is in it now."""
+    db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (SEAL, _digest(db)))
+
+
+def unseal(db: sqlite3.Connection) -> None:
+    """Within a transaction that is about to change it."""
+    db.execute("DELETE FROM meta WHERE key = ?", (SEAL,))
+    db.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
+
+
+def _digest(db: sqlite3.Connection) -> str:
+    """Over all rows; what is large in them has a digest of its own, and that is among them."""
+    digest = hashlib.sha256()
+    for query in _SEALED:
+        digest.update(f"{query}\n".encode())
+        for row in db.execute(query):
+            digest.update(f"{row!r}\n".encode("utf-8", "surrogatepass"))
+    return digest.hexdigest()
 
 
 def begin_writing(db: sqlite3.Connection) -> None:

@@ -206,5 +206,5 @@ def in_days(seconds: float) -> str:
     """A lateness in words, down to the minute."""
     days, rest = divmod(int(seconds), 86_400)
     hours, minutes = rest // 3600, rest % 3600 // 60
-    parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * (not days)
-    return " ".join(parts)
+    parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * bool(minutes)
+    return " ".join(parts) or "0 min"

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from course.grading.verdict import CheckResult, Tolerance
 
 __all__ = [
+    "LARGEST_SEED",
     "format_input",
     "format_pair",
     "format_points",
@@ -17,6 +18,8 @@ __all__ = [
     "numbers_of",
 ]
 
+#: A gradebook keeps the seed of a run as a whole number of SQLite's.
+LARGEST_SEED = 2**63 - 1
 _DIGITS = 6
 #: More than this many digits no float64 has.
 _ALL_DIGITS = 17

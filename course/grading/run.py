@@ -115,11 +115,12 @@ class Summary:
         """Take in everything a gradebook has."""
         for effective in results.all():
             verdict = effective.verdict
-            self.states[verdict.state] += 1
+            settled = effective.override is not None  # by hand, whatever the graders could make of it
+            self.states["graded" if settled else verdict.state] += 1
             self.passed += effective.passed
             if verdict.isolation:
                 self.levels[verdict.isolation] += 1
-            if verdict.error is not None:
+            if verdict.error is not None and not settled:
                 error = verdict.error
                 self.troubled.append(
                     Trouble(effective.student, effective.exercise, verdict.state, error.code, error.message)
@@ -194,6 +195,7 @@ class _Run:
         self._with_quiz = bool(self._bank.ids) and (not options.exercises or QUIZ in options.exercises)
         self.summary = Summary(seed=_seed(book, options))
         self.done = 0
+        self._open: Counter[str] = Counter()
         self._note_facts()
         self.view = Results(book)
 
@@ -215,6 +217,7 @@ class _Run:
         )
         for graded in grade(self._left_to_do(), batch):
             submission = graded.entry.submission
+            self._one_less(graded.entry.student)
             yield (
                 Result(self._key(graded.entry), graded.verdict),
                 dict(submission.files) if submission else None,
@@ -228,6 +231,7 @@ class _Run:
 
     def _left_to_do(self) -> Iterator[Entry]:
         for student in self._students:
+            self._open[student.name] += 1
             for entry in read_student(student, self._exercises, required=bool(self._options.exercises)):
                 if entry.submission is None and entry.problem is None:
                     self.summary.not_submitted += 1
@@ -236,7 +240,15 @@ class _Run:
                 if self._options.resume and self._book.confirm(self._key(entry)):
                     self.summary.already += 1
                     continue
+                self._open[student.name] += 1
                 yield entry
+            self._one_less(student.name)
+
+    def _one_less(self, student: str) -> None:
+        """A student is done when all they handed in was read and everything read is graded."""
+        self._open[student] -= 1
+        if not self._open[student]:
+            del self._open[student]
             self.done += 1
 
     def _quizzes(self) -> Iterator[tuple[Result, dict[str, bytes]]]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from course.errors import NotFoundError
 from course.grading.fingerprints import Parser, Prints
 from course.grading.quiz import EXERCISE_ID as QUIZ
 
@@ -89,11 +90,21 @@ def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, a
     Args:
         exercises: ids; empty takes all that were graded.
         at_least: the smallest share to report.
+
+    Raises:
+        NotFoundError: nothing was graded for such an exercise.
     """
     found = Similar()
     graded = [
         item.id for item in results.exercises() if item.id != QUIZ and item.id in catalog.exercise_ids()
     ]
+    unknown = [name for name in exercises if name not in graded]
+    if unknown:
+        raise NotFoundError(
+            f"The gradebook has no code for the exercise {unknown[0]!r}.",
+            help=f"It has {', '.join(graded) or 'none'}.",
+            code="exercise_not_found",
+        )
     with Parser() as parse:
         for name in graded:
             if exercises and name not in exercises:

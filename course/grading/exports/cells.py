@@ -8,7 +8,7 @@ import io
 import os
 from typing import TYPE_CHECKING
 
-from course.errors import MissingCapabilityError
+from course.errors import MissingCapabilityError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -20,6 +20,9 @@ __all__ = ["csv_bytes", "is_safe", "number", "replacing", "safe_cell", "spelled_
 #: A spreadsheet takes a cell that begins with one of these for a formula; with a full-width one in some
 #: languages. The apostrophe that disarms them is itself doubled, so that no two texts become one.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "'", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+
+#: How every SQLite file begins.
+_DATABASE = b"SQLite format 3\0"
 
 
 def spelled_out(text: str) -> str:
@@ -75,8 +78,16 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file that takes its name when it is complete; what was there stays until then.
 
     Raises:
+        UsageError: a database has that name: a gradebook, most likely.
         MissingCapabilityError: there is no room, or it cannot be written there.
     """
+    with contextlib.suppress(OSError), path.open("rb") as handle:
+        if handle.read(len(_DATABASE)) == _DATABASE:
+            raise UsageError(
+                f"{path} is a database, a gradebook most likely; it was left as it is.",
+                help="Name another file with -o.",
+                code="is_a_database",
+            )
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

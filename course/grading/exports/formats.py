@@ -10,7 +10,7 @@ from course.grading.exports.html_report.write import write_html
 from course.grading.exports.junit import write_junit
 from course.grading.exports.lines import write_csv, write_jsonl
 from course.grading.exports.platforms import write_canvas, write_moodle
-from course.grading.exports.selection import ExportOptions, Written, select
+from course.grading.exports.selection import ExportOptions, Written, is_part, select
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,13 +51,17 @@ FORMATS: dict[str, tuple[str, Writer]] = {
     "html": ("report.html", write_html),
 }
 
+#: The formats that a run writes by itself.
+_OF_A_RUN = {"csv", "jsonl", "html"}
+
 
 def export(results: Results, name: str, out: Path, target: Path | None, options: ExportOptions) -> Written:
     """Write one format.
 
     Args:
         out: folder of the grading run.
-        target: where to; in ``out`` under the format's own name if None.
+        target: where to; in ``out`` under the format's own name if None, or in ``out/part`` if some exercises
+            or students are left out and a run keeps that file about all.
 
     Raises:
         UsageError: there is no such format, or it needs something that was not given.
@@ -68,4 +72,8 @@ def export(results: Results, name: str, out: Path, target: Path | None, options:
             f"--format is {name!r}.", help=f"It takes {', '.join([*FORMATS, AUTOGRADER])}.", code="usage"
         )
     usual, write = FORMATS[name]
-    return write(target or out / usual, results, options)
+    if target is None:
+        # What a run wrote there is about everybody, and stays so.
+        part = name in _OF_A_RUN and is_part(results, options)
+        target = out / "part" / usual if part else out / usual
+    return write(target, results, options)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from course.errors import MissingCapabilityError, UsageError
+from course.errors import MissingCapabilityError, NotFoundError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from course.grading.results import Effective, Results
     from course.grading.roster import Person
 
-__all__ = ["ExportOptions", "Selection", "Written", "select"]
+__all__ = ["ExportOptions", "Selection", "Written", "is_part", "select"]
 
 _SHOWN = 10
 
@@ -90,13 +90,14 @@ def select(
             not needed.
 
     Raises:
-        UsageError: no such exercise, or this format needs a roster.
+        NotFoundError: no such exercise.
+        UsageError: this format needs a roster.
         MissingCapabilityError: the roster lacks students, and ``partial`` was not asked for.
     """
     known = {exercise.id for exercise in results.exercises()}
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
     if unknown:
-        raise UsageError(
+        raise NotFoundError(
             f"The gradebook has no exercise {unknown[0]!r}.",
             help=f"It has {', '.join(sorted(known)) or 'none'}.",
             code="exercise_not_found",
@@ -119,6 +120,13 @@ def select(
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     return Selection(results, exercises, people, written)
+
+
+def is_part(results: Results, options: ExportOptions) -> bool:
+    """Whether something the gradebook has is left out."""
+    if options.exercises and {exercise.id for exercise in results.exercises()} - set(options.exercises):
+        return True
+    return options.partial and bool(results.unmatched(results.students()))
 
 
 def _unmatched(students: list[str]) -> MissingCapabilityError:

@@ -65,7 +65,9 @@ def test_an_override_is_in_every_file_at_once_and_can_be_lifted(course, out: Pat
         (("export", "out", "--format", "xlsx"), 2, "usage"),
         (("export", "--format", "csv"), 2, "usage"),
         (("export", "out", "--assignment", "doubling"), 2, "usage"),
-        (("export", "out", "--exercise", "none"), 2, "exercise_not_found"),
+        (("export", "out", "--exercise", "none"), 5, "exercise_not_found"),
+        (("similar", "out", "--exercise", "none"), 5, "exercise_not_found"),
+        (("similar", "out", "-o", "out/gradebook.sqlite"), 2, "is_a_database"),
         (("export", "nowhere"), 5, "gradebook_not_found"),
         (("late", "out", "--policy", "roster.csv"), 2, "invalid_policy"),
         (("late", "out", "--policy", "late.toml", "--clear"), 2, "usage"),
@@ -99,6 +101,9 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
     )
     ran = course("grade", "late", "out", "--times", "times.csv", "--json")
     assert (ran.json["late"], "student eve" in ran.json["unknown_names"]) == ([], True)
+    times.write_text("student,exercise,submitted_at\nada,dubling,2026-12-01T10:00:00Z\n")
+    ran = course("grade", "late", "out", "--times", "times.csv")
+    assert "The gradebook has no exercise dubling." in ran.err
     assert course("grade", "late", "out", "--clear").code == 0
     assert grades(out / "grades.csv")["ada"]["score"] == "10"
 
@@ -124,6 +129,16 @@ def test_an_export_says_what_it_wrote_and_who_was_left_out(course, out: Path) ->
     ran = course("grade", "export", "out", "--format", "moodle", "--partial", "--json")
     assert (ran.code, ran.json["unmatched"], ran.json["rows"]) == (0, ["cy", "dan"], 2)
     assert Path(ran.json["paths"][0]).name == "moodle.csv"
+
+
+def test_an_extension_that_comes_with_an_export_counts_in_every_file(course, out: Path) -> None:
+    assert course("grade", "late", "out", "--policy", "late.toml").code == 0
+    assert grades(out / "grades.csv")["bob"]["score"] == "3"
+    words = ("grade", "export", "out", "--roster", "roster.csv", "--partial", "-o", "c.csv")
+    assert course(*words).code == 0
+    assert grades(out.parent / "c.csv")["bob"]["score"] == "5"
+    assert grades(out / "grades.csv")["bob"]["score"] == "5"
+    assert '"late_penalty":2' not in (out / "results.jsonl").read_text("utf-8").splitlines()[1]
 
 
 def test_lines_of_json_are_printed_where_json_is_asked_for(course, out: Path) -> None:

@@ -197,6 +197,8 @@ def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
     [
         (["Ada_11_assignsubmission_file/doubling.py", "bob/doubling.py"], "bob"),
         (["ada_101_1_doubling.py", "doubling.py"], "doubling.py"),
+        (["ada_101_1_doubling.py", "bob/doubling.py"], "bob"),
+        (["ada_101_1_mine.ZIP", "bob/doubling.py"], "bob"),
     ],
 )
 def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
@@ -219,6 +221,26 @@ def test_folders_with_a_stray_file_among_them_are_folders(tmp_path: Path) -> Non
     put(tmp_path, "ada/doubling.py", "x_1_2_notes.txt", "readme.txt")
     found = class_list(tmp_path)
     assert (found.layout, [student.name for student in found.students]) == ("folders", ["ada"])
+
+
+def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) -> None:
+    put(tmp_path, "ada/doubling.py", "bob.zip", "Cy.IPYNB", "doubling.py", "class.csv", "readme.txt")
+    found = class_list(tmp_path)
+    assert [student.name for student in found.students] == ["ada"]
+    assert [sentence.split(":")[0] for sentence in found.unrecognised] == [
+        "Cy.IPYNB",
+        "bob.zip",
+        "doubling.py",
+    ]
+
+
+def test_whoever_only_typed_something_into_moodle_is_on_the_list_without_files(tmp_path: Path) -> None:
+    put(tmp_path, "Ada_11_assignsubmission_file/doubling.py", "Bob_12_assignsubmission_onlinetext/text.html")
+    found = class_list(tmp_path)
+    assert [(student.name, student.place.files) for student in found.students] == [
+        ("Ada_11", None), ("Bob_12", ()),
+    ]  # fmt: skip
+    assert found.unrecognised == []
 
 
 def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from course.errors import MissingCapabilityError, UsageError
+from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.exports.cells import is_safe, number, replacing, safe_cell
 from course.grading.exports.formats import FORMATS, export
 from course.grading.exports.lines import utc
@@ -68,7 +68,9 @@ def write(results: Results, name: str, tmp_path: Path, options: ExportOptions = 
     written = export(results, name, tmp_path, None, options)
     assert written.rows == len(HOSTILE) + 3
     assert written.without_grade == ["broken doubling"]
-    return tmp_path / FORMATS[name][0]
+    usual = FORMATS[name][0]
+    part = tmp_path / "part" / usual
+    return part if part.exists() else tmp_path / usual
 
 
 def test_the_table_has_a_row_for_everybody_and_no_formula(results: Results, tmp_path: Path) -> None:
@@ -98,6 +100,39 @@ def test_the_lines_of_json_have_the_very_ids(results: Results, tmp_path: Path) -
     assert by_name["set"]["override"]["score"] == 8.25
     assert (by_name["broken"]["score"], by_name["broken"]["exit_code"]) == (None, 70)
     assert by_name["+1"]["checks"][1]["expected"] == SECRET * 2, "the instructor's file has everything"
+
+
+@pytest.mark.parametrize("name", ["csv", "jsonl", "html"])
+def test_a_part_never_takes_the_place_of_what_is_about_all(
+    results: Results, tmp_path: Path, name: str
+) -> None:
+    usual = FORMATS[name][0]
+    everything = ExportOptions()
+    assert export(results, name, tmp_path, None, everything).paths[0] == tmp_path / usual
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
+    roster = results.roster
+    assert roster is not None
+    parts = ((roster.people, OPTIONS), (roster.people[1:], ExportOptions(partial=True)))
+    for people, options in parts:
+        results.roster = Roster(people)
+        written = export(results, name, tmp_path, None, options)
+        assert written.paths[0] == tmp_path / "part" / usual
+        assert {path: path.read_bytes() for path in before} == before
+    results.roster = roster
+    whole = ExportOptions(partial=True)  # which leaves nobody out
+    assert export(results, name, tmp_path, None, whole).paths[0] == tmp_path / usual
+    assert export(results, name, tmp_path, tmp_path / usual, OPTIONS).paths[0] == tmp_path / usual
+
+
+def test_no_export_is_written_over_a_gradebook(results: Results, tmp_path: Path) -> None:
+    path = tmp_path / "gradebook.sqlite"
+    with make_book(tmp_path, {"ada": RIGHT}):
+        pass
+    before = path.read_bytes()
+    with pytest.raises(UsageError, match="a gradebook most likely") as caught:
+        export(results, "csv", tmp_path, path, OPTIONS)
+    assert caught.value.code == "is_a_database"
+    assert path.read_bytes() == before
 
 
 @pytest.fixture(scope="module")
@@ -265,7 +300,7 @@ def test_what_a_platform_needs_is_asked_for(results: Results, tmp_path: Path) ->
         (ExportOptions(("nothing",)), "exercise_not_found"),
         (ExportOptions((), {"nothing": "1"}), "exercise_not_found"),
     ):
-        with pytest.raises(UsageError) as caught:
+        with pytest.raises((UsageError, NotFoundError)) as caught:
             export(results, "canvas", tmp_path, None, options)
         assert caught.value.code == code
     results.roster = None

@@ -265,9 +265,73 @@ def test_what_an_instructor_decided_is_kept_in_order_and_checked(tmp_path: Path)
         assert [(item.score, item.reason) for item in book.overrides()] == [(5.0, "first"), (None, "")]
     with contextlib.closing(sqlite3.connect(path)) as db:
         db.execute("UPDATE overrides SET score = 10.0 WHERE number = 1")
+        db.execute("DELETE FROM meta WHERE key = 'seal'")  # as if a run had been killed since
         db.commit()
     with Gradebook(path) as book, pytest.raises(IntegrityError, match="override"):
         book.overrides()
+
+
+def full(path: Path) -> None:
+    """A gradebook with something in every table."""
+    with Gradebook(path, create=True) as book:
+        book.set_meta(seed="7", roster="[]")
+        book.begin_run("run", {"timeout": 10.0})
+        book.set_exercises([GradedExercise("doubling", "Doubling", 10.0, 0.7, 1)])
+        book.set_students({"ada": FromDownload("canvas", "1", "ada")})
+        book.add(Result(key(), verdict()), {"doubling.py": b"x"})
+        book.add_times([SubmittedAt("ada", "doubling", "a", "mtime", 200.0)])
+        book.add_override(Override("ada", "doubling", 5.0, "first"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "UPDATE meta SET value = '[{]' WHERE key = 'roster'",
+        "UPDATE meta SET key = 'rosteR' WHERE key = 'roster'",
+        "UPDATE runs SET options = '{}'",
+        "UPDATE exercises SET pass_share = 0.5",
+        "UPDATE students SET student = 'adb'",
+        "UPDATE times SET at = 201.0",
+        "UPDATE overrides SET reason = 'firsu'",
+        "UPDATE results SET student = 'adb'",
+        "UPDATE results SET graded_at = '2026'",
+        "UPDATE submissions SET sha256 = 'b'",
+        "DELETE FROM results",
+        "UPDATE times SET student = CAST(x'ff41' AS TEXT)",
+    ],
+)
+def test_what_changed_since_it_was_closed_is_damage(tmp_path: Path, change: str) -> None:
+    path = tmp_path / "g.sqlite"
+    full(path)
+    Gradebook(path).close()
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        assert db.execute(change).rowcount == 1
+        db.commit()
+    for writing in (False, True):
+        with pytest.raises(IntegrityError, match="damaged"):
+            Gradebook(path, writing=writing)
+
+
+def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tmp_path: Path) -> None:
+    """A run that was killed leaves none, and neither did the format before."""
+    path = tmp_path / "g.sqlite"
+    full(path)
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        db.execute("DELETE FROM meta WHERE key = 'seal'")
+        db.execute("UPDATE exercises SET pass_share = 0.5")
+        db.execute("PRAGMA user_version = 2")
+        db.commit()
+    with Gradebook(path) as book:
+        assert book.exercises()[0].pass_share == 0.5
+    with Gradebook(path, writing=True) as book:
+        book.set_meta(late_policy="x")
+        assert book.meta() == {"seed": "7", "roster": "[]", "late_policy": "x"}
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        assert db.execute("PRAGMA user_version").fetchone()[0] == 3
+        db.execute("UPDATE exercises SET pass_share = 0.7")
+        db.commit()
+    with pytest.raises(IntegrityError, match="damaged"):
+        Gradebook(path)
 
 
 def test_of_one_witness_the_earliest_time_of_a_content_stays(tmp_path: Path) -> None:

@@ -323,7 +323,7 @@ def test_a_second_export_leaves_no_page_of_somebody_else(tmp_path: Path) -> None
         partial = dataclasses.replace(ALL, partial=True)
         with pytest.raises(MissingCapabilityError):
             export(results, "html", tmp_path, None, ALL)
-        written = export(results, "html", tmp_path, None, partial)
+        written = export(results, "html", tmp_path, tmp_path, partial)
     assert before == {"1.html", "2.html", "3.html", "4.html", "77.html"}
     assert {path.name for path in (tmp_path / "students").iterdir()} == {"1.html", "2.html", "77.html"}
     assert (written.rows, written.unmatched) == (2, ["student 2", "student 3"])

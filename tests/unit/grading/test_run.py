@@ -18,7 +18,8 @@ from course.grading import batch
 from course.grading.batch import MAX_TRIES, BatchOptions, Graded, grade_all
 from course.grading.gradebook import Gradebook
 from course.grading.intake import read_class
-from course.grading.run import RunOptions, grade_class, open_results
+from course.grading.override import override
+from course.grading.run import RunOptions, Summary, grade_class, open_results
 from course.grading.verdict import Verdict
 from tests.unit.grading.made import stillborn
 
@@ -205,6 +206,44 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 1, 1)
     (trouble,) = summary.troubled
     assert (trouble.student, trouble.exercise, trouble.code) == ("eve", "quiz", "quiz_record_inconsistent")
+
+
+def test_a_student_counts_as_done_when_graded_and_not_when_read(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 4)
+    options = RunOptions(exercises=("doubling",), at_least="L1")
+    seen: list[int] = []
+
+    def all_at_once(entries: Iterable[Entry], more: BatchOptions) -> Iterator[Graded]:
+        yield from right(list(entries), more)
+
+    grade_class(
+        tmp_path / "class", tmp_path / "out", catalog, options,
+        lambda _result, done, _all: seen.append(done), grade=all_at_once,
+    )  # fmt: skip
+    assert seen == [1, 2, 3, 4]
+
+
+def test_what_an_instructor_settled_is_no_trouble_any_more(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 2)
+    (tmp_path / "class" / "nobody").mkdir()
+    options = RunOptions(exercises=("doubling",), resume=True)
+
+    def run() -> Summary:
+        return grade_class(
+            tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right
+        )
+
+    summary = run()
+    assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 2, 2)
+    with open_results(tmp_path / "out", writing=True) as results:
+        override(results, "nobody", "doubling", 8.0, "oral exam")
+    summary = run()
+    assert (summary.exit_code, summary.states["graded"], summary.passed) == (0, 3, 3)
+    assert (summary.states["ungradable"], summary.troubled) == (0, [])
 
 
 def test_a_second_run_on_one_folder_is_told_and_the_first_goes_on(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from course.cli.console import Console, current
-from course.cli.quiz_desk import Desk, agrees, answer, open_or_new, start
+from course.cli.quiz_desk import Desk, agrees, answer, open_or_new, printed_seed, start
 from course.errors import UsageError
 
 if TYPE_CHECKING:
@@ -65,11 +65,14 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     desk = Desk.load()
     if answers is not None:
         return _take_file(console, desk, answers, seed)
+    if questions:
+        seed = printed_seed(console, desk, seed)
+        posed = desk.bank.pose(seed)
+        screen.show_mark(console, len(posed))
+        return screen.hand_out(console, desk.here, posed, seed, "take")
     attempt, resumed = open_or_new(console, desk, seed)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
-    if questions:
-        return screen.hand_out(console, desk.here, posed, attempt.seed, "take")
     screen.show_keys(console)
     if resumed:
         console.line(f"Going on with the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")

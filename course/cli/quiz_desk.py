@@ -63,7 +63,21 @@ def open_or_new(console: Console, desk: Desk, seed: int | None) -> tuple[Attempt
         if fits(desk.bank, open_one):
             return open_one, bool(open_one.answers)
         console.line("The questions have changed since you left your last attempt, so a new one begins.")
+    elif open_one is not None and open_one.answers:
+        left = f"{len(open_one.answers)} of {len(open_one.questions)} answered"
+        console.line(f"This is another attempt; the one you left (seed {open_one.seed}, {left}) ends here.")
     return start(desk, desk.new_seed() if seed is None else seed), False
+
+
+def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
+    """Which questions to print: they are the same until they are answered.
+
+    An attempt in which something was answered goes on waiting, whatever is printed.
+    """
+    open_one = desk.history.open
+    if seed is not None and open_one is not None and open_one.answers:
+        return seed
+    return open_or_new(console, desk, seed)[0].seed
 
 
 def fits(bank: Bank, attempt: Attempt) -> bool:

@@ -60,16 +60,7 @@ def load_problem(refused: LoadRefusedError, module: str) -> Problem:
     failure = refused.failure
     where = f"{module}, line {failure.line}" if failure.line else module
     if refused.stage == "syntax":
-        if "UnicodeError" in failure.bases:
-            message = f"{where}: Python cannot read this file: {failure.message}."
-            advice = "Save it as UTF-8, or declare its encoding in the first line."
-            return Problem("syntax_error", message, advice)
-        shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
-        return Problem(
-            "syntax_error",
-            f"{where}: Python cannot read this file: {failure.message}{shown}.",
-            "Run `python -m py_compile` on it, or look at that line and the one above it.",
-        )
+        return Problem("syntax_error", *_unreadable(refused, where))
     if refused.stage == "timeout":
         message = f"{module} did not finish loading in time."
         return Problem(
@@ -91,6 +82,23 @@ def load_problem(refused: LoadRefusedError, module: str) -> Problem:
     return Problem(
         "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
     )
+
+
+def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
+    """What is wrong with a file that is no Python, and what to do about it."""
+    failure = refused.failure
+    if "UnicodeError" in failure.bases:
+        message = f"{where}: Python cannot read this file: {failure.message}."
+        return message, "Save it as UTF-8, or declare its encoding in the first line."
+    if not failure.line:
+        message = f"{where} is no Python source: {failure.message}."
+        return (
+            message,
+            "Was something else saved under its name? `course reset` puts the stub back, and keeps it.",
+        )
+    shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
+    message = f"{where}: Python cannot read this file: {failure.message}{shown}."
+    return message, "Run `python -m py_compile` on it, or look at that line and the one above it."
 
 
 def no_functions(exercise: Exercise) -> Problem:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import math
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
@@ -238,6 +239,11 @@ def fingerprint(source: bytes) -> str:
     return hashlib.sha256(code).hexdigest()
 
 
+def _number(value: object) -> float:
+    """What was recorded, or 0 if somebody put something else in its place: no command may fail over that."""
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
+
+
 def _run(event: Event) -> CheckRun:
     data: Mapping[str, Any] = event.data
     checks = [check for check in data.get("checks", ()) if isinstance(check, dict)]
@@ -246,11 +252,11 @@ def _run(event: Event) -> CheckRun:
         at=event.at,
         state=str(data.get("state", "graded")),
         only=str(data.get("only") or ""),
-        score=float(data.get("score", 0.0)),
-        max_score=float(data.get("max_score", 0.0)),
+        score=_number(data.get("score")),
+        max_score=_number(data.get("max_score")),
         passed=bool(data.get("passed", False)),
         all_pass=bool(data.get("all_pass", False)),
-        seconds=float(data.get("seconds", 0.0)),
+        seconds=_number(data.get("seconds")),
         fingerprint=str(data.get("fingerprint", "")),
         statuses={str(check.get("id")): str(check.get("status")) for check in checks},
         tasks={str(check.get("id")): str(check.get("task")) for check in checks},

@@ -127,6 +127,18 @@ def test_an_attempt_that_was_stopped_goes_on_where_it_was(quiz, bank, types, sto
     assert "5 of 5 right" in ran.out
 
 
+def test_an_attempt_that_waits_is_not_given_up_without_a_word(quiz, bank, types):
+    letters = list(key(bank).values())
+    types(*letters[:2], "q")
+    assert quiz("take", "--seed", str(SEED)).code == 130
+    assert quiz("take", "--questions", "--seed", "11", "--json").json["seed"] == 11
+    assert quiz("take", "--questions", "--json").json["seed"] == SEED, "printing changed nothing"
+    types("q")
+    ran = quiz("take", "--seed", "12")
+    assert f"the one you left (seed {SEED}, 2 of 5 answered) ends here" in ran.out
+    assert quiz("take", "--questions", "--json").json["seed"] == 12
+
+
 def test_control_c_keeps_what_was_answered(quiz, bank, types, monkeypatch):
     types(key(bank)["why-simulate"])
     lines = iter([key(bank)["why-simulate"] + "\n"])

@@ -135,6 +135,15 @@ def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
     assert verdict.error.help
 
 
+def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSession) -> None:
+    for source in (b"\x00\x01\xff\xfe\x80 random", b"PK\x03\x04\x00\x00"):
+        error = grade(session, source).error
+        assert error is not None
+        assert error.message.startswith("doubling.py is no Python source: ")
+        assert "that line" not in error.help
+        assert "course reset" in error.help
+
+
 def test_an_import_that_is_not_allowed_costs_only_the_tasks_that_need_it(
     session: GradingSession, solution: bytes
 ) -> None:

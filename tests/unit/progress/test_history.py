@@ -72,6 +72,12 @@ def test_failing_tasks_are_those_of_the_newest_whole_run():
     assert _history(_check(FIRST, status="pass"), _check(SECOND)).failing_tasks() == {"double"}
 
 
+@pytest.mark.parametrize("odd", ["abc", None, [1], float("nan"), {}])
+def test_a_number_that_somebody_overwrote_stops_nobody(odd):
+    (run,) = _history(_check(FIRST, score=odd, max_score=odd, seconds=odd)).runs
+    assert (run.score, run.max_score, run.seconds) == (0.0, 0.0, 0.0)
+
+
 def test_a_check_run_alone_corrects_the_last_whole_run_and_leaves_its_score():
     history = _history(_check(FIRST), _check(SECOND, status="pass", only="double_of_three"))
     assert history.failing_tasks() == frozenset()

@@ -169,24 +169,36 @@ def of_delay(value, x, dt, latency):
 
 # -- differential drive ---------------------------------------------------------------------------------
 
-_POSE, _LEFT, _RIGHT, _TRACK, _STEP = (1.0, 2.0, 2.5), 0.3, 0.9, 0.5, 1.2
+#: Numbers of no pattern, or one mistake gives what another does: with right = 3 left, the sum of both is
+#: twice their difference.
+_POSE, _LEFT, _RIGHT, _TRACK, _STEP = (1.0, 2.0, 2.5), 0.31, 0.83, 0.47, 1.3
+#: Where in the turn the heading of the way is taken, and whether the way is the chord: right, and as by Euler
+_WAYS = ((0.5, True), (0.0, False), (1.0, False), (0.5, False))
 
 
-def _arc(left=_LEFT, right=_RIGHT, track=_TRACK, at=0.5, chord=True, reach=1.0):
-    """One step; ``at`` is where in the turn the heading of the way is taken."""
-    turn = (right - left) / track * _STEP
-    way = reach * (left + right) / 2 * _STEP * (np.sinc(turn / (2 * np.pi)) if chord else 1.0)
-    heading = _POSE[2] + at * turn
-    return np.array([_POSE[0] + way * math.cos(heading), _POSE[1] + way * math.sin(heading), _POSE[2] + turn])
+def _arc(left=_LEFT, right=_RIGHT, track=_TRACK, at=0.5, chord=True, reach=1.0, **slip):
+    """One step; ``at`` is where in the turn the heading of the way is taken.
+
+    slip: functions of the ``turn`` and of the ``angle`` that cosine and sine are taken of; the ``sinc`` of
+        the turn; whether cosine and sine are ``swapped``
+    """
+    turn = slip.get("turn", lambda turn: turn)((right - left) / track * _STEP)
+    sinc = slip.get("sinc", lambda turn: np.sinc(turn / (2 * np.pi)))
+    way = reach * (left + right) / 2 * _STEP * (sinc(turn) if chord else 1.0)
+    angle = slip.get("angle", lambda angle: angle)(_POSE[2] + at * turn)
+    x, y = (way * math.cos(angle), way * math.sin(angle))[:: -1 if slip.get("swapped") else 1]
+    return np.array([_POSE[0] + x, _POSE[1] + y, _POSE[2] + turn])
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_drive(submission):
-    """The mistake that ``diff_drive_step`` makes: one turn, then ever slower ones."""
+    """The mistake that ``diff_drive_step`` makes: one turn, and where that is right, ever slower ones."""
     value = kit.as_vector(submission.call("diff_drive_step", _POSE, _LEFT, _RIGHT, _TRACK, _STEP), 3, "pose")
     right = _arc()
     found = _matching(value, (("HEADING_WRAPPED", _wrapped(right)), *_drive_slips()))
-    return found or kit.attempt(lambda: _of_slow_turns(submission))
+    if found or not np.allclose(value, right, rtol=1e-9, atol=1e-12):
+        return found
+    return kit.attempt(lambda: _of_slow_turns(submission))
 
 
 def _wrapped(pose):
@@ -197,30 +209,51 @@ def _drive_slips():
     yield "EULER_ODOMETRY", _arc(at=0.0, chord=False)
     yield "EULER_TURNS_FIRST", _arc(at=1.0, chord=False)
     yield "MIDPOINT_ODOMETRY", _arc(chord=False)
-    yield "TRACK_HALVED", _arc(track=_TRACK / 2)
-    yield "TRACK_DOUBLED", _arc(track=_TRACK * 2)
-    yield "SPEEDS_ADDED", _arc(reach=2.0)
-    for at, chord in ((0.5, True), (0.0, False), (1.0, False), (0.5, False)):
-        yield "LEFT_RIGHT_SWAPPED", _arc(_RIGHT, _LEFT, at=at, chord=chord)
+    for without_pi in (lambda turn: np.sinc(turn / 2), np.sinc):
+        yield "SINC_WITHOUT_PI", _arc(sinc=without_pi)
+    total = (_LEFT + _RIGHT) / _TRACK * _STEP
+    for at, chord in _WAYS:
+        way = {"at": at, "chord": chord}
+        yield "TRACK_HALVED", _arc(track=_TRACK / 2, **way)
+        yield "TRACK_DOUBLED", _arc(track=_TRACK * 2, **way)
+        yield "SPEEDS_ADDED", _arc(reach=2.0, **way)
+        yield "SPEED_SUM_TURNS", _arc(turn=lambda _turn: total, **way)
+        yield "LEFT_RIGHT_SWAPPED", _arc(_RIGHT, _LEFT, **way)
+        yield "DRIVE_SIN_COS_SWAPPED", _arc(swapped=True, **way)
+        for convert in (math.degrees, math.radians):
+            yield "TURN_IN_DEGREES", _arc(turn=convert, **way)
+            yield "TURN_IN_DEGREES", _arc(angle=convert, **way)
 
 
 def _of_slow_turns(submission):
     """Errors of slow turns by rate; each rate is tried at a few headings, because rounding is luck."""
-    poses = [(0.0, 0.0, heading) for heading in (0.3, 1.0, 1.9, 2.6)]
+    headings, dt = np.array([0.3, 1.0, 1.9, 2.6]), 2.0
+
+    def of(rate):
+        """Where it gets to, and where the arc does, (4, 2) each."""
+        calls = [((0.0, 0.0, float(h)), 0.5 - rate / 4, 0.5 + rate / 4, 0.5, dt) for h in headings]
+        ends = [kit.as_vector(end, 3, "pose")[:2] for end in submission.call_each("diff_drive_step", calls)]
+        return np.array(ends), _along(headings + rate * dt / 2, 0.5 * dt * np.sinc(rate * dt / (2 * np.pi)))
 
     def worst(rate):
-        calls = [(pose, 0.5 - rate / 2, 0.5 + rate / 2, 1.0, 1.0) for pose in poses]
-        ends = [kit.as_vector(end, 3, "pose")[:2] for end in submission.call_each("diff_drive_step", calls)]
-        truth = [
-            0.5
-            * np.sinc(rate / (2 * np.pi))
-            * np.array([math.cos(p[2] + rate / 2), math.sin(p[2] + rate / 2)])
-            for p in poses
-        ]
-        return float(np.max(np.abs(np.subtract(ends, truth))))
+        return float(np.max(np.abs(np.subtract(*of(rate)))))
 
-    if not math.isfinite(worst(0.0)):
+    def straight(rate):
+        """Whether the way is one of a straight line, along the heading before, amid or after the turn."""
+        ends, _ = of(rate)
+        lines = [_along(headings + at * rate * dt, 0.5 * dt) for at in (0.0, 0.5, 1.0)]
+        return any(np.allclose(ends, line, rtol=0, atol=1e-12) for line in lines)
+
+    ahead = worst(0.0)
+    if not math.isfinite(ahead):
         return named("STRAIGHT_DIVIDES_BY_ZERO")
-    if max(worst(1e-13), worst(1e-12)) > 1e-6:
-        return named("SMALL_TURN_CANCELS")
-    return named("SLOW_TURN_AS_STRAIGHT") if max(map(worst, (1e-4, 1e-3, 1e-2, 0.1))) > 1e-6 else None
+    if ahead > 1e-6:
+        return named("STRAIGHT_WRONG")
+    slow = [rate for rate in (1e-4, 1e-3, 1e-2, 0.1) if worst(rate) > 1e-6]
+    if slow:
+        return named("SLOW_TURN_AS_STRAIGHT") if all(map(straight, slow)) else None
+    return named("SMALL_TURN_CANCELS") if max(worst(1e-13), worst(1e-12)) > 1e-6 else None
+
+
+def _along(headings, way):
+    return way * np.stack((np.cos(headings), np.sin(headings)), axis=1)

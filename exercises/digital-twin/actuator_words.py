@@ -139,6 +139,22 @@ ACTUATORS: dict[str, tuple[str, str]] = {
         "It turns half as fast as it should.",
         "The wheels are one track apart: (v_right - v_left) / track.",
     ),
+    "SPEED_SUM_TURNS": (
+        "It turns by the sum of the two wheel speeds, so that it turns even where both are equal.",
+        "What turns it is their difference: turn rate = (v_right - v_left) / track.",
+    ),
+    "TURN_IN_DEGREES": (
+        "The turn, or the angle of cosine and sine, is converted between degrees and radians.",
+        "(v_right - v_left) / track * dt is in radians already, and so is the heading: convert nothing.",
+    ),
+    "DRIVE_SIN_COS_SWAPPED": (
+        "Sine and cosine of the heading are swapped.",
+        "x grows with the cosine of the heading and y with its sine.",
+    ),
+    "SINC_WITHOUT_PI": (
+        "np.sinc is given the turn without the pi that it expects: np.sinc(s) is sin(pi s)/(pi s).",
+        "sin(turn/2)/(turn/2) is np.sinc(turn / (2 * pi)).",
+    ),
     "SPEEDS_ADDED": (
         "It goes twice as far as it should.",
         "The middle of the axle goes at the mean of the two wheel speeds.",
@@ -150,15 +166,19 @@ ACTUATORS: dict[str, tuple[str, str]] = {
     "SMALL_TURN_CANCELS": (
         "For very slow turns the position is wrong by rounding: two nearly equal sines are subtracted and "
         "divided by a tiny turn rate.",
-        "Write the chord as length * sin(turn/2)/(turn/2); np.sinc(turn/(2 pi)) is that quotient and safe "
-        "at 0.",
+        "Write the chord as length * sin(turn/2)/(turn/2); np.sinc(turn / (2 * pi)) is that quotient and "
+        "safe at 0.",
     ),
     "SLOW_TURN_AS_STRAIGHT": (
         "Slow turns are treated as straight lines, and not only the ones too slow to matter.",
-        "Lower the threshold, or use np.sinc, which needs none.",
+        "Lower the threshold, or use np.sinc(turn / (2 * pi)), which needs none.",
+    ),
+    "STRAIGHT_WRONG": (
+        "Turns are right, and straight ahead is wrong: that case has a mistake of its own.",
+        "Straight ahead the way is speed * dt along the heading. np.sinc(turn / (2 * pi)) needs no case.",
     ),
     "STRAIGHT_DIVIDES_BY_ZERO": (
         "With equal wheel speeds the result is not a number: the turn rate is divided by.",
-        "Treat a turn rate of 0 apart, or use np.sinc, which is 1 there.",
+        "Treat a turn rate of 0 apart, or use np.sinc(turn / (2 * pi)), which is 1 there.",
     ),
 }

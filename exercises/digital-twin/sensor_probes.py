@@ -180,36 +180,101 @@ def of_bias0(found, still):
 # -- lidar ----------------------------------------------------------------------------------------------
 
 _WALL = np.array([[[2.0, -1.0], [2.0, 1.0]]])
-_TWO = np.array([[[2.0, -1.0], [2.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]], [[3.0, -1.0], [3.0, 1.0]]])
+_ROW = np.array([[[2.0, -1.0], [2.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]], [[3.5, -1.0], [3.5, 1.0]]])
 _LONG = np.array([[[1.0, 0.5], [3.0, 0.5]]])  # parallel to a beam along x
-_AHEAD, _LEFT = (0.0, 0.0, 0.0), (0.0, 0.0, math.pi / 2)
+_ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
 
-#: code, pose, walls, the one beam, the right reading with a reach of 5 m
+#: A crooked room without a door: whichever way a beam goes, it hits, and each way another distance off.
+_CORNERS = np.array([[-2.0, -1.5], [3.0, -1.0], [2.5, 2.0], [-1.5, 1.2]])
+_ROOM = np.stack((_CORNERS, np.roll(_CORNERS, -1, axis=0)), axis=1)
+_FAN = np.linspace(-2.9, 2.7, 15)
+_X, _Y, _HEADING = 0.4, 0.3, 0.7
+
+
+def _seen(beams, start=1.0):
+    """Distances (B,) in the crooked room along directions in the world; start: -1 turns where walls begin."""
+    ax, ay = start * (_ROOM[:, 0] - (_X, _Y)).T
+    wx, wy = (_ROOM[:, 1] - _ROOM[:, 0]).T
+    dx, dy = np.cos(beams)[:, None], np.sin(beams)[:, None]
+    cross = dx * wy - dy * wx
+    along, share = (ax * wy - ay * wx) / cross, (ax * dy - ay * dx) / cross
+    hit = (along >= 0) & (share >= 0) & (share <= 1) & (along <= _REACH)
+    return np.min(np.where(hit, along, _REACH), axis=1)
+
+
+def _lidar_slips():
+    """(code, what the fan reads in the crooked room)."""
+    a, h = _FAN, _HEADING
+    yield "HEADING_IGNORED", _seen(a)
+    yield "HEADING_SUBTRACTED", _seen(a - h)
+    for f in (np.degrees, np.radians):
+        for beams in (f(a + h), f(a) + h, a + f(h)):
+            yield "BEAM_IN_DEGREES", _seen(beams)
+    yield "BEAM_SIN_COS_SWAPPED", _seen(np.pi / 2 - (a + h))
+    yield "WALL_VECTOR_REVERSED", _seen(a + h + np.pi)
+    yield "WALL_VECTOR_REVERSED", _seen(a + h, start=-1.0)
+
+
+def _at(beam, *distances):
+    """What a beam reads of walls across the x axis."""
+    return tuple(x / math.cos(beam) for x in distances)
+
+
+#: code, position, walls, the one beam, the right reading, readings that only this mistake gives
 _SCENES = (
-    ("HEADING_IGNORED", _LEFT, _WALL, -math.pi / 2, 2.0),
-    ("POSITION_IGNORED", (0.5, 0.1, 0.0), _WALL, 0.0, 1.5),
-    ("WALLS_BEHIND_SEEN", _AHEAD, _WALL, 3.0, 5.0),
-    ("WALLS_ENDLESS", _AHEAD, _WALL, 1.0, 5.0),
-    ("WALLS_ENDLESS", _AHEAD, _WALL, -1.0, 5.0),
-    ("NOT_THE_NEAREST", _AHEAD, _TWO, 0.1, 1.0 / math.cos(0.1)),
-    ("BEYOND_RANGE", _AHEAD, _WALL + np.array([4.0, 0.0]), 0.01, 5.0),
-    ("PARALLEL_WALLS", _AHEAD, np.concatenate((_LONG, _WALL)), 0.0, 2.0),
-    ("NO_HIT_NOT_MAX", _AHEAD, _WALL, 2.0, 5.0),
+    ("POSITION_IGNORED", (0.5, 0.1, 0.0), _WALL, 0.0, 1.5, (2.0,)),
+    ("WALLS_BEHIND_SEEN", _ORIGIN, _WALL, 3.0, _REACH, (0.0, *_at(3.0, 2.0, -2.0))),
+    ("WALLS_ENDLESS", _ORIGIN, _WALL, 1.0, _REACH, _at(1.0, 2.0)),
+    ("WALLS_ENDLESS", _ORIGIN, _WALL, -1.0, _REACH, _at(1.0, 2.0)),
+    ("NOT_THE_NEAREST", _ORIGIN, _ROW, 0.1, *_at(0.1, 1.0), _at(0.1, 2.0, 3.5)),
+    ("BEYOND_RANGE", _ORIGIN, _WALL + np.array([4.0, 0.0]), 0.01, _REACH, _at(0.01, 6.0)),
+)
+#: position, walls, the one beam, the right reading: a wall ahead, one wall along the beam, none within reach
+_PLAIN = (
+    (_ORIGIN, _WALL, 0.3, *_at(0.3, 2.0)),
+    (_ORIGIN, np.concatenate((_LONG, _WALL)), 0.0, 2.0),
+    (_ORIGIN, _WALL + np.array([40.0, 0.0]), 2.0, _REACH),
 )
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_lidar(submission):
-    """The mistake that ``lidar`` makes, from scenes with one wall or two, without noise."""
-    plain = np.random.default_rng(1)
-    calls = [(pose, walls, np.array([beam]), 5.0, 0.0, plain) for _, pose, walls, beam, _ in _SCENES]
-    readings = [kit.as_vector(r, 1, "ranges")[0] for r in submission.call_each("lidar", calls)]
-    nothing = readings[-1]  # what the last scene reads, where no wall is near the beam
-    for (code, *_, right), reading in zip(_SCENES, readings, strict=True):
-        if not abs(reading - right) < 1e-9:
-            blank = right == 5.0 and nothing != 5.0 and (reading == nothing or not np.isfinite(reading))
-            return named("NO_HIT_NOT_MAX" if blank else code)
-    return of_lidar_noise(submission)
+    """The mistake that ``lidar`` makes, from a room and from scenes with one wall or two, without noise.
+
+    A mistake is named where the readings are those that it gives, not only where they are wrong.
+    """
+    scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
+    calls = [((_X, _Y, heading), _ROOM, _FAN) for heading in (_HEADING, 0.0)]
+    calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
+    calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
+    results = submission.call_each("lidar", calls)
+    turned, ahead = (kit.as_vector(result, len(_FAN), "ranges") for result in results[:2])
+    for code, readings in _lidar_slips():
+        if np.allclose(turned, readings, rtol=0, atol=1e-9):
+            return named(code)
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[2:]])
+    right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
+    if np.all(right) and np.allclose(turned, _seen(_FAN + _HEADING), rtol=0, atol=1e-9):
+        return of_lidar_noise(submission)
+    stuck = np.ptp(ahead) > 0.1 and np.allclose(turned, ahead, rtol=0, atol=1e-9)
+    return _of_scenes(readings, right, stuck)
+
+
+def _of_scenes(readings, right, stuck):
+    """From what was read in the scenes, and whether the beams of the room are ``stuck`` to the world."""
+    plain, parallel, nothing = right[-3:]
+    if not nothing:
+        return named("NO_HIT_NOT_MAX")
+    if not plain:
+        return None  # beams go astray, and not in a way that is known: nothing else can be told from them
+    if stuck:
+        return named("HEADING_IGNORED")
+    if np.all(right[:-3]) and not parallel:
+        return named("PARALLEL_WALLS")
+    seen = zip(_SCENES, readings, strict=False)
+    return next(
+        (named(code) for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9), None
+    )
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
@@ -219,7 +284,7 @@ def of_lidar_noise(submission):
     near, none = (1.95, 0.0, 0.0), (-20.0, 0.0, 0.0)
     calls = [
         (pose, _WALL, fan, 5.0, 0.1, np.random.default_rng(seed))
-        for seed, pose in enumerate((_AHEAD, none, near))
+        for seed, pose in enumerate((_ORIGIN, none, near))
     ]
     hits, misses, close = (kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls))
     noise = hits - 2.0 / np.cos(fan)

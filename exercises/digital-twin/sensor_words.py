@@ -154,6 +154,22 @@ SENSORS: dict[str, tuple[str, str]] = {
         "Turning the robot does not turn the beams.",
         "angles are relative to the heading: a beam points along heading + angle.",
     ),
+    "HEADING_SUBTRACTED": (
+        "Turning the robot to the left turns the beams to the right.",
+        "Add the heading to the angles: a beam points along heading + angle.",
+    ),
+    "BEAM_IN_DEGREES": (
+        "The direction of a beam, or a part of it, is converted between degrees and radians.",
+        "heading and angles are both in radians, and np.cos and np.sin take radians: convert nothing.",
+    ),
+    "BEAM_SIN_COS_SWAPPED": (
+        "Sine and cosine of a beam's direction are swapped.",
+        "A beam points along (cos, sin) of heading + angle.",
+    ),
+    "WALL_VECTOR_REVERSED": (
+        "Walls are seen as if they began on the other side of the robot.",
+        "Mind the order of each difference: from the robot to a wall it is the wall minus the robot.",
+    ),
     "POSITION_IGNORED": (
         "Moving the robot does not change what it sees.",
         "Subtract the robot's position from the end points of the walls first.",

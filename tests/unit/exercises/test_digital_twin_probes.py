@@ -120,6 +120,50 @@ def test_a_scanner_that_errs_is_told_its_mistake(code, wrong):
     assert sensors.of_lidar(Fake("lidar", wrong)).code == code
 
 
+def beams(direction):
+    """The right lidar, looking along ``direction(angles, heading)``."""
+
+    def wrong(pose, segments, angles, *rest):
+        return right.lidar((*pose[:2], 0.0), segments, direction(np.asarray(angles), pose[2]), *rest)
+
+    return wrong
+
+
+def both_ways(pose, segments, angles, r_max, sigma, rng):
+    ahead = right.lidar(pose, segments, np.asarray(angles), r_max, sigma, rng)
+    return np.minimum(ahead, right.lidar(pose, segments, np.asarray(angles) + math.pi, r_max, sigma, rng))
+
+
+DIRECTIONS = [
+    ("HEADING_IGNORED", beams(lambda a, h: a)),
+    ("HEADING_SUBTRACTED", beams(lambda a, h: a - h)),
+    ("BEAM_IN_DEGREES", beams(lambda a, h: a + math.degrees(h))),
+    ("BEAM_IN_DEGREES", beams(lambda a, h: np.radians(a + h))),
+    ("BEAM_SIN_COS_SWAPPED", beams(lambda a, h: math.pi / 2 - a - h)),
+    ("WALL_VECTOR_REVERSED", beams(lambda a, h: a + h + math.pi)),
+    ("WALLS_BEHIND_SEEN", both_ways),
+    ("HEADING_IGNORED", lambda pose, *rest: both_ways((*pose[:2], 0.0), *rest)),
+    (None, beams(lambda a, h: a + 2 * h)),
+    (None, beams(lambda a, h: 0.5 * (a + h))),
+    (None, beams(lambda a, h: -a - h)),
+]
+
+
+@pytest.mark.parametrize(
+    ("code", "wrong"), DIRECTIONS, ids=[f"{i}-{c}" for i, (c, _) in enumerate(DIRECTIONS)]
+)
+def test_beams_that_go_astray_are_told_where_to_only_if_it_is_known(code, wrong):
+    assert getattr(sensors.of_lidar(Fake("lidar", wrong)), "code", None) == code
+
+
+def test_no_two_ways_to_go_astray_read_the_same_in_the_crooked_room():
+    found = [readings for _, readings in sensors._lidar_slips()]
+    found.append(sensors._seen(sensors._FAN + sensors._HEADING))
+    for i, a in enumerate(found):
+        assert np.sum(a < sensors._REACH) >= 2
+        assert all(np.max(np.abs(a - b)) > 1e-3 for b in found[:i])
+
+
 def test_a_scanner_that_never_moves_is_told_so():
     assert sensors.of_lidar(Fake("lidar", moved)).code == "POSITION_IGNORED"
 
@@ -158,7 +202,53 @@ DRIVE = [
     ("TRACK_HALVED", actuators._arc(track=actuators._TRACK / 2)),
     ("TRACK_DOUBLED", actuators._arc(track=actuators._TRACK * 2)),
     ("SPEEDS_ADDED", actuators._arc(reach=2.0)),
+    ("SPEED_SUM_TURNS", actuators._arc(turn=lambda _: (0.31 + 0.83) / 0.47 * 1.3)),
 ]
+
+
+def drive(change):
+    """The right step with the turn, the chord's factor and the axes that ``change(turn, pose)`` gives."""
+
+    def wrong(pose, v_left, v_right, track, dt):
+        turn, factor, angle = change((v_right - v_left) / track * dt, pose[2])
+        way = (v_left + v_right) / 2 * dt * factor
+        return np.array([pose[0] + way * np.cos(angle), pose[1] + way * np.sin(angle), pose[2] + turn])
+
+    return wrong
+
+
+def chord(turn):
+    return np.sinc(turn / (2 * np.pi))
+
+
+STEPS = [
+    ("SINC_WITHOUT_PI", drive(lambda turn, h: (turn, np.sinc(turn / 2), h + turn / 2))),
+    ("TURN_IN_DEGREES", drive(lambda turn, h: (turn, chord(turn), np.radians(h + turn / 2)))),
+    ("DRIVE_SIN_COS_SWAPPED", drive(lambda turn, h: (turn, chord(turn), np.pi / 2 - h - turn / 2))),
+    ("DRIVE_SIN_COS_SWAPPED", drive(lambda turn, h: (turn, 1.0, np.pi / 2 - h))),
+    (
+        "SLOW_TURN_AS_STRAIGHT",
+        drive(lambda turn, h: (turn, 1.0, h) if abs(turn) < 0.01 else (turn, chord(turn), h + turn / 2)),
+    ),
+    (
+        "STRAIGHT_WRONG",
+        drive(lambda turn, h: (turn, 2.0 if turn == 0 else chord(turn), h + turn / 2)),
+    ),
+    (None, drive(lambda turn, h: (turn, np.cos(turn), h + turn / 2))),
+    (None, drive(lambda turn, h: (turn, chord(turn), h + turn / 3))),
+    (None, drive(lambda turn, h: (turn, chord(turn) * (0.9 if 0 < turn < 0.5 else 1.0), h + turn / 2))),
+]
+
+
+@pytest.mark.parametrize(("code", "wrong"), STEPS, ids=[f"{i}-{c}" for i, (c, _) in enumerate(STEPS)])
+def test_slow_turns_are_blamed_only_where_an_ordinary_one_is_right(code, wrong):
+    assert getattr(actuators.of_drive(Fake("diff_drive_step", wrong)), "code", None) == code
+
+
+def test_no_two_mistakes_of_a_step_end_at_the_same_pose():
+    found = [("", actuators._arc()), *actuators._drive_slips()]
+    for i, (code, pose) in enumerate(found):
+        assert all(np.max(np.abs(pose - b)) > 1e-3 for other, b in found[:i] if other != code), code
 
 
 @pytest.mark.parametrize(("code", "value"), DRIVE, ids=[code for code, _ in DRIVE])

@@ -59,6 +59,10 @@ WORDS: dict[str, tuple[str, str]] = {
         "The prediction does not feel the drive.",
         'dv/dt = drive - friction * speed, with twin["drive"].',
     ),
+    "FRICTION_SPEEDS_UP": (
+        "In the prediction, friction makes a rolling cart faster.",
+        "Friction acts against the motion: dv/dt = drive - friction * speed.",
+    ),
     "FRICTION_NOT_LEARNED": (
         "The friction stays what it was at the start, so the twin keeps running ahead or behind.",
         "Surprises that keep their sign mean that a parameter is wrong. A cart that lags behind has more "

@@ -230,10 +230,7 @@ STEPS = [
         "SLOW_TURN_AS_STRAIGHT",
         drive(lambda turn, h: (turn, 1.0, h) if abs(turn) < 0.01 else (turn, chord(turn), h + turn / 2)),
     ),
-    (
-        "STRAIGHT_WRONG",
-        drive(lambda turn, h: (turn, 2.0 if turn == 0 else chord(turn), h + turn / 2)),
-    ),
+    ("STRAIGHT_WRONG", drive(lambda turn, h: (turn, 2.0 if turn == 0 else chord(turn), h + turn / 2))),
     (None, drive(lambda turn, h: (turn, np.cos(turn), h + turn / 2))),
     (None, drive(lambda turn, h: (turn, chord(turn), h + turn / 3))),
     (None, drive(lambda turn, h: (turn, chord(turn) * (0.9 if 0 < turn < 0.5 else 1.0), h + turn / 2))),
@@ -313,17 +310,32 @@ def pushed(twin, z, t):
     return {**twin, "t": t, "position": x - 0.3 * (z - x)}
 
 
+def shares(old="", new=""):
+    """The sync of constant shares, with ``new`` in place of ``old``."""
+    source = (SOLUTION / "accepted" / "constant_shares.py").read_text(encoding="utf-8")
+    assert old in source
+    space = dict(vars(right))
+    exec(source.replace(old, new), space)
+    return space["sync"]
+
+
 SYNC = [
     ("NO_CORRECTION", standing),
     ("NO_PREDICTION", unmoved),
     ("SURPRISE_INVERTED", pushed),
     ("TIME_NOT_ADVANCED", lambda twin, z, t: {**right.sync(twin, z, t), "t": twin["t"]}),
+    ("SURPRISE_INVERTED", shares("z - x", "x - z")),
+    ("FRICTION_SPEEDS_UP", shares("- b * v", "+ b * v")),
+    ("FRICTION_LEARNS_BACKWARDS", shares("b - 0.15", "b + 0.15")),
+    (None, shares("v + 0.3", "v - 0.3")),  # its memory is empty, and that is not what is wrong
+    (None, shares('twin["drive"] -', '-twin["drive"] -')),
+    (None, shares()),
 ]
 
 
-@pytest.mark.parametrize(("code", "wrong"), SYNC, ids=[code for code, _ in SYNC])
+@pytest.mark.parametrize(("code", "wrong"), SYNC, ids=[f"{i}-{code}" for i, (code, _) in enumerate(SYNC)])
 def test_a_twin_that_errs_is_told_its_mistake(code, wrong):
-    assert twins.of_sync(Fake("sync", wrong)).code == code
+    assert getattr(twins.of_sync(Fake("sync", wrong)), "code", None) == code
 
 
 def test_a_right_twin_is_told_no_mistake():

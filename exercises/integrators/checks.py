@@ -32,7 +32,7 @@ def test_explicit_euler_growth(submission):
         "does not.",
         help="Both new values come from the old state alone.",
         diagnose=lambda: probes.of_energy(
-            submission, task, factor - 1 - (h * spring.omega) ** 2, (spring, [1.0], [0.6], h, n, 0.0)
+            submission, task, factor - 1, (h * spring.omega) ** 2, (spring, [1.0], [0.6], h, n, 0.0)
         ),
     )
 
@@ -55,8 +55,8 @@ def test_semi_implicit_energy(submission):
         message="From rest on a spring, semi-implicit Euler's energy swings by z/(2 - z) with z = h*omega; "
         "yours does not.",
         help="One half of the state moves with the other half's new value.",
-        diagnose=lambda: probes.of_energy(
-            submission, task, swing - z / (2 - z), (spring, [1.0], [0.0], h, n, 0.0)
+        diagnose=lambda: probes.of_swing(
+            submission, task, swing, z / (2 - z), (spring, [1.0], [0.0], h, n, 0.0)
         ),
     )
 

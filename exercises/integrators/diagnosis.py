@@ -7,6 +7,11 @@ from __future__ import annotations
 
 from course.grading.kit import Diagnosis, Divergence
 
+_BY_HAND = (
+    "Take one step by hand from the README's example and compare q and v separately: sign, factor, and "
+    "whether old or new values go in."
+)
+
 #: code: (what it looks like, what to change)
 WORDS: dict[str, tuple[str, str]] = {
     # -- steps: one method in another's place
@@ -104,6 +109,15 @@ WORDS: dict[str, tuple[str, str]] = {
         "The position is moved with the old velocity alone.",
         "Drift with the velocity after the first half kick: q + h*(v + h/2*a).",
     ),
+    "POSITION_TERM_SUBTRACTED": (
+        "In the position, the square term with the acceleration is subtracted.",
+        "Constant acceleration moves a body by h*v + h**2/2*a. accel already points the way it acts, so "
+        "the term is added.",
+    ),
+    "KICK_SUBTRACTED": (
+        "In the velocity, an acceleration is subtracted.",
+        "accel already points the way it acts: both half kicks are added, v + h/2*(a_old + a_new).",
+    ),
     "KICKS_TOO_LARGE": (
         "Each of the two kicks takes the whole step, so the velocity gets twice what it should.",
         "There are two kicks a step: each takes h/2.",
@@ -157,16 +171,32 @@ WORDS: dict[str, tuple[str, str]] = {
     "ORDER_TOO_LOW": (
         "It does converge, but slower than this method: most of the formula is right and one part of it "
         "is only roughly so.",
-        "Check where and when each acceleration is evaluated, then the weights: an old value where a new "
-        "one belongs costs an order.",
+        "Compare it with the formula term by term: sign, factor and power of h, then where and when each "
+        "acceleration is evaluated.",
     ),
     "ENERGY_GROWS": (
-        "It puts energy into a spring that has none to give.",
-        "Look at which values are old and which are new when the position moves and when the velocity does.",
+        "It puts more energy into a spring than this method does.",
+        _BY_HAND,
+    ),
+    "ENERGY_GROWS_TOO_LITTLE": (
+        "It puts less energy into a spring than this method does.",
+        _BY_HAND,
     ),
     "ENERGY_FADES": (
-        "It takes more energy out of the spring than this method does.",
-        "Look for a state that is mixed from old and new values, or for weights that do not add up to one.",
+        "It takes more energy out of a spring than this method does.",
+        _BY_HAND,
+    ),
+    "ENERGY_FADES_TOO_LITTLE": (
+        "It takes less energy out of a spring than this method does.",
+        _BY_HAND,
+    ),
+    "ENERGY_SWINGS_TOO_FAR": (
+        "The energy of a spring gets further from its first value than with this method.",
+        "Look at which values are old and which are new when the position moves and when the velocity does.",
+    ),
+    "ENERGY_SWINGS_TOO_LITTLE": (
+        "The energy of a spring stays nearer to its first value than with this method.",
+        "Look at which values are old and which are new when the position moves and when the velocity does.",
     ),
     "EXTRA_EVALUATIONS": (
         "It calls accel more often than this method needs.",
@@ -175,6 +205,10 @@ WORDS: dict[str, tuple[str, str]] = {
     "MISSING_EVALUATIONS": (
         "It calls accel less often than this method needs, so something is reused that has changed.",
         "Evaluate accel afresh for each stage, at that stage's own time, position and velocity.",
+    ),
+    "ACCEL_ARGUMENTS_MIXED": (
+        "It calls accel with the time, the position or the velocity in another one's place.",
+        "Call accel(t, q, v): the time first, then the position, then the velocity.",
     ),
     "STALE_CACHE": (
         "The same call gives another result after a call in between: it remembers something that no "
@@ -215,6 +249,29 @@ WORDS: dict[str, tuple[str, str]] = {
     "OFF_BY_ONE_SAMPLE": (
         "It is off by one for every duration: n steps join n + 1 states.",
         "Record the initial state before the loop and one state after each of the n steps.",
+    ),
+    "TRUNCATED_AND_SHORT": (
+        "Two things at once: the number of steps is cut off instead of rounded, and there is one sample "
+        "less than those steps join.",
+        "Use n = round(t_end / h), not int(...) and not //; then record the initial state before the loop "
+        "and one state after each of the n steps.",
+    ),
+    "HISTORIES_SWAPPED": (
+        "The states are right, but the velocities come where the positions belong, and the other way round.",
+        "Return (t, q, v): the positions before the velocities, and each in its own array.",
+    ),
+    "HISTORIES_IDENTICAL": (
+        "The positions and the velocities that it returns are the same numbers.",
+        "Give each an array of its own, for v = q only gives one array a second name; fill each with its "
+        "half of the state, and return both.",
+    ),
+    "INITIAL_STATE_WRONG": (
+        "The first row is not the initial state.",
+        "Row 0 holds q0 in the positions and v0 in the velocities, as they were before any step.",
+    ),
+    "TIMES_START_LATE": (
+        "The first row holds the initial state, but the times begin one step later.",
+        "Row i belongs to time i*h, so the initial state is at time 0.",
     ),
     "INITIAL_STATE_MISSING": (
         "The first sample is not the initial state.",

@@ -45,6 +45,8 @@ def of_step(submission, task, run=None):
 
     run: what the check marched along, (system, q0, v0, h, n, t0).
     """
+    if _mixes_arguments(submission, task):
+        return named("ACCEL_ARGUMENTS_MIXED")
     if _remembers(submission, task):
         return named("STALE_CACHE")
     system = _problem(task)
@@ -59,6 +61,18 @@ def of_whole_numbers(submission, task):
     return named("STALE_CACHE" if _remembers(submission, task) else "INTEGER_STATE")
 
 
+def _mixes_arguments(submission, task):
+    """Whether accel gets a vector in the time's place, or the velocity in the position's."""
+    # Without acceleration the velocity stays what it is in the whole step, and no position equals it.
+    accel = kit.counted(lambda *args, **names: np.zeros(2))
+    kit.attempt(lambda: submission.call(task, accel, _T, _Q, _V, _H))
+    places = ([kit.attempt(lambda arg=arg: kit.as_vector(arg, 2)) for arg in call] for call in accel.calls)
+    return any(
+        len(place) == 3 and (place[0] is not None or (place[1] is not None and np.allclose(place[1], _V)))
+        for place in places
+    )
+
+
 def _remembers(submission, task):
     """Whether the same call gives something else after a call of another kind."""
     system = _problem(task)
@@ -67,10 +81,25 @@ def _remembers(submission, task):
     return not _equal(first, kit.as_pair(submission.call(task, system, _T, _Q, _V, _H), 2))
 
 
-def of_energy(submission, task, change, run=None):
-    """Like ``of_step``; where the formula is not recognised, by the sign of the energy's change."""
+def of_energy(submission, task, change, expected, run=None):
+    """Like ``of_step``; where the formula is not recognised, by how the energy of a spring changes.
+
+    change, expected: of the energy per step, as a share of it, as measured and as the method has it.
+    """
     found = kit.attempt(lambda: of_step(submission, task, run))
-    return found or named("ENERGY_GROWS" if change > 0 else "ENERGY_FADES")
+    if found or math.isnan(change):
+        return found
+    if change > expected:
+        return named("ENERGY_GROWS" if change > 0 else "ENERGY_FADES_TOO_LITTLE")
+    return named("ENERGY_FADES" if change < 0 else "ENERGY_GROWS_TOO_LITTLE")
+
+
+def of_swing(submission, task, swing, expected, run=None):
+    """Like ``of_energy`` for a method whose energy swings: by how far it gets from its first value."""
+    found = kit.attempt(lambda: of_step(submission, task, run))
+    if found or not math.isfinite(swing):
+        return found
+    return named("ENERGY_SWINGS_TOO_FAR" if swing > expected else "ENERGY_SWINGS_TOO_LITTLE")
 
 
 def _formula(task, system, q, v):
@@ -126,12 +155,22 @@ def _rate(submission, task):
     return "ORDER_TOO_LOW" if slope < ORDERS[task] - 0.4 else None
 
 
+def _distance(a, b):
+    """How unlike two states are: by the number of halves that differ, then by how much they do."""
+    differ = sum(not _equal([x], [y]) for x, y in zip(a, b, strict=True))
+    return differ, differ == 2 and sum(abs(x - y).max() for x, y in zip(a, b, strict=True))
+
+
 def _divergence(submission, task, system, q0, v0, h, n, t0):
-    """Where the path first leaves that of the right method, in the form that comes nearest at first."""
+    """Where the path first leaves that of the right method, in the form that it shares most with at first.
+
+    A step whose position is exactly that of one form is that form with a wrong velocity, however near another
+    form may come to both.
+    """
     t, q, v = submission.march(task, system, q0, v0, h, n, t0=t0)
     start = State.of(q0, v0, t0)
     paths = [trajectory(stepper, system, start, h, n) for stepper in _STEPPERS[task]]
-    right = min(paths, key=lambda path: abs(path.q[1] - q[1]).max() + abs(path.v[1] - v[1]).max())
+    right = min(paths, key=lambda path: _distance((path.q[1], path.v[1]), (q[1], v[1])))
     allowed = 1e-9
     if task == "rk4_step":  # it has more forms than can be listed: allow three times the textbook's error
         true = reference(system, q0, v0, t[1:], t0)[0]
@@ -170,7 +209,8 @@ def _loop_count(t_end, h, overshoot):
 _COUNTS = (
     ("OFF_BY_ONE_SAMPLE", lambda t_end, h: round(t_end / h) - 1),
     ("OFF_BY_ONE_SAMPLE", lambda t_end, h: round(t_end / h) + 1),
-    ("OFF_BY_ONE_SAMPLE", lambda t_end, h: int(t_end / h) - 1),
+    ("TRUNCATED_AND_SHORT", lambda t_end, h: int(t_end / h) - 1),
+    ("TRUNCATED_AND_SHORT", lambda t_end, h: int(t_end // h) - 1),
     ("TRUNCATED_STEP_COUNT", lambda t_end, h: int(t_end / h)),
     ("TRUNCATED_STEP_COUNT", lambda t_end, h: int(t_end // h)),
     ("STEP_COUNT_ROUNDED_UP", lambda t_end, h: math.ceil(t_end / h)),
@@ -196,17 +236,39 @@ def of_count(submission):
 
 def of_rows(t, q, v, h, states):
     """What is wrong with rows of the right number. ``states``: true q and v of every sample, (N+1, d)."""
+    code = _histories(q, v, states) or _first_row(t, q, v, h, states) or _later_rows(q, v, states)
+    return named(code) if code else None
+
+
+def _histories(q, v, states):
+    """What is wrong with the two arrays, whatever the step did."""
     q_true, v_true = states
-    first = np.allclose(q[0], q_true[0]) and np.allclose(v[0], v_true[0])
-    if not first or (len(t) > 1 and math.isclose(t[0], h)):
-        return named("INITIAL_STATE_MISSING")
+    if np.allclose(q, v_true) and np.allclose(v, q_true):
+        return "HISTORIES_SWAPPED"
+    if np.array_equal(q, v) and np.any(q) and not np.allclose(q_true, v_true):
+        return "HISTORIES_IDENTICAL"
+    whole = np.array_equal(q, np.trunc(q)) and np.array_equal(q[0], np.trunc(q_true[0]))
+    return "INTEGER_STATE" if whole and not np.array_equal(q_true, np.trunc(q_true)) else None
+
+
+def _first_row(t, q, v, h, states):
+    """What the first row is, if not the initial state at time 0."""
+    late = len(t) > 1 and np.allclose(t, h * np.arange(1, len(t) + 1))
+    pairs = list(zip((q, v), states, strict=True))
+    if all(np.allclose(rows[0], true[0]) for rows, true in pairs):
+        return "TIMES_START_LATE" if late else None
+    after = len(q) > 1 and all(np.allclose(rows[0], true[1]) for rows, true in pairs)
+    empty = all(np.allclose(rows[0], true[0]) or not np.any(rows[0]) for rows, true in pairs)
+    return "INITIAL_STATE_MISSING" if after or empty else "INITIAL_STATE_WRONG"
+
+
+def _later_rows(q, v, states):
+    """What is wrong after a right first row."""
+    q_true, _ = states
     if np.allclose(q[:-1], q_true[:-1]) and not np.any(q[-1]) and not np.any(v[-1]):
-        return named("LAST_STEP_MISSING")
-    if len(t) > 2 and np.allclose(q[2:], q[1]) and np.allclose(v[2:], v[1]):
-        return named("STATE_NOT_CARRIED")
-    if np.array_equal(q, np.trunc(q)) and not np.array_equal(q_true, np.trunc(q_true)):
-        return named("INTEGER_STATE")
-    return None
+        return "LAST_STEP_MISSING"
+    carried = len(q) <= 2 or not (np.allclose(q[2:], q[1]) and np.allclose(v[2:], v[1]))
+    return None if carried else "STATE_NOT_CARRIED"
 
 
 def of_times(times, h):

@@ -115,8 +115,8 @@ def test_verlet_energy(submission, rng):
         input={"omega": omega, "h": z / omega, "q0": q0, "steps": n},
         message="Over many turns on a spring, the energy does not keep to the bound of velocity Verlet.",
         help="Two half kicks around one drift, each with the acceleration at its own end of the step.",
-        diagnose=lambda: probes.of_energy(
-            submission, VERLET, swing - nearest, (system, q0, [0.0], z / omega, n, 0.0)
+        diagnose=lambda: probes.of_swing(
+            submission, VERLET, swing, nearest, (system, q0, [0.0], z / omega, n, 0.0)
         ),
     )
 
@@ -233,7 +233,7 @@ def test_rk4_decay(submission, rng):
         input={"omega": omega, "h": h, "steps": n, "q0": start[0], "v0": start[1]},
         message="On a spring, RK4 loses about z**6/72 of its energy a step with z = h*omega; yours does not.",
         help="Check the weights and how far along each slope is taken.",
-        diagnose=lambda: probes.of_energy(submission, RK4, expected - loss, (system, *start, h, n, 0.0)),
+        diagnose=lambda: probes.of_energy(submission, RK4, -loss, -expected, (system, *start, h, n, 0.0)),
     )
 
 

@@ -114,10 +114,66 @@ def test_an_unknown_formula_is_described_by_how_it_converges():
     assert probes.of_step(Fake(rk4_step=ralston), "rk4_step").code == "ORDER_TOO_LOW"
 
 
-def test_energy_that_an_unknown_formula_gains_or_loses_is_said():
-    fake = Fake(rk4_step=lambda *args: None)
-    assert probes.of_energy(fake, "rk4_step", 0.1).code == "ENERGY_GROWS"
-    assert probes.of_energy(fake, "rk4_step", -0.1).code == "ENERGY_FADES"
+MIXED = [order for order in itertools.permutations(range(3)) if order != (0, 1, 2)]
+
+
+@pytest.mark.parametrize("task", formulas.RIGHT)
+@pytest.mark.parametrize("order", MIXED, ids=str)
+def test_arguments_of_the_acceleration_in_another_order_are_recognised(task, order):
+    for right in formulas.RIGHT[task]:
+
+        def step(accel, t, q, v, h, right=right):
+            return right(lambda *state: accel(*(state[i] for i in order)), t, q, v, h)
+
+        assert probes.of_step(Fake(**{task: step}), task).code == "ACCEL_ARGUMENTS_MIXED"
+        assert probes.of_energy(Fake(**{task: step}), task, 0.1, 0.2).code == "ACCEL_ARGUMENTS_MIXED"
+
+
+@pytest.mark.parametrize(
+    ("code", "wrong"),
+    [
+        ("USES_NEW_ACCELERATION", formulas._verlet(0.5, 0, 1)),
+        ("USES_OLD_ACCELERATION", formulas._verlet(0.5, 1, 0)),
+        ("SECOND_KICK_MISSING", formulas._verlet(0.5, 0.5, 0)),
+    ],
+)
+def test_where_the_position_is_right_the_path_leaves_in_the_velocity(code, wrong):
+    problem = (systems.ForcedOscillator(2.0, 1.5, 3.1), [0.8], [-0.9], 0.9 / 16, 16, 0.4)
+    found = probes.of_step(Fake(velocity_verlet_step=wrong), "velocity_verlet_step", problem)
+    assert found.code == code
+    assert (found.divergence.quantity, found.divergence.step) == ("v[0]", 1)
+
+
+def nothing(*args):
+    raise kit.StudentFailure("error", type="RuntimeError", message="")
+
+
+@pytest.mark.parametrize(
+    ("change", "expected", "code"),
+    [
+        (0.3, 0.2, "ENERGY_GROWS"),
+        (0.1, -0.2, "ENERGY_GROWS"),
+        (0.1, 0.2, "ENERGY_GROWS_TOO_LITTLE"),
+        (-0.1, 0.2, "ENERGY_FADES"),
+        (-0.3, -0.2, "ENERGY_FADES"),
+        (-0.1, -0.2, "ENERGY_FADES_TOO_LITTLE"),
+    ],
+)
+def test_how_the_energy_changes_is_said_as_it_is(change, expected, code):
+    fake = Fake(rk4_step=nothing)
+    assert probes.of_energy(fake, "rk4_step", change, expected).code == code
+
+
+def test_an_energy_that_swings_is_not_said_to_grow_or_to_fade():
+    fake = Fake(rk4_step=nothing)
+    assert probes.of_swing(fake, "rk4_step", 0.3, 0.2).code == "ENERGY_SWINGS_TOO_FAR"
+    assert probes.of_swing(fake, "rk4_step", 0.1, 0.2).code == "ENERGY_SWINGS_TOO_LITTLE"
+
+
+def test_of_an_energy_that_is_not_a_number_nothing_is_said():
+    fake = Fake(rk4_step=nothing)
+    assert probes.of_energy(fake, "rk4_step", math.nan, 0.2) is None
+    assert probes.of_swing(fake, "rk4_step", math.nan, 0.2) is None
 
 
 COUNTING = {
@@ -125,6 +181,7 @@ COUNTING = {
     "STEP_COUNT_ROUNDED_UP": lambda t_end, h: math.ceil(t_end / h),
     "OFF_BY_ONE_SAMPLE": lambda t_end, h: round(t_end / h) - 1,
     "TIME_ACCUMULATES": lambda t_end, h: len(np.arange(0, t_end + h, h)) - 1,
+    "TRUNCATED_AND_SHORT": lambda t_end, h: int(t_end / h) - 1,
     None: lambda t_end, h: round(t_end / h),
 }
 
@@ -137,6 +194,43 @@ def test_the_rule_behind_a_wrong_number_of_samples_is_recognised(code, count):
 
     found = probes.of_count(Fake(integrate=integrate))
     assert (found and found.code) == code
+
+
+SAMPLES = np.arange(6.0)
+TRUE = np.column_stack([np.cos(SAMPLES), np.sin(SAMPLES) + 2]), np.column_stack([SAMPLES - 2.5, SAMPLES**2])
+
+
+def _without(rows, value=0.0):
+    """The rows with another first one."""
+    return np.vstack([np.full(2, value), rows[1:]])
+
+
+@pytest.mark.parametrize(
+    ("code", "rows"),
+    [
+        ("HISTORIES_SWAPPED", lambda q, v: (v, q)),
+        ("HISTORIES_IDENTICAL", lambda q, v: (v, v)),
+        ("HISTORIES_IDENTICAL", lambda q, v: (q + 1, q + 1)),
+        ("INITIAL_STATE_MISSING", lambda q, v: (0 * q, 0 * v)),
+        ("INITIAL_STATE_MISSING", lambda q, v: (_without(q), v)),
+        ("INITIAL_STATE_MISSING", lambda q, v: (q, _without(v))),
+        ("INITIAL_STATE_MISSING", lambda q, v: (np.roll(q, -1, axis=0), np.roll(v, -1, axis=0))),
+        ("INITIAL_STATE_WRONG", lambda q, v: (_without(q, 7.0), v)),
+        ("INITIAL_STATE_WRONG", lambda q, v: (q, -v)),
+        ("INTEGER_STATE", lambda q, v: (np.trunc(q), np.trunc(v))),
+        ("STATE_NOT_CARRIED", lambda q, v: (q[[0, 1, 1, 1, 1, 1]], v[[0, 1, 1, 1, 1, 1]])),
+        (None, lambda q, v: (q, v)),
+    ],
+)
+def test_rows_that_are_wrong_are_described_as_they_are(code, rows):
+    found = probes.of_rows(0.1 * SAMPLES, *rows(*TRUE), 0.1, TRUE)
+    assert (found and found.code) == code
+
+
+def test_times_that_begin_late_beside_the_right_states_are_told_from_a_missing_start():
+    assert probes.of_rows(0.1 * SAMPLES + 0.1, *TRUE, 0.1, TRUE).code == "TIMES_START_LATE"
+    late = [np.roll(rows, -1, axis=0) for rows in TRUE]
+    assert probes.of_rows(0.1 * SAMPLES + 0.1, *late, 0.1, TRUE).code == "INITIAL_STATE_MISSING"
 
 
 HS = np.array([0.2, 0.11, 0.04, 0.03])

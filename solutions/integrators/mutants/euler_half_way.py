@@ -1,0 +1,5 @@
+"""The acceleration is taken half a step on."""
+
+
+def explicit_euler_step(accel, t, q, v, h):
+    return q + h * v, v + h * accel(t + h / 2, q + h / 2 * v, v)

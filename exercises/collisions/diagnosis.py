@@ -290,8 +290,22 @@ WORDS: dict[str, tuple[str, str]] = {
         "Use vectors: |dx + dv t| = ra + rb, squared, is a quadratic in t. No real root means a miss.",
     ),
     "MOMENT_TOO_COARSE": (
-        "The contact is found, but its time is only roughly right, as a search in small steps gives it.",
-        "No search is needed: the quadratic equation gives the moment to the last digit.",
+        "The contacts are found, but their times are only roughly right.",
+        "The quadratic equation gives the moment to the last digit. If you solve it, compare each term with "
+        "|dx + dv t|**2 = (ra + rb)**2; if you search in steps, solve it instead.",
+    ),
+    "CONTACTS_MISSED": (
+        "It returns None for bodies that do meet within the step.",
+        "They meet where the quadratic |dx + dv t|**2 = (ra + rb)**2 has a real root that is neither before "
+        "now nor after dt: compare each of your conditions for None with that.",
+    ),
+    "RADII_NOT_SQUARED": (
+        "In the quadratic, the sum of the radii stands where its square belongs.",
+        "At contact |dx + dv t| = ra + rb. Squared, that has (ra + rb)**2 on its right side.",
+    ),
+    "RADII_SQUARED_APART": (
+        "The radii are squared one by one and then added.",
+        "Add the radii first, then square: (ra + rb)**2 is more than ra**2 + rb**2.",
     ),
     "RETURNS_SHARE_OF_STEP": (
         "It returns the share of the step instead of seconds.",

@@ -219,20 +219,26 @@ def _moment(
     radii=lambda a, b: a + b,
     unit=lambda t, dt: t,
     none=None,
+    square=lambda reach: reach * reach,
+    overlap_square=None,
 ):
-    """The first (root -1) or second (+1) time at which the centres are as far apart as the radii reach."""
+    """The first (root -1) or second (+1) time at which the centres are as far apart as the radii reach.
+
+    ``square`` gives what stands for the square of the reach, ``overlap_square`` the same where they overlap.
+    """
+    overlap_square = overlap_square or square
 
     def time_of_impact(xa, va, ra, xb, vb, rb, dt):
         apart, closing = _array(xb) - _array(xa), _array(va) - _array(vb)
         reach, speed2 = radii(ra, rb), float(closing @ closing)
         nearing = float(apart @ closing)
-        if apart @ apart <= reach * reach and overlap != "ignored":
+        if apart @ apart <= overlap_square(reach) and overlap != "ignored":
             return 0.0 if nearing > 0 or overlap == "always" else none
         if speed2 == 0.0 or (nearing <= 0 and not past):
             return none
         nearest = nearing / speed2  # when the centres come closest; the rest is Pythagoras
         miss = apart - nearest * closing
-        room = reach * reach - float(miss @ miss)
+        room = square(reach) - float(miss @ miss)
         if room < 0:
             return none
         t = nearest + root * math.sqrt(room / speed2)
@@ -355,6 +361,12 @@ WRONG = {
         ("RADIUS_IGNORED", _moment(radii=lambda a, b: 0.0)),
         ("ONE_RADIUS_ONLY", _moment(radii=lambda a, b: a)),
         ("ONE_RADIUS_ONLY", _moment(radii=lambda a, b: b)),
+        ("RADII_NOT_SQUARED", _moment(square=lambda reach: reach)),
+        ("RADII_NOT_SQUARED", _moment(square=lambda reach: reach, overlap="ignored")),
+        ("RADII_NOT_SQUARED", _moment(square=lambda reach: reach, overlap="ignored", past=True)),
+        ("RADII_NOT_SQUARED", _moment(square=lambda reach: reach, overlap_square=lambda reach: reach**2)),
+        ("RADII_SQUARED_APART", _moment(radii=math.hypot)),
+        ("RADII_SQUARED_APART", _moment(radii=math.hypot, overlap="ignored")),
         ("RETURNS_SHARE_OF_STEP", _moment(unit=lambda t, dt: t / dt)),
         ("RETURNS_TIME_LEFT", _moment(unit=lambda t, dt: dt - t)),
     ],

@@ -188,12 +188,20 @@ def _moment(task, calls, values):
 def _coarse(calls, values):
     """Contacts that are missed, or found at about the right time."""
     pairs = [(RIGHT["time_of_impact"](*call), v, call[-1]) for call, v in zip(calls, values, strict=True)]
-    if any(value is None and right is not None for right, value, _ in pairs):
-        return "TUNNELS"
     if any(right is None and value is not None for right, value, _ in pairs):
-        return None
-    near = all(right is None or abs(right - value) <= 0.05 * dt for right, value, dt in pairs)
-    return "MOMENT_TOO_COARSE" if near else None
+        return (
+            "CONTACTS_MISSED"
+            if any(value is None and right is not None for right, value, _ in pairs)
+            else None
+        )
+    found = [pair for pair in pairs if None not in pair]
+    near = all(abs(value - right) <= 0.05 * dt for right, value, dt in found)
+    if len(found) == sum(right is not None for right, _, _ in pairs):
+        return "MOMENT_TOO_COARSE" if near else None
+    # A search in steps finds the others a little late.
+    late = all(value >= right - 1e-9 for right, value, _ in found)
+    rough = not all(_same(right, value) for right, value, _ in found)
+    return "TUNNELS" if near and late and rough else "CONTACTS_MISSED"
 
 
 @np.errstate(all="ignore")

@@ -268,3 +268,35 @@ def test_a_search_in_small_steps_is_told_from_a_missed_contact():
     rough = [t + 1e-3 for t in truth]
     assert probes.of_calls("time_of_impact", calls, rough).code == "MOMENT_TOO_COARSE"
     assert probes.of_calls("time_of_impact", calls, [None, *rough[1:]]).code == "TUNNELS"
+
+
+def test_contacts_that_are_missed_beside_exact_ones_are_not_laid_to_a_search():
+    calls = [draws.passing(np.random.default_rng(seed), 3, 0.3) for seed in range(4)]
+    truth = [formulas.RIGHT["time_of_impact"](*call) for call in calls]
+    assert probes.of_calls("time_of_impact", calls, [None, *truth[1:]]).code == "CONTACTS_MISSED"
+    early = [t - 1e-3 for t in truth]
+    assert probes.of_calls("time_of_impact", calls, [None, *early[1:]]).code == "CONTACTS_MISSED"
+
+
+@pytest.mark.parametrize("overlap", ["squared", "not squared", "ignored"])
+def test_radii_that_are_not_squared_are_told_from_a_search(checks, overlap):
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        x, v = np.subtract(xb, xa, dtype=float), np.subtract(vb, va, dtype=float)
+        a, b, c = v @ v, x @ v, x @ x - (ra + rb)
+        touch = {"squared": x @ x - (ra + rb) ** 2, "not squared": c, "ignored": math.inf}[overlap]
+        if b >= 0:
+            return None
+        if touch <= 0:
+            return 0.0
+        if b * b < a * c:
+            return None
+        t = float((-b - math.sqrt(b * b - a * c)) / a)
+        return t if 0 <= t <= dt else None
+
+    with pytest.raises(kit.CheckFailed) as failure:
+        checks["test_moment_of_contact"](Fake({"time_of_impact": time_of_impact}))
+    assert failure.value.finding.diagnosis == "RADII_NOT_SQUARED"
+    for share in (0.3, 0.7, 0.9):
+        calls = [draws.passing(np.random.default_rng(seed), 3, share) for seed in range(4)]
+        values = [time_of_impact(*call) for call in calls]
+        assert probes.of_calls("time_of_impact", calls, values).code == "RADII_NOT_SQUARED"

@@ -19,6 +19,7 @@ from course.authoring.quiz_audit import audit_quiz
 from course.authoring.report import AuditReport, Findings
 from course.authoring.variants import instructors, solutions_folder
 from course.errors import ContentError, NotFoundError
+from course.sandbox.loading import FOLDER, read_scene, scene_ids
 
 if TYPE_CHECKING:
     from course.authoring.report import Progress
@@ -49,7 +50,7 @@ def audit(
 
     Args:
         catalog: the course; it needs its solutions and hidden graders.
-        only: id of a lesson, an exercise or a question; None for everything.
+        only: id of a lesson, an exercise, a question or a scene; None for everything.
         on_progress: told at the start and after each submission how many of how many are graded.
         grade: gives the verdicts on submissions.
 
@@ -73,6 +74,7 @@ def audit(
         if path.is_file() and not blanks_in(path, findings):
             audit_lesson(catalog, lesson_id, findings, links)
     questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
+    scenes = _check_scenes(only, findings)
     read = [_read(catalog, exercise_id, findings) for exercise_id in exercises]
     candidates = [candidate for candidate in read if candidate is not None]
     graded, isolation = _grade(catalog, candidates, findings, on_progress, grade)
@@ -81,6 +83,7 @@ def audit(
         lessons=lessons,
         exercises=exercises,
         questions=questions,
+        scenes=scenes,
         checks=sum(len(candidate.checks) for candidate in candidates),
         graded=graded,
         isolation=isolation,
@@ -100,16 +103,29 @@ def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[
         return lessons, exercises
     chosen = tuple(i for i in lessons if i == only), tuple(i for i in exercises if i == only)
     questions = _questions(catalog)
-    if not any(chosen) and only not in questions:
+    if not any(chosen) and only not in (*questions, *scene_ids()):
         raise NotFoundError(
-            f"No lesson, exercise or question is called {only[:80]!r}.",
-            help=f"There are {', '.join([*lessons, *exercises, *questions])}.",
+            f"No lesson, exercise, question or scene is called {only[:80]!r}.",
+            help=f"There are {', '.join([*lessons, *exercises, *questions, *scene_ids()])}.",
         )
     return chosen
 
 
 def _questions(catalog: Catalog) -> list[str]:
     return sorted(path.stem for path in catalog.content.quiz.glob("*.toml"))
+
+
+def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
+    """The sandbox's scenes hold together, the formulas in their texts too; ids of those looked at."""
+    names = tuple(name for name in scene_ids() if only in {None, name})
+    for name in names:
+        path = FOLDER / f"{name}.toml"
+        try:
+            if not blanks_in(path, findings):
+                read_scene(path)
+        except ContentError as error:
+            findings.add_error(error)
+    return names
 
 
 def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate | None:

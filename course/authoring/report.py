@@ -47,7 +47,7 @@ class AuditReport:
 
     Attributes:
         problems: sorted by file and line; empty is what one hopes for.
-        lessons, exercises, questions: ids that were looked at.
+        lessons, exercises, questions, scenes: ids that were looked at.
         checks: number of checks, public and hidden.
         graded: number of submissions that were graded to find out.
         isolation: protection level they ran at; empty if none ran.
@@ -58,6 +58,7 @@ class AuditReport:
     lessons: tuple[str, ...] = ()
     exercises: tuple[str, ...] = ()
     questions: tuple[str, ...] = ()
+    scenes: tuple[str, ...] = ()
     checks: int = 0
     graded: int = 0
     isolation: str = ""

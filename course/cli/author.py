@@ -49,7 +49,10 @@ app.add_typer(_new, name="new", epilog="Example: course author new exercise pend
 
 
 def _any_id(incomplete: str) -> list[str]:
-    return [*lesson_ids(incomplete), *exercise_ids(incomplete)]
+    from course.sandbox.loading import scene_ids
+
+    scenes = [name for name in scene_ids() if name.startswith(incomplete)]
+    return [*lesson_ids(incomplete), *exercise_ids(incomplete), *scenes]
 
 
 @_new.command("exercise", epilog="Example: course author new exercise pendulum-clock")
@@ -133,7 +136,9 @@ def check(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="ID", help="A lesson or an exercise; everything if left out.", autocompletion=_any_id
+            metavar="ID",
+            help="A lesson, an exercise, a question or a scene; everything if left out.",
+            autocompletion=_any_id,
         ),
     ] = None,
 ) -> int:
@@ -141,7 +146,7 @@ def check(
 
     Links lead somewhere, hints and titles are there, points add up, stubs fail, solutions and accepted
     variants score full marks, and each mutant loses only its task's points, with the diagnosis it names.
-    Exit code 1 if something is wrong.
+    Scenes hold together, and every formula in their texts has a value. Exit code 1 if something is wrong.
     """
     from course.authoring.audit import audit
     from course.cli.here import load_catalog
@@ -162,7 +167,8 @@ def _show_report(console: Console, report: AuditReport) -> None:
         console.line((problem.fix, "dim"), indent=2)
     looked = (
         f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}, "
-        f"{counted(len(report.questions), 'question')}, {counted(report.checks, 'check')}, "
+        f"{counted(len(report.questions), 'question')}, {counted(len(report.scenes), 'scene')}, "
+        f"{counted(report.checks, 'check')}, "
         f"{counted(report.graded, 'submission')} graded"
     )
     level = f" at {report.isolation}" if report.isolation else ""

@@ -238,9 +238,10 @@ def _describe(console: Console, scene: Scene, place: int, *, whole: bool) -> Non
         return
     console.heading(scene.id, scene.title)
     console.line(" ".join(scene.note.split()))
-    if scene.prediction is not None:
-        console.item("guess", scene.prediction.question, width=5)
-    for parameter in _entry(scene).parameters:
+    entry = _entry(scene)
+    if entry.question:
+        console.item("guess", entry.question, width=5)
+    for parameter in entry.parameters:
         default = "each body's own" if parameter.default is None else f"{parameter.default:g}"
         unit = "" if parameter.unit == "1" else f" {parameter.unit}"
         span = f"{parameter.low:g} to {parameter.high:g}"
@@ -256,6 +257,7 @@ def _entry(scene: Scene) -> SandboxEntry:
     import math
 
     from course.cli.sandbox_schemas import SandboxEntry, SandboxParameter
+    from course.sandbox.loading import question, unchanged
     from course.sandbox.settings import SETTINGS
 
     wheels = next((body.wheels for body in scene.body if body.wheels), None)
@@ -283,7 +285,7 @@ def _entry(scene: Scene) -> SandboxEntry:
         id=scene.id,
         title=scene.title,
         teaches=scene.teaches,
-        question=scene.prediction.question if scene.prediction else "",
+        question=question(unchanged(scene)),
         note=" ".join(scene.note.split()),
         after=scene.after,
         duration=scene.duration,

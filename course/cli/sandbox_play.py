@@ -123,7 +123,9 @@ def _guess(console: Console, chosen: Chosen, wish: Wish) -> float | None:
         return wish.guess
     if not console.interactive or console.quiet:
         return None
-    console.line((asked.question, "bold"))
+    from course.sandbox.loading import question
+
+    console.line((question(chosen), "bold"))
     while True:
         answer = console.ask(f"Your guess in {asked.unit} (Enter for none): ")
         if not answer:

@@ -54,9 +54,10 @@ def _words(text: str) -> str:
 
 
 def _question(scene: Scene) -> str:
-    if scene.prediction is None:
-        return ""
-    return f"\n\n**Predict.** {_words(scene.prediction.question)}"
+    from course.sandbox.loading import question, unchanged
+
+    asked = question(unchanged(scene))
+    return f"\n\n**Predict.** {_words(asked)}" if asked else ""
 
 
 def play(scene_id: str, **settings: float) -> Any:

@@ -16,11 +16,24 @@ from course.sandbox.parts import layout
 from course.sandbox.rules import check_scene
 from course.sandbox.scene import Scene
 from course.sandbox.settings import SETTINGS, checked, number
+from course.sandbox.wording import fill, used
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
-__all__ = ["FOLDER", "Chosen", "choose", "scene_ids", "scenes", "values_of"]
+    from course.catalog.reading import Document
+
+__all__ = [
+    "FOLDER",
+    "Chosen",
+    "choose",
+    "question",
+    "scene_ids",
+    "scenes",
+    "unchanged",
+    "values_of",
+    "with_settings",
+]
 
 #: The course's own scenes.
 FOLDER = Path(__file__).parent / "scenes"
@@ -65,8 +78,7 @@ def read_scene(path: Path) -> Scene:
     Raises:
         ContentError: it is missing or wrong; names the line and the fix.
     """
-    document = read_document(path, Scene)
-    check_scene(document)
+    document = _read(path)
     if document.value.id != path.stem:
         document.fail(
             ("id",), f"the id is {document.value.id}, the file {path.name}.", fix="Make them the same."
@@ -100,7 +112,7 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
 
 def values_of(chosen: Chosen) -> dict[str, float]:
     """What a formula of the scene may name: its parameters, ``g``, ``step``, and fields of bodies."""
-    scene = chosen.scene
+    scene, parts = chosen.scene, layout(chosen.scene)
     gravity = chosen.settings.get("gravity", math.hypot(*scene.gravity))
     values = {name.replace("-", "_"): value for name, value in chosen.parameters.items()}
     values |= {
@@ -109,11 +121,11 @@ def values_of(chosen: Chosen) -> dict[str, float]:
         "iterations": chosen.settings.get("iterations", float(scene.iterations)),
         "duration": scene.duration,
     }
-    for part in layout(scene):
+    for part in parts:
         if part.wheels is not None:
             values["left"] = chosen.settings.get("left", part.wheels.left)
             values["right"] = chosen.settings.get("right", part.wheels.right)
-    for part in layout(scene):
+    for part in parts:
         name = part.name.replace("-", "_")
         own = {
             "x": part.x,
@@ -132,10 +144,84 @@ def values_of(chosen: Chosen) -> dict[str, float]:
     return values
 
 
+def unchanged(scene: Scene) -> Chosen:
+    """A course's scene with nothing asked to be different."""
+    ready, parameters, _ = _put_in(scene, {})
+    return Chosen(scene=ready, parameters=parameters, settings={}, path=FOLDER / f"{scene.id}.toml")
+
+
+def with_settings(chosen: Chosen, settings: Mapping[str, float]) -> Chosen:
+    """The same with the settings that are in force in its world by now."""
+    return msgspec.structs.replace(chosen, settings=dict(settings))
+
+
+def question(chosen: Chosen) -> str:
+    """What the scene asks, with the numbers it has; "" if it asks nothing.
+
+    Raises:
+        UsageError: a formula in it has no value for these settings.
+    """
+    asked = chosen.scene.prediction
+    return "" if asked is None else fill(asked.question, values_of(chosen))
+
+
+def _read(path: Path) -> Document[Scene]:
+    document = read_document(path, Scene)
+    check_scene(document)
+    _check_formulas(document)
+    return document
+
+
+def _check_formulas(document: Document[Scene]) -> None:
+    """What is said, and when is looked, have values: as the scene is, and at both ends of what can be set."""
+    scene = document.value
+    texts: dict[tuple[str | int, ...], str] = {
+        ("probe", i, "time"): f"{{{probe.time}}}"
+        for i, probe in enumerate(scene.probe)
+        if isinstance(probe.time, str)
+    }
+    if scene.prediction is not None:
+        texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
+    texts = {where: text for where, text in texts.items() if "{" in text}
+    if not texts:
+        return
+    named = {name.rpartition(".")[2] for text in texts.values() for name in used(text)}
+    for settings in _ends(scene, named):
+        try:
+            ready, parameters, rest = _put_in(scene, dict(settings))
+        except UsageError:
+            continue  # that end is out of reach, as whoever asks for it is told
+        values = values_of(Chosen(scene=ready, parameters=parameters, settings=rest, path=document.path))
+        for where, text in texts.items():
+            try:
+                fill(text, values)
+                if where[-1] == "time" and not settings:
+                    _check_time(document, where, evaluate(text[1:-1], values))
+            except UsageError as error:
+                there = "".join(f" at {name}={value:g}" for name, value in settings.items())
+                document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
+
+
+def _check_time(document: Document[Scene], where: tuple[str | int, ...], time: float) -> None:
+    if not 0.0 <= time <= document.value.duration:
+        document.fail(where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`.")
+
+
+def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
+    """No settings, then each alone at either end of its range, if formulas use these names."""
+    yield {}
+    for parameter in scene.parameter:
+        yield {parameter.name: parameter.low}
+        yield {parameter.name: parameter.high}
+    for name, setting in SETTINGS.items():
+        if {"gravity": "g"}.get(name, name) in named:
+            yield {name: setting.low}
+            yield {name: setting.high}
+
+
 def _read_own(path: Path) -> Scene:
     try:
-        document = read_document(path, Scene)
-        check_scene(document)
+        document = _read(path)
     except ContentError as error:
         if not path.is_file():
             raise NotFoundError(

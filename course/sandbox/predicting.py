@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.sandbox.expression import evaluate
+from course.sandbox.wording import fill
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,14 +22,14 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     """The three numbers.
 
     Attributes:
-        question, unit: as the scene asks.
+        question, unit: as the scene asks, with the numbers of this run.
         guess: the student's; None if none was made.
         theory: what the formula gives.
         simulation: what the run gave; "nan" if what was asked for did not happen.
         guess_right: the guess is close to theory or simulation, whichever is nearer; None without a guess.
         agree: theory and simulation are as close as the scene says they should be.
         verdict: one sentence.
-        why: the reasoning behind the formula.
+        why: the reasoning behind the formula, with the numbers of this run.
     """
 
     question: str
@@ -50,17 +51,17 @@ def compare(
     Args:
         asked: the scene's question.
         simulation: the number the run gave.
-        values: what the formula's names stand for.
+        values: what the names in formula and texts stand for.
         guess: the student's number.
 
     Raises:
-        UsageError: the formula has no value for these parameters.
+        UsageError: the formula, or one in the texts, has no value for these parameters.
     """
     theory = evaluate(asked.theory, values)
     agree = abs(simulation - theory) <= max(asked.agrees * abs(theory), asked.agrees_abs)
     right = None if guess is None else _near(asked, guess, theory) or _near(asked, guess, simulation)
     return Comparison(
-        question=asked.question,
+        question=fill(asked.question, values),
         unit=asked.unit,
         guess=guess,
         theory=theory,
@@ -68,7 +69,7 @@ def compare(
         guess_right=right,
         agree=agree,
         verdict=_verdict(asked, guess, right, theory, simulation, agree),
-        why=asked.why,
+        why=fill(asked.why, values),
     )
 
 
@@ -85,8 +86,8 @@ def _verdict(
         text = "Theory and simulation agree."
     else:
         text = (
-            "Theory and simulation do not agree here, and theory is about the world: "
-            "look for what the simulation leaves out."
+            "Theory and simulation do not agree here: one of them leaves something out. "
+            "Look for what, and which of the two speaks of the world."
         )
     if guess is None:
         return text

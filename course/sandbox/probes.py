@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from course.sandbox.expression import evaluate
+from course.sandbox.loading import values_of, with_settings
 from course.sandbox.parts import layout
 from course.sandbox.rules import matching
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from course.sandbox.events import Event
     from course.sandbox.ledger import Block, Floats
+    from course.sandbox.loading import Chosen
     from course.sandbox.scene import Probe, Scene
     from course.sandbox.world import World
 
@@ -28,15 +31,17 @@ class Probes:
 
     Args:
         world: before its first step. It must keep a receipt: that is where states of each step come from.
+        chosen: its scene, with the parameters that went into it.
     """
 
-    def __init__(self, world: World) -> None:
-        self._world = world
+    def __init__(self, world: World, chosen: Chosen) -> None:
+        self._world, self._chosen = world, chosen
         self._scene: Scene = world.scene
         names = tuple(part.name for part in layout(self._scene))
         self._of = {probe.name: matching(probe.of, names) for probe in self._scene.probe}
         self._start: dict[str, float] = {}
         self._found: dict[str, float] = {}
+        self._times: dict[str, float] | None = None
         state = world.state()
         for probe in self._scene.probe:
             self._start[probe.name] = self._value(probe, state)
@@ -68,19 +73,31 @@ class Probes:
 
     def _watch(self, block: Block) -> None:
         """Pick what probes with a moment of their own are after."""
+        if self._times is None:
+            self._times = self._moments()
         for probe in self._scene.probe:
             if probe.when in {"max", "min"}:
                 for state in block.states:
                     self._take(probe, self._value(probe, state))
             elif probe.when == "at" and probe.name not in self._found:
                 # The first step that ends there or later; times are exact multiples, but for rounding.
-                rows = np.flatnonzero(block.times >= (probe.time or 0.0) - 1e-9)
+                rows = np.flatnonzero(block.times >= self._times[probe.name] - 1e-9)
                 if len(rows):
                     self._found[probe.name] = self._value(probe, block.states[rows[0]])
             elif probe.when == "after" and probe.name not in self._found:
                 row = self._first_contact(probe, block)
                 if row is not None:
                     self._found[probe.name] = self._value(probe, block.states[row])
+
+    def _moments(self) -> dict[str, float]:
+        """When probes look, by the settings that time began to pass with: until then they may change."""
+        given = {p.name: p.time for p in self._scene.probe if p.time is not None}
+        values: Mapping[str, float] = {}
+        if any(isinstance(time, str) for time in given.values()):
+            values = values_of(with_settings(self._chosen, self._world.settings))
+        return {
+            name: evaluate(time, values) if isinstance(time, str) else time for name, time in given.items()
+        }
 
     def _first_contact(self, probe: Probe, block: Block) -> int | None:
         """The step of the block in which the probe's two met."""

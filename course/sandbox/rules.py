@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.sandbox import expression
+from course.sandbox import expression, wording
 from course.sandbox.parts import layout, signed_area
 from course.sandbox.settings import SETTINGS
 
@@ -190,7 +190,7 @@ def _can_be_set(scene: Scene, place: str) -> bool:
     return isinstance(target, int | float)
 
 
-def _names(document: Document[Scene], where: tuple[str, ...], formula: str) -> frozenset[str]:
+def _names(document: Document[Scene], where: tuple[str | int, ...], formula: str) -> frozenset[str]:
     try:
         return expression.names(formula)
     except UsageError as error:
@@ -216,7 +216,9 @@ def _check_probe(document: Document[Scene], i: int, probe: Probe, bodies: int) -
     where = ("probe", i)
     if (probe.when == "at") != (probe.time is not None):
         document.fail(where, 'a probe needs `time` exactly when `when` is "at".', fix="Add it, or remove it.")
-    if probe.time is not None and probe.time > document.value.duration:
+    if isinstance(probe.time, str):
+        _check_names(document, (*where, "time"), _names(document, (*where, "time"), probe.time))
+    elif probe.time is not None and probe.time > document.value.duration:
         document.fail((*where, "time"), "that is after the run has ended.", fix="Make `duration` longer.")
     if (probe.quantity == "count") != (probe.region is not None):
         document.fail(
@@ -239,14 +241,25 @@ def _check_prediction(document: Document[Scene]) -> None:
         document.fail(
             ("prediction",), "how far may theory be off?", fix="Add `agrees` (a fraction) or `agrees_abs`."
         )
-    used = _names(document, ("prediction", "theory"), asked.theory)
+    _check_names(document, ("prediction", "theory"), _names(document, ("prediction", "theory"), asked.theory))
+    for key in ("question", "why"):
+        try:
+            used = wording.used(getattr(asked, key))
+        except UsageError as error:
+            document.fail(("prediction", key), error.message, fix=error.help)
+        _check_names(document, ("prediction", key), used)
+
+
+def _check_names(document: Document[Scene], where: tuple[str | int, ...], used: frozenset[str]) -> None:
+    """That a formula uses nothing but what ``loading.values_of`` gives."""
+    scene = document.value
     bodies = {part.name.replace("-", "_") for part in layout(scene)}
     known = {parameter.name.replace("-", "_") for parameter in scene.parameter} | set(WORDS)
     for name in sorted(used):
         body, _, field = name.partition(".")
         if (field and (body not in bodies or field not in FIELDS)) or (not field and name not in known):
             document.fail(
-                ("prediction", "theory"),
+                where,
                 f"the formula uses {name}, which is nothing.",
                 fix=f"Use {', '.join(sorted(known))}, or a body's {', '.join(FIELDS)}.",
             )

@@ -89,7 +89,7 @@ def run(
         watch: called with the world before it starts.
     """
     world = World(chosen.scene, chosen.settings)
-    probes = Probes(world)
+    probes = Probes(world, chosen)
     if watch is not None:
         watch(world)
     until = chosen.scene.duration if duration is None else duration
@@ -123,7 +123,9 @@ def finish(
     asked = chosen.scene.prediction
     comparison = None
     if asked is not None:
-        comparison = compare(asked, answers[asked.probe], values_of(chosen), guess)
+        # The run may have been told to be shorter or longer than the scene, and ends with a whole step.
+        values = values_of(chosen) | {"duration": world.t}
+        comparison = compare(asked, answers[asked.probe], values, guess)
     return Run(
         duration=world.t,
         steps=world.steps,

@@ -187,7 +187,7 @@ class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         of: whose; several bodies (``ball-*``) for a total, a count, a mean or a spread.
         other: the partner of a contact.
         when: at which moment; ``after`` is just after the first contact of ``of`` and ``other``.
-        time: for ``when = "at"``, in s.
+        time: for ``when = "at"``, in s; a number, or a formula in what ``theory`` may use: ``"step"``.
         region: left, bottom, right, top, in m.
         change: since the start, instead of the value itself.
         scale: the value is multiplied by this, which is how it gets another unit.
@@ -213,7 +213,7 @@ class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     of: Pattern
     other: Name | None = None
     when: Literal["start", "end", "max", "min", "at", "after"] = "end"
-    time: Annotated[float, Meta(ge=0, le=1e5)] | None = None
+    time: Annotated[float, Meta(ge=0, le=1e5)] | Text | None = None
     region: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = None
     change: bool = False
     unit: str = ""
@@ -222,6 +222,9 @@ class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 class Prediction(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A number to guess before the run.
+
+    ``question`` and ``why`` hold formulas for the numbers that settings change: ``{speed * step:.2f}``, in
+    the names that ``theory`` may use; see ``course.sandbox.wording``.
 
     Attributes:
         question: asks for it.

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from course.errors import UsageError
 from course.sandbox.describe import sentence
-from course.sandbox.loading import values_of
+from course.sandbox.loading import question, values_of, with_settings
 from course.sandbox.predicting import compare
 from course.sandbox.probes import Probes
 
@@ -123,6 +124,7 @@ class Experiment:
         self._probes: Probes | None = None
         self._events: list[Event] = []
         self._comparison: dict[str, Any] | None = None
+        self._asked: tuple[dict[str, float] | None, str] = (None, "")
         self.guess = guess
         self._answered = guess is not None
         #: "none" (nothing is asked), "ask", "run", "touched" (not comparable any more) or "done".
@@ -135,7 +137,7 @@ class Experiment:
         self._events = []
         self._comparison = None
         self._world.on_block[:] = self._listeners
-        self._probes = Probes(self._world)
+        self._probes = Probes(self._world, self._chosen)
 
     def answer(self, guess: float | None) -> None:
         """The guess, or that there is none; it counts for the runs from here on."""
@@ -179,8 +181,8 @@ class Experiment:
         if asked is None or probes is None or left is None or left > 1e-9:
             return False
         answer = probes.read(self._events)[asked.probe]
-        now = msgspec.structs.replace(self._chosen, settings=dict(self._world.settings))
-        comparison = compare(asked, answer, values_of(now), self.guess)
+        values = values_of(self._now()) | {"duration": self._world.t}
+        comparison = compare(asked, answer, values, self.guess)
         self._comparison = msgspec.to_builtins(comparison)
         self.stage = "done"
         self._events = []
@@ -189,10 +191,26 @@ class Experiment:
             self._keep(comparison)
         return True
 
+    def _now(self) -> Chosen:
+        """The scene with the settings in force."""
+        return with_settings(self._chosen, self._world.settings)
+
+    @property
+    def question(self) -> str:
+        """What the scene asks, with the settings in force; "" if it asks nothing."""
+        if self._asked[0] != self._world.settings:  # a layout of every body, and pages ask in each frame
+            try:
+                text = question(self._now())
+            except UsageError:  # at these settings together; the formula itself is the honest text
+                text = self._chosen.scene.prediction.question if self._chosen.scene.prediction else ""
+            self._asked = dict(self._world.settings), text
+        return self._asked[1]
+
     def report(self) -> dict[str, Any]:
         """For pages."""
         return {
             "stage": self.stage,
+            "question": self.question,
             "guess": self.guess,
             "comparison": self._comparison,
         }

@@ -265,7 +265,9 @@ class SandboxApp(Controls):
             if guess is not None:
                 self.say(f"Your guess: {guess:g} {'' if asked.unit == '1' else asked.unit}")
 
-        self.push_screen(Ask(self.chosen.scene, asked, calm=self.calm), answered)
+        self.push_screen(
+            Ask(self.chosen.scene, self.experiment.question, asked.unit, calm=self.calm), answered
+        )
 
     def compare(self) -> None:
         """Theory, guess and simulation side by side."""
@@ -294,7 +296,7 @@ class SandboxApp(Controls):
             self.say("A hand was in it, so this run is compared with nothing. r: once more from the start.")
         else:
             guess = "no guess" if self.experiment.guess is None else f"your guess {self.experiment.guess:g}"
-            page: Page = [(clean(asked.question), ""), "", f"{guess}, {clean(asked.unit)}", ""]
+            page: Page = [(clean(self.experiment.question), ""), "", f"{guess}, {clean(asked.unit)}", ""]
             self.push_screen(Told("The question", page))
 
     def action_help(self) -> None:

@@ -18,7 +18,7 @@ from course.sandbox.views.terminal_words import KEYS, clean
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from course.sandbox.scene import Prediction, Scene
+    from course.sandbox.scene import Scene
 
 __all__ = ["Ask", "Page", "Told", "comparison", "guess_of", "help_pages"]
 
@@ -49,9 +49,9 @@ class Ask(ModalScreen[float | None]):
     DEFAULT_CSS = _BOX % ("Ask", "Ask") + "Ask Input { width: 100%; } Ask #wrong { height: auto; }"
     BINDINGS: ClassVar[list[Any]] = [Binding("escape", "without", show=False)]
 
-    def __init__(self, scene: Scene, asked: Prediction, *, calm: bool) -> None:
+    def __init__(self, scene: Scene, question: str, unit: str, *, calm: bool) -> None:
         super().__init__()
-        self._scene, self._asked, self._calm = scene, asked, calm
+        self._scene, self._question, self._unit, self._calm = scene, question, unit, calm
 
     def compose(self) -> ComposeResult:
         """Title, what to know, the question and a place for the answer."""
@@ -59,8 +59,8 @@ class Ask(ModalScreen[float | None]):
             box.border_title = "Before it runs: your guess"
             box.border_subtitle = "Enter: run   Escape: run without a guess"
             yield Static(Text(clean(self._scene.note)))
-            yield Static(Text(f"\n{clean(self._asked.question)}", style="bold"))
-            entry = Input(placeholder=f"a number in {clean(self._asked.unit)}", id="guess")
+            yield Static(Text(f"\n{clean(self._question)}", style="bold"))
+            entry = Input(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
             yield entry
             yield Static("", id="wrong", markup=False)

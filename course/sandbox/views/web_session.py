@@ -350,7 +350,6 @@ class Session:
             "duration": scene.duration,
             "above": scene.floor is not None or not any(scene.gravity),
             "knobs": [msgspec.to_builtins(setting) for setting in offered.values()],
-            "question": asked.question if asked else "",
             "unit": asked.unit if asked else "",
             "events": self._teller.told(),
             "status": self._status(),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from course.cli.app import run
+from course.sandbox.loading import FOLDER
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +22,7 @@ def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[st
 
 def test_a_right_course_exits_with_zero(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["author", "check"]) == 0
-    counts = "2 lessons, 2 exercises, 0 questions, 6 checks, 14 submissions graded"
+    counts = "2 lessons, 2 exercises, 0 questions, 13 scenes, 6 checks, 14 submissions graded"
     assert f"All is well: {counts}" in capsys.readouterr().out
 
 
@@ -44,6 +45,20 @@ def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.Captur
             "help": "Write 1.",
         }
     ]
+
+
+def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
+    mini: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (FOLDER / "head-on.toml").read_text("utf-8").replace("comes at {speed}", "comes at {sped}")
+    (tmp_path / "head-on.toml").write_text(text, "utf-8")
+    monkeypatch.setattr("course.sandbox.loading.FOLDER", tmp_path)
+    monkeypatch.setattr("course.authoring.audit.FOLDER", tmp_path)
+    code, body = answer(capsys, "author", "check", "head-on")
+    (problem,) = body["problems"]
+    assert (code, problem["file"]) == (1, str(tmp_path / "head-on.toml"))
+    assert text.split("\n")[problem["line"] - 1].startswith("question = ")
+    assert "sped" in problem["message"]
 
 
 def test_a_broken_syllabus_is_reported_and_not_a_crash(

@@ -42,7 +42,7 @@ def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) ->
     data = json.loads(sandbox("list", "incline", "--json", cwd=tmp_path).stdout)
     assert data["schema"] == "course.sandbox-list/1"
     (scene,) = data["scenes"]
-    assert scene["question"]
+    assert "30 degrees steep, the friction of the pair 0.4" in scene["question"]
     assert {"angle", "gravity", "step"} <= {p["name"] for p in scene["parameters"]}
 
 
@@ -51,6 +51,18 @@ def test_a_piped_play_runs_unseen_and_compares(tmp_path: Path) -> None:
     assert "your guess: 1.5 m/s" in out
     assert "simulation: 2 m/s" in out
     assert "25 % too low" in out
+
+
+def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Path) -> None:
+    options = ["--headless", "--guess", "0.04", "--set", "step=0.0004"]
+    data = json.loads(sandbox("play", "bullet-wall", *options, "--json", cwd=tmp_path).stdout)
+    said = data["prediction"]
+    assert (said["theory"], said["simulation"]) == (pytest.approx(0.04), pytest.approx(0.04))
+    assert said["guess_right"]
+    assert "one step of 0.0004 s" in said["question"]
+    out = sandbox("play", "head-on", "--set", "restitution=0", cwd=tmp_path).stdout
+    assert "nothing is lost" not in out
+    assert "restitution of the pair is 0." in " ".join(out.split())
 
 
 def test_describe_tells_the_run(tmp_path: Path) -> None:

@@ -435,7 +435,7 @@ class View {
     this.state = null;
     this.status(scene.status);
     this.fit();
-    if (this.still && !scene.question && !scene.status.paused) this.send({ do: "pause", on: true });
+    if (this.still && !scene.status.question && !scene.status.paused) this.send({ do: "pause", on: true });
   }
 
   embody({ version, bodies }) {
@@ -486,6 +486,10 @@ class View {
     this.speedShown.textContent = `${plain(status.speed)}×`;
     this.speed.setAttribute("aria-valuetext", `${plain(status.speed)} times real time`);
     if (!before || before.stage !== status.stage || before.guess !== status.guess) this.predict(status);
+    else if (before.question !== status.question) {
+      const asked = this.card.querySelector(".question"); // beside a field that somebody may be typing in
+      if (asked) asked.textContent = status.question;
+    }
     this.changed = true;
   }
 
@@ -563,7 +567,7 @@ class View {
       } else this.send({ do: "guess", value });
     };
     return [
-      h("p", { class: "question" }, scene.question),
+      h("p", { class: "question" }, this.state.question),
       h(
         "form",
         { onsubmit: answer },

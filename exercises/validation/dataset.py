@@ -9,6 +9,8 @@ import numpy as np
 #: A cart that is pushed at random and whose position is measured: step (s), std of the acceleration's kicks
 #: (m/s²) and of the measurement (m).
 DT, PUSH, NOISE = 0.1, 0.5, 0.05
+#: What the slow errors lie around, in m.
+BIAS = 0.02
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ def track(believed_noise, runs=25, n=120, seed=11):
     return Track(t, np.stack(err, 1), np.array(covariances), np.stack(nu, 1), np.array(S))
 
 
-def slow_errors(n=400, keep=0.9, bias=0.02, size=0.05, seed=4):
+def slow_errors(n=400, keep=0.9, bias=BIAS, size=0.05, seed=4):
     """Errors (m) that each keep a share of the one before, around a bias."""
     rng = np.random.default_rng(seed)
     e = np.empty(n)

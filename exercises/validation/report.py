@@ -38,7 +38,7 @@ def _recordings():
 def _errors(submission, title):
     recorded = _recordings()[:1]
     real = recorded[0].y
-    rows, panels = [], []
+    rows, panels, seen = [], [], []
     for name, mass in (("good twin", twins.MASS), ("a fifth too heavy", 1.2 * twins.MASS)):
         run = twins.simulated(recorded, mass=mass)["runs"][0]
         t, y, half = run["t"], run["y"], 1.96 * run["sigma"]
@@ -52,6 +52,10 @@ def _errors(submission, title):
             kit.Series("claimed: 1.96 sigma" if panels else "", t, -half, kind="band", high=half),
         )
         panels.append(kit.Panel("time / s", "speed error / (m/s)", series, title=name))
+        seen.append(
+            f"{name}: errors up to {np.max(np.abs(e)):.2f} m/s, a band of up to {np.max(half):.2f} m/s to "
+            f"either side; your rmse is {size:.3f} m/s, and your coverage finds {inside:.1%} inside."
+        )
     return kit.Section(
         title,
         text="A cart was driven for 9 s and its speed recorded. Two twins simulate the same drive, and both "
@@ -61,8 +65,7 @@ def _errors(submission, title):
         plot=kit.Plot(
             title="Simulated minus real speed, and what the twin claims",
             panels=tuple(panels),
-            description="Above, the errors of the good twin fill their band and hardly leave it. Below, "
-            "those of the heavy twin swing far out of the same band, up and down.",
+            description=f"Error over time about zero, and the band. Above, {seen[0]} Below, {seen[1]}",
         ),
     )
 
@@ -70,7 +73,7 @@ def _errors(submission, title):
 def _consistency(submission, title):
     runs = 25
     lo, hi = kit.as_vector(submission.call("consistency_band", 2, runs, 0.05), 2, "(lo, hi)")
-    rows, series = [], []
+    rows, series, seen = [], [], []
     for name, factor in (("right", 1.0), ("half", 0.5), ("twice", 2.0)):
         track = dataset.track(factor * dataset.NOISE, runs)
         n = len(track.t)
@@ -82,6 +85,12 @@ def _consistency(submission, title):
         within = float(np.mean((lo <= mean) & (mean <= hi)))
         rows.append((name, f"{mean.mean():.2f}", f"{within:.0%}", f"{nis:.2f}"))
         series.append(kit.Series(f"noise believed: {name}", track.t, mean))
+        above, below = float(np.mean(mean > hi)), float(np.mean(mean < lo))
+        seen.append(
+            f"With the noise believed to be {name}, your NEES is {mean.mean():.2f} on average, from "
+            f"{mean.min():.2f} to {mean.max():.2f}; at {within:.0%} of the moments it is in the band, at "
+            f"{above:.0%} above and at {below:.0%} below."
+        )
     series += [
         kit.Series("95 % band", [], lo, kind="level", quiet=True),
         kit.Series("", [], hi, kind="level", quiet=True),
@@ -89,17 +98,15 @@ def _consistency(submission, title):
     return kit.Section(
         title,
         text=f"Three filters track the same {runs} runs of a cart; they differ in how noisy they believe "
-        f"the sensor to be. Honest errors give an average NEES of 2, between {lo:.2f} and {hi:.2f} at "
-        "95 % of the moments, and an average NIS of 1. The filter that trusts its sensor too much is far "
-        "above.",
+        "the sensor to be. Honest errors have an average NEES of 2, inside the right band at 95 % of the "
+        f"moments, and an average NIS of 1; yours are below, and your band is from {lo:.2f} to {hi:.2f}. A "
+        "filter that trusts its sensor too much belongs far above it.",
         columns=("noise believed", "mean NEES", "moments in the band", "mean NIS"),
         rows=tuple(rows),
         plot=kit.Plot(
             title="NEES over time, averaged over 25 runs",
             panels=(kit.Panel("time / s", "NEES", tuple(series)),),
-            description="The filter with the right noise stays around 2, mostly inside the band. The one "
-            "that believes in half the noise stays far above the band, the one with twice the noise at its "
-            "lower edge.",
+            description=f"Three curves and your band from {lo:.2f} to {hi:.2f}. {' '.join(seen)}",
         ),
     )
 
@@ -113,12 +120,14 @@ def _intervals(submission, title):
         [kit.as_vector(v, 2, "(lo, hi)") for v in submission.call_each("block_bootstrap_ci", calls)]
     )
     words = [str(block) for block in blocks]
+    widths = 1000 * (ends[:, 1] - ends[:, 0])
+    holding = int(np.sum((ends[:, 0] <= dataset.BIAS) & (ends[:, 1] >= dataset.BIAS)))
     return kit.Section(
         title,
-        text="400 errors with a bias of 0.02 m, each of which keeps 0.9 of the one before. With blocks of "
-        "one sample the interval pretends that all 400 are independent; it is narrow, and wrong. It grows "
-        "with the block until the blocks are longer than the memory of the errors. With very long blocks "
-        "there are too few of them to draw from.",
+        text=f"400 errors with a bias of {dataset.BIAS} m, each of which keeps 0.9 of the one before. With "
+        "blocks of one sample an interval pretends that all 400 are independent; it has to come out narrow, "
+        "and wrong, and to grow with the block until the blocks are longer than the memory of the errors. "
+        "With very long blocks there are too few of them to draw from.",
         columns=("block", "from", "to", "width"),
         rows=tuple(
             (word, f"{1000 * lo:+.1f} mm", f"{1000 * hi:+.1f} mm", f"{1000 * (hi - lo):.1f} mm")
@@ -134,13 +143,25 @@ def _intervals(submission, title):
                         kit.Series(
                             "interval", words, np.full(7, e.mean()), "interval", ends[:, 0], ends[:, 1]
                         ),
-                        kit.Series("true bias", [], 0.02, kind="level", quiet=True),
+                        kit.Series("true bias", [], dataset.BIAS, kind="level", quiet=True),
                     ),
                 ),
             ),
-            description="Seven intervals around the same mean. That for single samples is the shortest; they "
-            "grow up to blocks of about 40 samples, to some three or four times that length.",
+            description=f"Seven intervals of yours, and the true bias of {1000 * dataset.BIAS:.0f} mm, which "
+            f"{holding} of them hold. {_compared(widths, words)}",
         ),
+    )
+
+
+def _compared(widths, blocks):
+    """Which interval is how wide, in words."""
+    short, long = int(np.argmin(widths)), int(np.argmax(widths))
+    if widths[long] - widths[short] < 0.05:  # mm; less is not shown
+        return f"All are {widths[0]:.1f} mm wide."
+    return (
+        f"That for single samples is {widths[0]:.1f} mm wide; the narrowest, {widths[short]:.1f} mm, is "
+        f"that for blocks of {blocks[short]}, the widest, {widths[long]:.1f} mm, that for blocks of "
+        f"{blocks[long]}."
     )
 
 

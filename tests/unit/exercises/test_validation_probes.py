@@ -203,6 +203,64 @@ def test_the_filter_of_the_report_is_honest_only_with_the_right_noise():
     assert average(2.0) < 1.4
 
 
+class Fake:
+    """A submission that runs here: the solution, or a mutant of it."""
+
+    def __init__(self, mutant=""):
+        folder = ROOT / "solutions" / "validation"
+        path = folder / "mutants" / f"{mutant}.py" if mutant else folder / "validation.py"
+        self._functions = {}
+        exec(compile((folder / "validation.py").read_text(), "validation.py", "exec"), self._functions)
+        if mutant:
+            exec(compile(path.read_text(), path.name, "exec"), self._functions)
+
+    def call(self, name, *arguments):
+        return self._functions[name](*arguments)
+
+    def call_each(self, name, calls):
+        return [self.call(name, *arguments) for arguments in calls]
+
+
+def descriptions(mutant=""):
+    """What the report says of its figures, by section."""
+    shown = kit.companion("validation", "report").report(Fake(mutant)).sections
+    return [section.plot.description if section.plot else "" for section in shown]
+
+
+def test_the_report_describes_the_figures_of_right_code():
+    errors, consistency, intervals, _ = descriptions()
+    assert re.search(
+        r"good twin: .* your coverage finds 9\d\.\d% inside\. Below, a fifth too heavy: ", errors
+    )
+    right, half, twice = re.findall(r"is (\d\.\d\d) on average", consistency)
+    assert float(right) == pytest.approx(2.0, abs=0.3)
+    assert float(half) > 4.0
+    assert float(twice) < 1.5
+    assert "noise believed to be right" in consistency
+    one, narrowest, widest = (float(x) for x in re.findall(r"(\d+\.\d) mm", intervals))
+    assert one == narrowest < widest / 2.5
+
+
+@pytest.mark.parametrize(
+    ("mutant", "place", "now"),
+    [
+        ("coverage_outside", 0, r"good twin: .*finds \d\.\d% inside"),
+        ("rmse_without_root", 0, r"good twin: .*your rmse is 0\.00\d m/s"),
+        ("nees_divided", 1, r"right, your NEES is [01]\.\d\d on average.* 0% above and at (9\d|100)% below"),
+        ("band_of_the_sum", 1, r"your band from 3\d\.\d\d to 7\d\.\d\d.* at 0% above and at 100% below"),
+        ("bootstrap_own_block", 2, r"7 of them hold\. All are 24\.\d mm wide"),
+        ("bootstrap_iid", 2, r"0 of them hold\. All are 10\.\d mm wide"),
+    ],
+)
+def test_the_report_describes_the_figures_that_wrong_code_gives(mutant, place, now):
+    """The words are the figure for whoever does not see it: they follow the rows, not the right answer."""
+    said = descriptions(mutant)[place]
+    assert said != descriptions()[place]
+    assert re.search(now, said), said
+    for promise in ("stays around 2", "mostly inside", "hardly leave", "three or four times"):
+        assert promise not in said
+
+
 def test_every_hidden_check_hides_its_numbers_in_fields():
     """Messages and advice are literal text: nothing is formatted into them but names of arguments."""
     allowed = {"key", "name", "task", "function", "signature"}

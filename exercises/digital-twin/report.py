@@ -183,9 +183,17 @@ def _at_rest(submission):
         plot=kit.Plot(
             "White noise hides a bias that wanders",
             (kit.Panel("time / s", "turn rate / (rad/s)", series),),
-            "Noisy samples around a bias that wanders off over two minutes.",
+            f"Samples over two minutes, {np.std(still - bias):.3g} rad/s (std) about a bias that starts at "
+            f"{bias[0]:.3g} rad/s, ends at {bias[-1]:.3g} and lies between {bias.min():.3g} and "
+            f"{bias.max():.3g}.",
         ),
     )
+
+
+def _crest(signal):
+    """Where a signal of two swings is largest in the second one."""
+    half = len(signal) // 2
+    return half + int(np.argmax(signal[half:]))
 
 
 def _actuators(submission):
@@ -222,7 +230,10 @@ def _actuators(submission):
         plot=kit.Plot(
             "What is commanded is not what happens",
             (above, below),
-            "Upper panel: the motor's speed is flatter than the command and behind it, and later still after "
-            "the delay. Lower panel: behind the gear the angle rests at each turning point.",
+            "Upper panel, the second of two swings: the command is largest at "
+            f"{t[_crest(command)]:.2f} s, with {command[_crest(command)]:.1f} rad/s, your motor at "
+            f"{t[_crest(speed)]:.2f} s, with {speed[_crest(speed)]:.1f}, and your delayed signal at "
+            f"{t[_crest(late)]:.2f} s. Lower panel: the angle covers {np.ptp(angle):.2f} rad before the gear "
+            f"and {np.ptp(played):.2f} rad behind it.",
         ),
     )

@@ -234,6 +234,20 @@ def test_the_report_predicts_pymunk_s_difference_to_the_digit():
         assert row[2] == row[3]
 
 
+def test_the_report_describes_the_differences_that_are_drawn():
+    def late(name, *args):
+        t, x, v = getattr(SOLUTION, name)(*args)
+        return t, x + 0.25, v
+
+    submission = Fake({})
+    submission.call = late
+    for shown, wrong in ((report.report(Fake(vars(SOLUTION))), False), (report.report(submission), True)):
+        head_on, drop = (section.plot.description for section in shown.sections[2:])
+        assert ("at most 0.00 mm up to the contact" in head_on) is not wrong
+        assert ("at most 250.00 mm up to the contact" in head_on) is wrong
+        assert ("ms: -2" in drop) is wrong
+
+
 def test_the_report_draws_the_program_that_is_still_to_be_mended():
     stub = module(HERE / "collisions.py")
 

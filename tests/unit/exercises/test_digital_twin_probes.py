@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -385,6 +386,33 @@ def test_late_measurements_arrive_out_of_order_and_the_truth_is_that_of_the_newe
     assert np.sum(np.diff(times) < 0) > 10
     np.testing.assert_allclose(truth[:, 0], np.maximum.accumulate(times))
     np.testing.assert_allclose(truth[:, 1], truth[:, 0])  # at 1 m/s throughout
+
+
+def test_the_report_describes_the_actuators_and_the_gyroscope_that_were_drawn():
+    def described(submission):
+        submission.fold = lambda name, start, calls: _folded(submission, name, start, calls)
+        shown = kit.companion("digital-twin", "report")
+        return [make(submission).plot.description for make in (shown._at_rest, shown._actuators)]
+
+    def _folded(submission, name, start, calls):
+        values = [start]
+        for arguments in calls:
+            values.append(submission.call(name, values[-1], *arguments))
+        return values
+
+    def restless(rate, *arguments):
+        bias = np.linspace(0.0, 3.0, len(rate))
+        return rate + bias + 0.02 * np.random.default_rng(1).standard_normal(len(rate)), bias
+
+    usual = described(Fake())
+    assert "a bias that starts at 0.05" in usual[0]
+    gyroscope = described(Fake("imu", restless))[0]
+    assert "starts at 0 rad/s, ends at 3" in gyroscope
+    prompt = described(Fake("delay_line", lambda signal, dt, delay: signal))[1]
+    numbers = re.search(r"your motor at (\S+) s, .* your delayed signal at (\S+) s", usual[1])
+    assert float(numbers[2]) > float(numbers[1])
+    numbers = re.search(r"your motor at (\S+) s, .* your delayed signal at (\S+) s", prompt)
+    assert numbers[1] == numbers[2]
 
 
 def test_the_drive_of_the_report_makes_streams_that_a_bag_can_hold():

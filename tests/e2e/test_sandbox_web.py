@@ -256,6 +256,16 @@ def test_sliders_act_and_say_what_they_are_at(sandbox) -> None:
     assert at.page.get_by_role("slider", name="step").get_attribute("aria-valuetext") == "2.08 ms"
 
 
+def test_the_question_follows_the_sliders_and_what_was_typed_stays(sandbox) -> None:
+    at = sandbox("bullet-wall")
+    question = at.page.locator(".card .question")
+    question.filter(has_text="one step of 0.004167 s").wait_for(timeout=10_000)
+    at.page.get_by_label("Your guess").fill("0,2")
+    at.page.get_by_role("slider", name="step").press("ArrowLeft")
+    question.filter(has_text="one step of 0.002083 s").wait_for(timeout=10_000)
+    assert at.page.get_by_label("Your guess").input_value() == "0,2"
+
+
 def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
     at = sandbox("head-on")
     at.page.get_by_label("Your guess").fill("two")

@@ -264,7 +264,7 @@ def test_one_exercise_or_lesson_can_be_audited_alone(mini: Path, run: Callable[.
 
 
 def test_an_unknown_id_is_not_found(run: Callable[..., AuditReport]) -> None:
-    with pytest.raises(NotFoundError, match="No lesson, exercise or question"):
+    with pytest.raises(NotFoundError, match="No lesson, exercise, question or scene"):
         run("thirds")
 
 

@@ -198,6 +198,7 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
             lessons=report.lessons,
             exercises=report.exercises,
             questions=report.questions,
+            scenes=report.scenes,
             checks=report.checks,
             graded=report.graded,
             isolation=report.isolation,

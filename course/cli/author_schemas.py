@@ -43,6 +43,7 @@ class AuthorCheck(Envelope, tag="course.author-check/1", frozen=True, kw_only=Tr
     lessons: tuple[str, ...]
     exercises: tuple[str, ...]
     questions: tuple[str, ...]
+    scenes: tuple[str, ...]
     checks: int
     graded: int
     isolation: str

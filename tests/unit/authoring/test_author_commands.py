@@ -56,7 +56,7 @@ def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
     monkeypatch.setattr("course.authoring.audit.FOLDER", tmp_path)
     code, body = answer(capsys, "author", "check", "head-on")
     (problem,) = body["problems"]
-    assert (code, problem["file"]) == (1, str(tmp_path / "head-on.toml"))
+    assert (code, body["scenes"], problem["file"]) == (1, ["head-on"], str(tmp_path / "head-on.toml"))
     assert text.split("\n")[problem["line"] - 1].startswith("question = ")
     assert "sped" in problem["message"]
 

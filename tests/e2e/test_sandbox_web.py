@@ -58,6 +58,11 @@ def browser(tmp_path_factory: pytest.TempPathFactory):
         context.close()
 
 
+def complains(message) -> bool:
+    """Whether the browser has something against the page, and not against how this test reads its pixels."""
+    return message.type in {"error", "warning"} and "willReadFrequently" not in message.text
+
+
 class Sandbox:
     """A scene that is served, a page that shows it, and what went over the wire."""
 
@@ -84,9 +89,7 @@ class Sandbox:
         self.page.set_viewport_size({"width": size[0], "height": size[1]})
         self.page.on(
             "console",
-            lambda message: (
-                self.complaints.append(message.text) if message.type in {"error", "warning"} else None
-            ),
+            lambda message: self.complaints.append(message.text) if complains(message) else None,
         )
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", lambda request: self.requests.append(request.url))

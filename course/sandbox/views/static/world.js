@@ -734,9 +734,18 @@ class View {
 
   choose(name) {
     this.chosen = name;
+    this.pickedShown(); // with the label itself, not a frame later
     this.picked.hidden = !name;
     this.stale = 0;
     this.changed = true;
+  }
+
+  pickedShown() {
+    const row = this.chosen && this.rowOf(this.chosen);
+    if (!row) return;
+    const body = this.bodies.find((b) => b.name === this.chosen);
+    const mass = body.mass ? `, ${plain(Number(body.mass.toPrecision(3)))} kg` : "";
+    this.picked.textContent = `${spoken(this.chosen)}${mass}: ${short(Math.hypot(row[3], row[4]))} m/s`;
   }
 
   key(event) {
@@ -1009,12 +1018,7 @@ class View {
     this.clock.textContent = `${t.toFixed(this.span < 1 ? 3 : 2)} s`;
     const slow = !this.state?.paused && pace < 0.8;
     this.lag.textContent = slow ? `Too much work: ${Math.round(100 * pace)} % of the speed asked for` : "";
-    const row = this.chosen && this.rowOf(this.chosen);
-    if (row) {
-      const body = this.bodies.find((b) => b.name === this.chosen);
-      const mass = body.mass ? `, ${plain(Number(body.mass.toPrecision(3)))} kg` : "";
-      this.picked.textContent = `${spoken(this.chosen)}${mass}: ${short(Math.hypot(row[3], row[4]))} m/s`;
-    }
+    this.pickedShown();
     const colour = (name) => this.colour(name);
     this.energy.draw(this.past, this.span, colour);
     this.momentum.draw(this.past, this.span, colour);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -195,7 +196,7 @@ def export(
     from course.cli import sandbox_files
     from course.cli.sandbox_schemas import SandboxExport
     from course.sandbox.exports.mjcf import mjcf
-    from course.sandbox.exports.sdf import sdf
+    from course.sandbox.exports.sdf import START, sdf, start_script
 
     writers = {"sdf": sdf, "mjcf": mjcf}
     if format_ not in writers:
@@ -210,8 +211,18 @@ def export(
             console.raw(data.decode())
     else:
         written = sandbox_files.write(console, target, data, format_)
+    beside = None
+    start = start_script(data) if format_ == "sdf" else None
+    if start is not None and target is None:
+        console.note(
+            f"Velocities at the start need a file beside it: write it with -o, and {START} comes along."
+        )
+    elif start is not None and target is not None:
+        beside = sandbox_files.write(console, target.with_name(START), start, "python")
+        folder = shlex.quote(str(target.parent))
+        console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
-    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, text=text))
+    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text))
     return 0
 
 

@@ -214,9 +214,7 @@ def export(
     beside = None
     start = start_script(data) if format_ == "sdf" else None
     if start is not None and target is None:
-        console.note(
-            f"Velocities at the start need a file beside it: write it with -o, and {START} comes along."
-        )
+        console.warn(f"Its velocities at the start need a file beside it: with -o FILE, {START} comes along.")
     elif start is not None and target is not None:
         beside = sandbox_files.write(console, target.with_name(START), start, "python")
         folder = shlex.quote(str(target.parent))

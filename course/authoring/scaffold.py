@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.authoring.variants import instructors
+from course.authoring.exercises.variants import instructors
 from course.errors import UsageError
 from course.ids import ExerciseId, LessonId, QuestionId, SceneId
 
@@ -100,7 +100,7 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
         UsageError: the id is no id, or the file exists.
         MissingCapabilityError: this is a student's installation.
     """
-    from course.sandbox.loading import FOLDER, scene_ids
+    from course.sandbox.scene.loading import FOLDER, scene_ids
 
     instructors(catalog)
     name = SceneId(scene_id)

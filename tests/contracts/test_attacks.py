@@ -22,9 +22,10 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import Content
-from course.grading.session import GradingSession, Submission
-from course.grading.verdict import Verdict, for_student
 from course.isolation import launch
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+from course.scoring.verdict import Verdict, for_student
 from tests.contracts.levels import require_level
 
 if TYPE_CHECKING:
@@ -330,7 +331,7 @@ def test_no_plain_value_makes_a_check_itself_fail(exercise: str) -> None:
     template = (CORPUS / "every_value.py").read_text("utf-8")
     template += "".join(f"{task.id} = _answer\n" for task in found.task)
     broken = {}
-    with GradingSession(found, catalog, scope="full", timeout=5.0) as session:
+    with GradingSession(found, catalog, scope="full", terms=Terms(timeout=5.0)) as session:
         for start in range(0, 52, 4):
             for stride in (0, 1):
                 source = template.replace("START", str(start)).replace("STRIDE", str(stride))

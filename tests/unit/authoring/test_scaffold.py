@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.files import BLANK
+from course.authoring.exercises.files import BLANK
 from course.authoring.scaffold import new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError

@@ -33,6 +33,8 @@ from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from course.authoring.exercises.mutants import MutantOutcome
     from course.authoring.report import AuditReport
     from course.catalog.load import Catalog
@@ -75,14 +77,51 @@ def _any_id(incomplete: str) -> list[str]:
 @_new.command("exercise", epilog="Example: course author new exercise pendulum-clock")
 def new_exercise(
     name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+    function: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--function", metavar="'NAME(ARGUMENTS)'", help="A function that it asks for; as often as needed."
+        ),
+    ] = None,
+    title: Annotated[str, typer.Option("--title", metavar="WORDS", help="What people call it.")] = "",
+    summary: Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")] = "",
+    lesson: Annotated[
+        str,
+        typer.Option(
+            "--lesson",
+            metavar="ID",
+            help="To be read first; the last one if left out.",
+            autocompletion=lesson_ids,
+        ),
+    ] = "",
 ) -> int:
     """Write an exercise with blanks to fill in.
 
-    Nothing is overwritten. `course author check ID` names each blank that is left.
+    In a terminal it asks for what was not given: the functions, and a line about each. Every file has them
+    then, and only what nobody else can know is left blank. Nothing is overwritten. `course author check ID`
+    names each blank that is left.
     """
+    console, catalog = current(), load_catalog()
+    asked = [scaffold.Function.parse(text) for text in function or ()]
+    if not asked and console.interactive:
+        title = title or console.ask("Title: ") or ""
+        summary = summary or console.ask("What it is about, in one line: ") or ""
+        asked = list(_ask_functions(console))
+    written = scaffold.new_exercise(catalog, name, asked, title=title, summary=summary, lesson=lesson)
+    return _report_new(catalog, "exercise", name, written)
 
-    catalog = load_catalog()
-    return _report_new(catalog, "exercise", name, scaffold.new_exercise(catalog, name))
+
+def _ask_functions(console: Console) -> Iterator[scaffold.Function]:
+    """Functions and what they give, until an empty line."""
+    console.line("Its functions, each as in the stub: swing_period(length, gravity). Enter ends the list.")
+    while signature := console.ask("Function: "):
+        try:
+            found = scaffold.Function.parse(signature)
+        except UsageError as error:
+            console.line(f"{error.message} {error.help}")
+            continue
+        gives = console.ask(f"What {found.name} gives, with units: ") or ""
+        yield scaffold.Function(found.signature, gives)
 
 
 @_new.command("lesson", epilog="Example: course author new lesson contact-forces")

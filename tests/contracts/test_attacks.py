@@ -145,9 +145,8 @@ def _arena(level: str, exercise: str, folder: Path, patch: pytest.MonkeyPatch) -
     listener, signals = Listener(), []
     handlers = {number: signal.signal(number, lambda got, _: signals.append(got)) for number in (10, 29)}
     try:
-        with GradingSession(
-            catalog.exercise(exercise), catalog, scope="full", level=level, timeout=TIMEOUT_S, seed=5
-        ) as session:
+        terms = Terms(level=level, timeout=TIMEOUT_S, seed=5)
+        with GradingSession(catalog.exercise(exercise), catalog, scope="full", terms=terms) as session:
             arena = Arena(session, wrong, solution.read_bytes(), 0.0, marker, listener, secret, signals)
             arena.wrong_score = arena.grade(wrong).score
             yield arena

@@ -41,7 +41,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course import extras
+from course.errors import IntegrityError, NotFoundError, UsageError
 from course.simulations.bag_view import rviz_view
 from course.simulations.streams import ImuStream, OdometryStream, ScanStream, Stream, TruthStream
 
@@ -75,9 +76,7 @@ _FOR_EVER = (9223372036, 854775807)
 
 def available() -> bool:
     """Whether the extra is installed."""
-    from importlib.util import find_spec
-
-    return find_spec("rosbags") is not None
+    return extras.available("ros")
 
 
 def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3") -> Path:
@@ -168,15 +167,7 @@ def _rosbag2() -> Any:
     Raises:
         MissingCapabilityError: it is not installed.
     """
-    try:
-        from rosbags import rosbag2
-    except ImportError:
-        raise MissingCapabilityError(
-            "ROS 2 bags need the package rosbags, which is not installed.",
-            help='Install it: pip install "physics-sim-course[ros]"',
-            code="missing_extra",
-        ) from None
-    return rosbag2
+    return extras.load("ros")
 
 
 @cache

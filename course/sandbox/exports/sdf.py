@@ -18,8 +18,8 @@ from course.sandbox.exports.sdf_joints import assemblies
 
 if TYPE_CHECKING:
     from course.sandbox.exports.sdf_joints import Assembly, Held, LightLink
-    from course.sandbox.loading import Chosen
-    from course.sandbox.parts import Part
+    from course.sandbox.scene.loading import Chosen
+    from course.sandbox.scene.parts import Part
 
 __all__ = ["START", "VERSION", "sdf", "start_script"]
 

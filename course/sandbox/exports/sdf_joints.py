@@ -17,8 +17,8 @@ from course.sandbox.exports.common import DEPTH
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from course.sandbox.parts import Part
-    from course.sandbox.scene import Joint
+    from course.sandbox.scene.model import Joint
+    from course.sandbox.scene.parts import Part
 
 __all__ = ["Assembly", "Held", "LightLink", "assemblies"]
 

@@ -130,8 +130,9 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
         text = f"{text}, {_rate(rate)}"
     elif not math.isfinite(scenario.truth or 0.0) and row.details.get("passed_at_m_s") is None:
         text += ", all"
-    if row.repeats > 1 and row.spread and scenario.id != BOXES:
-        text += f" ± {0.5 * row.spread:.1g}"
+    width = max(row.highest - row.lowest, row.spread)
+    if width >= 10.0**-scenario.digits and scenario.id != BOXES:
+        text += f" ± {0.5 * width:.1g}"
     return text + (" best" if id(row) in best else "")
 
 

@@ -92,7 +92,7 @@ def double_pendulum(build: Build, dt: float, quick: bool) -> Measured:
     runs = [_energy_change(build, dt, math.radians(degrees)) for degrees in starts]
     largest, last = zip(*runs, strict=True)
     details = {"starts_deg": list(starts), "largest_percent": list(largest), "at_the_end_percent": list(last)}
-    return statistics.median(largest), details
+    return statistics.median(largest), {"samples": list(largest), **details}
 
 
 def _energy_change(build: Build, dt: float, angle: float) -> tuple[float, float]:

@@ -130,23 +130,27 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
         text = f"{text}, {_rate(rate)}"
     elif not math.isfinite(scenario.truth or 0.0) and row.details.get("passed_at_m_s") is None:
         text += ", all"
-    width = max(row.highest - row.lowest, row.spread)
-    if width >= 10.0**-scenario.digits and scenario.id != BOXES:
-        text += f" ± {0.5 * width:.1g}"
+    if row.highest - row.lowest >= 10.0**-scenario.digits:
+        text += f" ({_digits(scenario, row.lowest)} to {_digits(scenario, row.highest)})"
+    elif row.repeats > 1 and row.spread and scenario.id != BOXES:
+        text += f" ± {0.5 * row.spread:.1g}"
     return text + (" best" if id(row) in best else "")
 
 
 def number(scenario: Scenario, value: float) -> str:
-    """A value with its unit: signed where the truth is zero, and never a nought that is none."""
+    """A value with its unit."""
+    return _unit(_digits(scenario, value), scenario)
+
+
+def _digits(scenario: Scenario, value: float) -> str:
+    """A value: signed where the truth is zero, and never a nought that is none."""
     sign = "+" if scenario.truth == 0.0 and scenario.unit == "%" else ""
     size = abs(value)
     if size >= 1000:
-        text = f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}"
-    elif 0.0 < size < 0.5 * 10.0**-scenario.digits:
-        text = f"{value:{sign}.0e}"
-    else:
-        text = f"{value + 0.0:{sign}.{scenario.digits}f}"
-    return _unit(text, scenario)
+        return f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}"
+    if 0.0 < size < 0.5 * 10.0**-scenario.digits:
+        return f"{value:{sign}.0e}"
+    return f"{value + 0.0:{sign}.{scenario.digits}f}"
 
 
 def _rate(rate: float) -> str:

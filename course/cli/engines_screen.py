@@ -118,7 +118,7 @@ def _truth(scenario: Scenario) -> str:
     if scenario.truth is None:
         return "none"
     if not math.isfinite(scenario.truth):
-        return "any speed"
+        return "any step" if scenario.unit == "ms" else "any speed"
     return _unit(f"{scenario.truth:g}", scenario)
 
 
@@ -128,7 +128,7 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
     text = number(scenario, row.value)
     if rate := row.details.get("steps_per_second"):
         text = f"{text}, {_rate(rate)}"
-    elif not math.isfinite(scenario.truth or 0.0) and row.details.get("passed_at_m_s") is None:
+    elif row.value in (row.details.get("fastest_tried_m_s"), row.details.get("longest_tried_ms")):
         text += ", all"
     if row.highest - row.lowest >= 10.0**-scenario.digits:
         text += f" ({_digits(scenario, row.lowest)} to {_digits(scenario, row.highest)})"

@@ -93,8 +93,8 @@ def _agree(one: Sequence[float], other: Sequence[float]) -> bool:
 def defaults(rows: Sequence[Row]) -> str:
     """In how many scenarios one engine's options moved it further than well-set engines lie apart.
 
-    Where there are several phases or starts, the gap between both ranges has to be wider than the range of all
-    well-set engines: what a phase can change is not said of an option.
+    Of several phases or starts, the gap between both ranges has to be wider than the range of all well-set
+    engines: what a phase can change is not said of an option.
     """
     beyond, compared = [], 0
     for scenario in SCENARIOS.values():

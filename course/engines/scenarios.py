@@ -135,6 +135,18 @@ SCENARIOS: dict[str, Scenario] = {
             motion.double_pendulum,
         ),
         Scenario(
+            "long-step",
+            "A long step",
+            "The same double pendulum, with the step doubled again and again. How long may it be?",
+            "longest step at which the energy keeps within 10 % for 10 s, from every start",
+            "ms",
+            math.inf,
+            "conservation of energy",
+            1,
+            motion.long_step,
+            better="large",
+        ),
+        Scenario(
             "clash",
             "An elastic collision of masses 1 and 3",
             "The light ball meets the resting heavy one at 1 m/s. Is the energy still there afterwards?",

@@ -40,6 +40,7 @@ TOPICS = {
     "free-fall": "motion",
     "pendulum": "joint",
     "double-pendulum": "joint",
+    "long-step": "joint",
     "clash": "impact",
     "bounce": "impact",
     "small-drop": "impact",

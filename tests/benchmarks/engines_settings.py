@@ -1,7 +1,7 @@
 """Chooses how each engine is well set for each scenario, and writes course/engines/well_set.json.
 
     python tests/benchmarks/engines_settings.py                  try every combination, and write the file
-    python tests/benchmarks/engines_settings.py --engine ode      only this engine's; repeatable
+    python tests/benchmarks/engines_settings.py --engine ode     one engine; --scenario: one scenario
     python tests/benchmarks/engines_settings.py --compare         try again, and say what would be chosen now
 
 The rule is in course/engines/settings.py; the values that are tried are in course/engines/options/. Needs all
@@ -36,11 +36,13 @@ def main() -> int:
     """Choose, then write or compare."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--engine", action="append", choices=list(ENGINES))
+    parser.add_argument("--scenario", action="append", choices=list(SCENARIOS))
     parser.add_argument("--compare", action="store_true")
     arguments = parser.parse_args()
     names = arguments.engine or list(ENGINES)
     with ThreadPoolExecutor(max_workers=2) as pool:
-        found = dict(zip(names, pool.map(_of_engine, names), strict=True))
+        wanted = set(arguments.scenario or SCENARIOS)
+        found = dict(zip(names, pool.map(lambda name: _of_engine(name, wanted), names), strict=True))
     known = json.loads(FILE.read_text(encoding="utf-8"))
     if arguments.compare:
         differing = [(engine, name) for engine in names for name in found[engine]
@@ -49,17 +51,20 @@ def main() -> int:
             print(engine, name, known.get(engine, {}).get(name), "->", found[engine][name])
         print(f"{len(differing)} choices differ.")
         return min(len(differing), 1)
-    everything = {**known, **found}
-    ordered = {engine: everything[engine] for engine in ENGINES if engine in everything}
+    ordered = {
+        engine: {name: {**known.get(engine, {}), **found.get(engine, {})}[name] for name in SCENARIOS}
+        for engine in ENGINES
+    }
     FILE.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
     return 0
 
 
-def _of_engine(engine: str) -> dict[str, Any]:
+def _of_engine(engine: str, wanted: set[str]) -> dict[str, Any]:
     chosen: dict[str, Any] = {}
     for scenario in SCENARIOS.values():
-        if scenario.id in SAME_AS:
+        if scenario.id in SAME_AS and SAME_AS[scenario.id] in chosen:
             chosen[scenario.id] = dict(chosen[SAME_AS[scenario.id]])
+        if scenario.id in SAME_AS or scenario.id not in wanted:
             continue
         tried = list(settings.candidates(engine, scenario.id))
         results = [(_error(engine, scenario, options), options) for options in tried]

@@ -148,7 +148,7 @@ def test_what_the_questions_on_choosing_say_of_engines_is_in_the_reference() -> 
     assert sum(abs(value(name, "small-drop", "tuned") - 5.0) < 0.2 for name in still) >= 2
     # "All have fallen 0.5 % too far": several do, whatever is set.
     assert sum(abs(value(name, "free-fall", "tuned") - 0.5) < 5e-4 for name in ENGINES) >= 3
-    # "May lose its lead": the fastest comes with a stack that moves, and pays for one that stands with its rate.
+    # "May lose its lead": the fastest comes with a stack that moves; one that stands costs half of its rate.
     fast = max(ENGINES, key=lambda name: value(name, "boxes", "default"))
     assert value(fast, "stack", "default") > 1.0
     assert value(fast, "boxes", "tuned") < 0.5 * value(fast, "boxes", "default")

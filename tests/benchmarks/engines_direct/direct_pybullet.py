@@ -16,7 +16,7 @@ NO_PUSH = {"contactERP": 0.0}
 WELL_SET = {
     "free-fall": NO_AIR,
     "bounce": NO_AIR | NO_PUSH | NEAR,
-    "small-drop": NO_AIR | NO_PUSH | NEAR | {"restitutionVelocityThreshold": 0.0},
+    "small-drop": NO_PUSH | NEAR,
     "clash": NO_AIR | NO_PUSH,
     "slide": NO_AIR,
     "mass-ratio": {"numSolverIterations": 100},

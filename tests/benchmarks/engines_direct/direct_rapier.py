@@ -6,7 +6,7 @@ import measures
 import rapier3d as rapier
 
 WELL_SET = {
-    "bounce": {"num_solver_iterations": 16},
+    "bounce": {"num_solver_iterations": 100},
     "small-drop": {"num_solver_iterations": 100},
     "mass-ratio": {"num_solver_iterations": 100, "contact_softness": 3000.0},
 }

@@ -147,7 +147,8 @@ def test_an_impact_is_met_at_phases_evenly_spread_over_a_step(name, quick, count
             # From where and how fast it starts: the time until its surface reaches the floor.
             v, z = -body.velocity[2], body.position[2] - 0.1
             arrivals.append((math.sqrt(v * v + 2 * 9.81 * z) - v) / 9.81)
-        return Written(scene, still)
+        # Something has to move: a clash without energy has no share of it to lose.
+        return Written(scene, lambda scene, t: (still(scene, t)[0], [(1, 0, 0)] * len(scene.bodies)))
 
     outcome = get(name).run(build, DT, quick)
     assert len(outcome.samples) == count

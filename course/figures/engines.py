@@ -98,7 +98,7 @@ def _frame(axes: Axes, name: str) -> None:
     axes.set(xlim=(0.4 * FLOOR, 600.0), xticks=(1e-3, 1e-1, 1e1), ylim=(-1.6, 7.6))
     axes.set_xticklabels(["0.001", "0.1", "10"])
     axes.minorticks_off()
-    axes.axvline(LARGE, color=PALETTE["grey"], linewidth=0.8, linestyle=":")
+    axes.plot([LARGE, LARGE], [-0.6, 7.6], color=PALETTE["grey"], linewidth=0.8, linestyle=":")
     axes.set_title(name)
 
 

@@ -13,9 +13,10 @@ from panda3d import bullet
 from panda3d.core import ConfigVariableBool, ConfigVariableInt, NodePath, Vec3
 
 NEAR = {"contact_distance": 0.0}
-WELL_SET = {"small-drop": NEAR, "mass-ratio": {"iterations": 100}}
+WELL_SET = {"small-drop": NEAR, "mass-ratio": {"split_impulse": True}}
 EXTRA = {
     "doPhysics(dt), a step of 1/60 s inside": ("slide", {"own_step": True}),
+    "100 iterations": ("mass-ratio", {"iterations": 100}),
     "1000 iterations": ("mass-ratio", {"iterations": 1000}),
     "contacts only where bodies touch": ("bounce", NEAR),
     "split impulse": ("clash", {"split_impulse": True}),

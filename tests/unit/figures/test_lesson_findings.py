@@ -32,8 +32,7 @@ def test_every_error_is_drawn_inside_its_panel() -> None:
     for axes in figure.axes:
         low, high = axes.get_xlim()
         drawn = [float(x) for line in axes.lines for x in np.atleast_1d(line.get_xdata())]
-        # The dotted line of ten per cent is given in axes coordinates and lies inside anyway.
-        assert all(low <= x <= high for x in drawn if x > 1.0 or x < 1e-2)
+        assert all(low <= x <= high for x in drawn)
 
 
 def test_an_error_of_the_reference_is_its_value_against_the_truth() -> None:

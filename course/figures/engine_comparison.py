@@ -174,7 +174,7 @@ def _shared(engines: list[str]) -> tuple[str, str, str]:
 def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[float, float]]]]) -> None:
     """Whose each curve is: below it, from its second point on, where a rising curve leaves room.
 
-    A short ladder needs all of the width, so there names begin at the first point, below the whole curve. Curves
+    A short ladder needs all of the width: there names begin at the first point, below the whole curve. Curves
     that lie closer together than their names are high have them in a block below the lowest.
     """
     low, high = (math.log10(limit) for limit in axes.get_ylim())

@@ -140,6 +140,36 @@ def test_the_direct_scripts_confirm_at_least_four_results_of_every_engine():
         assert len(confirmed) >= 4, (engine, verdicts)
 
 
+def test_what_is_said_of_single_options_is_what_the_direct_scripts_found():
+    import json
+
+    path = ROOT / "tests" / "benchmarks" / "engines_direct" / "results.json"
+    found = {
+        (engine, line["test"], line["setting"]): line
+        for engine, lines in json.loads(path.read_text(encoding="utf-8")).items()
+        for line in lines
+    }
+    # The older Bullet and the tonne: a hundred iterations are too few, a thousand hold it from every start.
+    assert max(found["bullet", "mass-ratio", "100 iterations"]["samples"]) > 100
+    assert max(found["bullet", "mass-ratio", "1000 iterations"]["samples"]) < 50
+    # Split impulse changes nothing about its clash.
+    came, split = (found["bullet", "clash", s]["samples"] for s in ("default", "split impulse"))
+    assert split == pytest.approx(came)
+    # Its slope is nearer with its own step of 1/60 s.
+    own = found["bullet", "slide", "doPhysics(dt), a step of 1/60 s inside"]["value"]
+    assert abs(own) < abs(found["bullet", "slide", "default"]["value"])
+    # Bullet 3's energy from nowhere is the correction of overlaps; foreseen contacts stop its slow ball.
+    assert found["pybullet", "clash", "no air, error correction left on"]["value"] > 5
+    assert max(abs(x) for x in found["pybullet", "clash", "tuned"]["samples"]) < 1e-6
+    assert found["pybullet", "small-drop", "no air, contacts foreseen"]["value"] < 0.5
+    assert found["pybullet", "small-drop", "no air, contacts only where bodies touch"]["value"] > 5
+    # PhysX: the friction of a joint costs more than the damping of its link, and both cost.
+    swing = {s: line["value"] for (e, t, s), line in found.items() if (e, t) == ("physx", "pendulum")}
+    assert swing["neither"] < swing["no friction in the joint"] < swing["no damping of the link"]
+    # MuJoCo: with the damping ratio of a spring that may pull, the ball bounces too high.
+    assert found["mujoco", "bounce", "damping ratio of a spring that may pull"]["value"] > 0.28
+
+
 def test_a_direct_script_imports_nothing_of_the_course():
     folder = ROOT / "tests" / "benchmarks" / "engines_direct"
     scripts = [*folder.glob("direct_*.py"), folder / "measures.py"]

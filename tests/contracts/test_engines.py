@@ -7,7 +7,11 @@ worse, its own band says so.
 
 from __future__ import annotations
 
+import json
 import math
+import re
+import subprocess
+import sys
 
 import pytest
 
@@ -15,6 +19,7 @@ from course.engines.compare import Request, compare
 from course.engines.process import EngineProcess
 from course.engines.registry import ENGINES, availability
 from course.engines.scenarios import BOXES, SCENARIOS
+from course.engines.settings import options_of
 
 INSTALLED = [info.id for info in ENGINES.values() if availability(info).installed]
 
@@ -118,3 +123,71 @@ def test_two_processes_agree_to_the_last_digit(engine):
             )
     assert replies[0] == replies[1]
     assert replies[0]["status"] == "ok"
+
+
+#: What prints the defaults of an engine's options, by key, as its package has them.
+DEFAULTS = {
+    "pymunk": """
+import pymunk
+space = pymunk.Space()
+found = {"iterations": space.iterations, "collision_slop": space.collision_slop}
+""",
+    "mujoco": """
+import mujoco
+option = mujoco.MjModel.from_xml_string("<mujoco/>").opt
+assert option.integrator == mujoco.mjtIntegrator.mjINT_EULER
+assert option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
+found = {"impratio": option.impratio}
+""",
+    "ode": """
+from panda3d import ode
+world = ode.OdeWorld()
+found = {"iterations": world.getQuickStepNumIterations(), "erp": world.getErp(),
+         "contact_cfm": world.getCfm()}
+""",
+    "bullet": """
+from panda3d import bullet
+from panda3d.core import ConfigVariableBool, ConfigVariableInt
+assert not ConfigVariableBool("bullet-split-impulse").getValue()
+found = {"iterations": ConfigVariableInt("bullet-solver-iterations").getValue()}
+""",
+    "rapier": """
+import rapier3d
+set = rapier3d.PhysicsWorld(gravity=(0.0, 0.0, 0.0)).integration_parameters
+found = {"substeps": set.num_solver_iterations, "stiffness": set.contact_softness.natural_frequency,
+         "allowed_error": set.normalized_allowed_linear_error,
+         "foresight": set.normalized_prediction_distance}
+""",
+    "physx": """
+from sapien import physx
+body = physx.PhysxArticulationLinkComponent(physx.PhysxArticulationLinkComponent(None))
+found = {"iterations": physx.PhysxBodyConfig().solver_position_iterations, "damping": body.linear_damping,
+         "bounce_threshold": physx.PhysxSceneConfig().bounce_threshold, "joint_friction": body.joint.friction,
+         "contact_offset": physx.PhysxShapeConfig().contact_offset}
+""",
+    "pybullet": """
+import pybullet
+pybullet.connect(pybullet.DIRECT)
+found = {"iterations": pybullet.getPhysicsEngineParameters()["numSolverIterations"]}
+""",
+    "dart": """
+import dartpy
+assert not dartpy.simulation.World().getConstraintSolver().isSplitImpulseEnabled()
+found = {}
+""",
+}
+
+
+@pytest.mark.parametrize("engine", INSTALLED)
+def test_the_defaults_that_the_options_name_are_the_package_s_own(engine):
+    # In a process of its own, as an engine always is.
+    code = DEFAULTS[engine] + "import json\nprint(json.dumps(found))"
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=120, check=True
+    )
+    found = json.loads(done.stdout.splitlines()[-1])
+    named = {option.key: option.default for option in options_of(engine).option}
+    for key, value in found.items():
+        number = re.match(r"[\d.e-]+", named[key])
+        assert number is not None, (engine, key)
+        assert float(number[0].rstrip(".")) == pytest.approx(value, rel=1e-6), (engine, key)

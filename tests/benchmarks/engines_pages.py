@@ -16,7 +16,7 @@ import re
 import sys
 from pathlib import Path
 
-from course.cli.engines_screen import number
+from course.cli.engines.screen import number
 from course.engines import reference, settings
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -53,7 +54,7 @@ def results() -> str:
     shipped = reference.load()
     lines = [f"Reference: {shipped.label}.", ""]
     for scenario in SCENARIOS.values():
-        truth = "no truth" if scenario.truth is None else f"truth {number(scenario, scenario.truth)}"
+        truth = _truth(scenario)
         lines += [f"**{scenario.title}** (`{scenario.id}`): {scenario.quantity}; {truth}.", ""]
         lines += ["| engine | as it comes | well set |", "|:--|:--|:--|"]
         for engine, info in ENGINES.items():
@@ -63,6 +64,14 @@ def results() -> str:
                 lines.append(f"| {info.name} | {cells[0]} | {'the same' if same else cells[1]} |")
         lines.append("")
     return "\n".join(lines)
+
+
+def _truth(scenario):
+    if scenario.truth is None:
+        return "nothing is right or wrong"
+    if math.isinf(scenario.truth):
+        return "the more, the better"
+    return f"right is {scenario.truth:g}{'' if scenario.unit == '1' else ' ' + scenario.unit}"
 
 
 def _cell(scenario, engine, setting):

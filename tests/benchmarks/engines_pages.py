@@ -5,7 +5,7 @@
 
 A block stands between ``<!-- made: NAME -->`` and ``<!-- end -->``. The whole chain, after a change of an
 engine, a scenario or an option: engines_settings.py, engines_reference.py, engines_direct/compare.py --write,
-this one, and ``course.authoring.lesson_cells.update_outputs`` for the lesson.
+this one, and ``course.authoring.lessons.cells.update_outputs`` for the lesson.
 """
 
 from __future__ import annotations

@@ -32,6 +32,7 @@ SPEEDS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 400.0)
 #: gaps from an overlap to some air; never none, which rounding would decide. They are less than is shown, and
 #: yet decide in some engines whether it stands.
 STARTS, _OFFSET_M = 5, 1e-6
+_WORST = {"momentum_error_kg_m_s": max, "lowest_m": min, "contacts": min, "deepest_overlap_mm": max}
 #: A push is raised until the box is faster than this within half a second, m/s.
 _SLIPS = 0.01
 
@@ -43,9 +44,16 @@ def _phases(dt: float, quick: bool) -> Iterator[float]:
 
 
 def _mean(samples: list[float], details: list[dict[str, Any]]) -> Measured:
-    """The mean over the phases, what it is the mean of, and the further details of each phase."""
-    gathered = {name: [one[name] for one in details] for name in details[0]}
-    return statistics.fmean(samples), {"samples": samples, **gathered}
+    """The mean over the phases, what it is the mean of, and the further details."""
+    return statistics.fmean(samples), {"samples": samples, **_together(details)}
+
+
+def _together(details: list[dict[str, Any]]) -> dict[str, Any]:
+    """The details of several runs as those of one: the worst where that is a number, else the first run's."""
+    return {
+        name: _WORST[name](one[name] for one in details) if name in _WORST else details[0][name]
+        for name in details[0]
+    }
 
 
 def clash(build: Build, dt: float, quick: bool) -> Measured:
@@ -167,8 +175,7 @@ def _moved(build: Build, scenes: list[Scene], seconds: float) -> Measured:
     """The largest movement of any body that should stand still, mm; the median over the starts."""
     found = [_movement(build, scene, seconds) for scene in scenes]
     samples = [value for value, _ in found]
-    gathered = {name: [details[name] for _, details in found] for name in found[0][1]}
-    return statistics.median(samples), {"samples": samples, **gathered}
+    return statistics.median(samples), {"samples": samples, **_together([details for _, details in found])}
 
 
 def _movement(build: Build, scene: Scene, seconds: float) -> Measured:

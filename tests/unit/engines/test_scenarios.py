@@ -114,7 +114,7 @@ def test_a_clash_that_sticks_loses_three_quarters_and_keeps_the_momentum():
 
     outcome = get("clash").run(written(path), DT)
     assert outcome.value == pytest.approx(-75.0)
-    assert outcome.details["momentum_error_kg_m_s"] == pytest.approx([0.0] * 8, abs=1e-12)
+    assert outcome.details["momentum_error_kg_m_s"] == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(("name", "height", "unit"), [("bounce", 1.0, 1.0), ("small-drop", 0.02, 1000.0)])

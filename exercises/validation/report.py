@@ -213,8 +213,8 @@ def _verdicts(submission, title):
         title,
         text=f"Four runs of the cart, margins fixed beforehand: rmse up to {SPEC['rmse_max']} m/s, bias "
         f"within {SPEC['bias_max']} m/s, lag within {SPEC['lag_max_s']} s, coverage from "
-        f"{SPEC['coverage_min']} to {SPEC['coverage_max']}. A number is followed by its interval, from one run or another left out: "
-        "that is what is held against the margin.",
+        f"{SPEC['coverage_min']} to {SPEC['coverage_max']}. A number is followed by its interval, from one "
+        "run or another left out: that is what is held against the margin.",
         columns=("twin", "accepted", "rmse m/s", "bias m/s", "lag s", "coverage", "reasons"),
         rows=tuple(rows),
     )

@@ -251,35 +251,47 @@ def of_lag_interval(value, right):
     return named("LAG_WHOLE_SAMPLES" if _whole(value, right) else "LAG_OF_PARTS")
 
 
-def of_interval(key, ends, right):
-    """What a wrong interval about a right rmse, bias or coverage is."""
-    n, value = len(right.used), right.numbers[key]
+def of_intervals(ends, right):
+    """What wrong intervals about a right rmse, bias and coverage are: one rule that gives all of them.
+
+    Args:
+        ends: (lo, hi) of each measure.
+        right: the facts.
+    """
+    if all(ends[key][1] < ends[key][0] for key in NUMBERS if right.half(key) > 0):
+        return named("RETURNS_SWAPPED")
+    halves = {key: _halves(key, right) for key in NUMBERS}
+    wrong = [key for key in NUMBERS if not _reaches(ends[key], right.numbers[key], right.half(key))]
+    codes = {
+        code
+        for rule, (code, _) in enumerate(halves["bias"])
+        if all(_reaches(ends[key], right.numbers[key], halves[key][rule][1]) for key in wrong)
+    }
+    return named(codes.pop()) if len(codes) == 1 else None
+
+
+def _reaches(ends, value, half):
+    """Whether an interval reaches so far to either side, to the digits of the table."""
+    return max(abs(ends[0] - value + half), abs(ends[1] - value - half)) <= 2e-3 * half + 1e-9
+
+
+def _halves(key, right):
+    """(code, half the width) of the usual wrong rules, the same rules for every measure."""
+    n = len(right.used)
     without = np.array([left[key] for left in right.without])
     spread = math.sqrt(np.sum((without - without.mean()) ** 2))
     alone = np.array([run[key] for run in right.single])
     t, error = T95[n - 2], math.sqrt((n - 1) / n) * spread
-    lo, hi = ends
-    if hi < lo:
-        return named("RETURNS_SWAPPED")
-    halves = [
-        *(("JACKKNIFE_FACTOR", t * spread / math.sqrt(by)) for by in (n, n - 1, n * n, n * (n - 1))),
-        ("JACKKNIFE_FACTOR", t * spread),
+    return [
+        *(("JACKKNIFE_FACTOR", t * spread / math.sqrt(by)) for by in (1, n, n - 1, n * n, n * (n - 1))),
         *(("NOT_STUDENTS_T", z * error) for z in (1.0, 1.645, 1.96, 2.0, 3.0)),
         *(("NOT_STUDENTS_T", table[n - 2] * error) for table in (T95[1:], (0.0, *T95), _T975)),
         ("SPREAD_OF_RUNS", t * np.std(alone, ddof=1) / math.sqrt(n)),
         ("SPREAD_OF_RUNS", t * np.std(alone, ddof=1)),
         ("SPREAD_OF_RUNS", t * np.std(alone)),
         ("ZERO_WIDTH", 0.0),
+        *(("SAMPLES_COUNTED", z * right.sampled[key]) for z in (1.0, t, 1.645, 1.96, 2.0)),
     ]
-    halves += [("SAMPLES_COUNTED", z * right.sampled[key]) for z in (1.0, t, 1.645, 1.96, 2.0)]
-    for code, half in halves:
-        slack = 2e-3 * half + 1e-9
-        if (
-            abs(half - right.half(key)) > 2 * slack
-            and max(abs(lo - value + half), abs(hi - value - half)) <= slack
-        ):
-            return named(code)
-    return None
 
 
 def _outside(interval, margin):
@@ -305,15 +317,21 @@ def _concluded(right, spec, *, points=False, wrong=None):
     return sorted(reasons)
 
 
+def _outside_above_zero(interval, margin):
+    return interval[0] + interval[1] > 0 and _outside(interval, margin)
+
+
 _NEVER = lambda interval, margin: False  # noqa: E731
-_SIGN = {"bias": _above, "lag_s": _above}
+_SIGNS = [
+    dict.fromkeys(keys, wrong)
+    for keys in (("bias",), ("lag_s",), ("bias", "lag_s"))
+    for wrong in (_above, _outside_above_zero)
+]
 #: (code, what it changes) of slips in the conclusion.
 _SLIPS = (
     ("POINT_ESTIMATE_JUDGED", {"points": True}),
-    ("SIGN_OF_LIMIT_IGNORED", {"wrong": {"bias": _above}}),
-    ("SIGN_OF_LIMIT_IGNORED", {"wrong": {"lag_s": _above}}),
-    ("SIGN_OF_LIMIT_IGNORED", {"wrong": _SIGN}),
-    ("SIGN_OF_LIMIT_IGNORED", {"wrong": _SIGN, "points": True}),
+    *(("SIGN_OF_LIMIT_IGNORED", {"wrong": wrong}) for wrong in _SIGNS),
+    *(("SIGN_OF_LIMIT_IGNORED", {"wrong": wrong, "points": True}) for wrong in _SIGNS),
     ("OVER_COVERAGE_ACCEPTED", {"wrong": {"coverage": lambda i, m: i[0] < m[0]}}),
     ("BURDEN_REVERSED", {"wrong": dict.fromkeys(MEASURES, _beyond)}),
     ("RMSE_ALONE_JUDGED", {"wrong": {"bias": _NEVER, "lag_s": _NEVER, "coverage": _NEVER}}),

@@ -139,7 +139,7 @@ def _expect_intervals(report, right, shown):
             source="three digits of Student's t",
             quantity=f"{key} interval",
             message=f"The interval of `{key}` does not reach from lo to hi as it should.",
-            diagnose=lambda key=key: probes.of_interval(key, ends[key], right),
+            diagnose=lambda: probes.of_intervals(ends, right),
             **words,
         )
     kit.expect_array(

@@ -127,7 +127,11 @@ def _questions(seed):
     real += [(reports, needs, answer) for needs, answer in measured.QUESTIONS.values()]
     telling = choices.questions(rng, truths, 12, choices.telling)
     return {
-        "plain": [*telling[:8], choices.at_the_limit(rng, truths)],
+        "plain": [
+            *telling[:8],
+            choices.at_the_limit(rng, truths),
+            *choices.questions(rng, truths, 1, choices.all_count),
+        ],
         "gaps": [*(choices.with_gaps(rng, q) for q in telling[8:]), choices.beyond_reach(rng, truths)],
         "renamed": [choices.renamed(rng, question) for question in real],
     }

@@ -7,13 +7,16 @@ length and msgpack. Each exercise's checks are collected at its first job and ke
 from __future__ import annotations
 
 import os
+import secrets
 import struct
 from typing import IO, TYPE_CHECKING, Any
 
 import msgspec
 
 from course.errors import CourseError, MissingCapabilityError
+from course.grading.submission import Submission
 from course.grading.verdict import Problem, Verdict
+from course.isolation.launch import keep_private
 
 if TYPE_CHECKING:
     from course.grading.session import GradingSession
@@ -45,23 +48,37 @@ class Job(msgspec.Struct, frozen=True):
 
     Attributes:
         version: the ``grader_version`` it must be graded by; empty takes whatever is here.
+        number: drawn for each job, so that nobody knows it who was not told.
     """
 
     exercise: str
     files: dict[str, bytes]
     version: str = ""
+    number: int = msgspec.field(default_factory=lambda: secrets.randbits(63))
 
 
 class Answer(msgspec.Struct, frozen=True):
-    """The verdict on a job, or why this grader can give none at all."""
+    """The verdict on a job, or why this grader can give none at all.
+
+    Attributes:
+        number: of the job it answers.
+        sha256: digest of what was graded, as the grader itself found it.
+    """
 
     verdict: Verdict | None = None
     error: Problem | None = None
     exit_code: int = 0
+    number: int = 0
+    sha256: str = ""
+
+    def is_about(self, job: Job) -> bool:
+        """Whether it is the answer to this job and to no other."""
+        return self.number == job.number and self.sha256 == Submission(job.files).sha256
 
 
 def main() -> None:
     """Serve until standard input ends."""
+    keep_private()
     source = os.fdopen(os.dup(0), "rb")
     sink = os.fdopen(os.dup(1), "wb")
     # Whatever prints in this process must not end up between two frames.
@@ -90,19 +107,19 @@ class _Grader:
         self._versions: dict[str, str] = {}
 
     def answer(self, job: Job) -> Answer:
-        from course.grading.session import Submission
-
+        submission = Submission(job.files)
+        about: dict[str, Any] = {"number": job.number, "sha256": submission.sha256}
         try:
             self._check_version(job)
-            verdict = self._session(job.exercise).grade(Submission(job.files))
+            verdict = self._session(job.exercise).grade(submission)
             if verdict.error is not None and verdict.error.code == "isolation_failed":
                 # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
                 self._sessions.pop(job.exercise).close()
-                verdict = self._session(job.exercise).grade(Submission(job.files))
-            return Answer(verdict=verdict)
+                verdict = self._session(job.exercise).grade(submission)
+            return Answer(verdict=verdict, **about)
         except CourseError as error:
             problem = Problem(error.code, error.message, error.help)
-            return Answer(error=problem, exit_code=error.exit_code)
+            return Answer(error=problem, exit_code=error.exit_code, **about)
 
     def _check_version(self, job: Job) -> None:
         """Refuse work of a coordinator that has other graders.

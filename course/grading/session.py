@@ -10,7 +10,6 @@ import contextlib
 import hashlib
 import os
 import random
-from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
@@ -21,14 +20,16 @@ from course.grading.failures import CheckFailed, finding_of
 from course.grading.notebook_source import RECORD, NotebookSource
 from course.grading.outcomes import found, load_problem, no_functions, result, skipped
 from course.grading.remote import RemoteSubmission
+from course.grading.submission import Submission
 from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.launch import keep_private
 from course.isolation.probe import open_spawner
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
@@ -46,26 +47,6 @@ _STATUS = {
     "memory": Status.MEMORY,
     "crash": Status.CRASH,
 }
-
-
-@dataclass(frozen=True)
-class Submission:
-    """What one student handed in for one exercise.
-
-    Attributes:
-        files: file name to content, exactly as handed in.
-    """
-
-    files: Mapping[str, bytes]
-
-    @property
-    def sha256(self) -> str:
-        """Over names and contents, in a fixed order."""
-        digest = hashlib.sha256()
-        for name in sorted(self.files):
-            digest.update(f"{len(name)}:{name}:{len(self.files[name])}:".encode())
-            digest.update(self.files[name])
-        return digest.hexdigest()
 
 
 class GradingSession:
@@ -103,6 +84,8 @@ class GradingSession:
         self._timeout = timeout
         self._seed = seed
         self._processor = _choose(processor)
+        if scope == "full":
+            keep_private()
         self._checks = CollectedChecks(check_files(exercise, catalog, scope))
         with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, level, at_least)

@@ -15,7 +15,14 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from course.isolation.view import View
 
-__all__ = ["command", "copy_worker_files", "environment", "private_folder", "remove_tree"]
+__all__ = [
+    "command",
+    "copy_worker_files",
+    "environment",
+    "keep_private",
+    "private_folder",
+    "remove_tree",
+]
 
 #: What runs beside a stranger's code is copied as a package of its own, laid out as here: its files import
 #: each other by the same relative names in both places.
@@ -26,6 +33,18 @@ _COPIED = (
     "physics/systems.py",
 )
 _PREFIX = "course-worker-"
+
+
+def keep_private() -> None:
+    """Close this process to others of the same user: its memory, its descriptors, its environment.
+
+    At L1 a submission runs as that user, and /proc would hand it the pipe that verdicts go through. Only
+    Linux has /proc, and the one call that closes it.
+    """
+    if sys.platform == "linux":
+        from course.isolation import lockdown
+
+        lockdown.not_dumpable()
 
 
 def private_folder() -> Path:

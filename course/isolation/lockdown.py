@@ -38,6 +38,7 @@ __all__ = [
     "landlock_ruleset",
     "mount_tmpfs",
     "new_pid_namespace",
+    "not_dumpable",
     "seccomp_program",
     "unshare_worker",
 ]
@@ -133,6 +134,11 @@ def drop_capabilities() -> None:
     header = struct.pack("=Ii", 0x20080522, 0)  # _LINUX_CAPABILITY_VERSION_3, this process
     _check(_libc.capset(header, b"\0" * 24), "capset")
     _check(_prctl(_PR_SET_NO_NEW_PRIVS, 1), "no_new_privs")
+    not_dumpable()
+
+
+def not_dumpable() -> None:
+    """Let no process of the same user read this one, trace it or open its descriptors; ptrace(2)."""
     _check(_prctl(_PR_SET_DUMPABLE, 0), "not dumpable")
 
 

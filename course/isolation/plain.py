@@ -50,8 +50,12 @@ class ProcessSpawner:
             return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir)
 
     def spawn(self) -> Handle:
-        handle = self._standby or self._start()
-        self._standby = None
+        handle, self._standby = self._standby, None
+        if handle is not None and not handle.alive():
+            # It ended with the thread that started it: that is what Linux takes for its parent.
+            handle.finish()
+            handle = None
+        handle = handle or self._start()
         try:
             self._standby = self._start()
         except OSError as error:
@@ -107,6 +111,9 @@ class _ProcessHandle:
         process.stdin.write(theirs.share(process.pid))  # type: ignore[attr-defined]
         process.stdin.close()
         return process
+
+    def alive(self) -> bool:
+        return self._process.poll() is None
 
     def output(self) -> str:
         if self._output.closed:

@@ -18,7 +18,7 @@ __all__ = ["FORMAT", "Answers", "Batch", "decode_answers", "decode_batch", "enco
 T = TypeVar("T", "Batch", "Answers")
 
 #: Grows when a message changes its meaning.
-FORMAT = 2
+FORMAT = 3
 
 
 class Batch(msgspec.Struct, frozen=True):

@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.errors import CourseError, InternalError
-from course.grading.batch import MAX_TRIES, hang_s, start_grader
+from course.grading.batch import MAX_TRIES, answer_to, hang_s, start_grader
 from course.grading.cluster.messages import FORMAT, Answers, decode_batch, encode
 from course.grading.grader import Answer, Config, read_frame, write_frame
+from course.grading.submission import Submission
 from course.grading.verdict import Problem
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ class _WarmGrader:
             if answer is not None:
                 return answer
             self.close()
-        return Answer()
+        return Answer(number=job.number, sha256=Submission(job.files).sha256)
 
     def _ask(self, job: Job) -> Answer | None:
         process = self._process or self._start()
@@ -125,7 +126,7 @@ class _WarmGrader:
             frame = read_frame(process.stdout)
         finally:
             too_long.cancel()
-        return None if frame is None else msgspec.msgpack.decode(frame, type=Answer)
+        return answer_to(job, frame)
 
     def _start(self) -> subprocess.Popen[bytes]:
         for _ in range(MAX_TRIES):

@@ -58,7 +58,9 @@ def perfect(job: Job) -> Answer:
         Verdict(
             exercise=job.exercise, scope="full", state="graded", score=10.0, max_score=10.0, passed=True,
             checks=(), isolation="L3",
-        )
+        ),
+        number=job.number,
+        sha256=Submission(job.files).sha256,
     )  # fmt: skip
 
 
@@ -231,9 +233,27 @@ def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise
 
 
 def test_a_submission_no_grader_survived_is_our_fault(doubling: Exercise) -> None:
-    (found,) = grade(FakeWorkers(1, answer=lambda _: Answer()), entries_of(doubling, 1))
+    (found,) = grade(FakeWorkers(1, answer=nobody_survived), entries_of(doubling, 1))
     assert found.verdict.error is not None
     assert (found.verdict.state, found.verdict.error.code) == ("grader_error", "grader_died")
+
+
+def nobody_survived(job: Job) -> Answer:
+    return Answer(number=job.number, sha256=Submission(job.files).sha256)
+
+
+def test_an_answer_to_another_job_is_no_answer(doubling: Exercise) -> None:
+    first: list[Answer] = []
+
+    def mixed_up(job: Job) -> Answer:
+        """The answer to the very first job, three times; then as it should be."""
+        first.append(perfect(job))
+        return first[0] if len(first) < 4 else perfect(job)
+
+    found = list(grade(FakeWorkers(1, answer=mixed_up), entries_of(doubling, 3)))
+    assert sorted(one.entry.student for one in found) == ["s000", "s001", "s002"]
+    assert {one.verdict.state for one in found} == {"graded"}
+    assert len(first) > 3
 
 
 def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(

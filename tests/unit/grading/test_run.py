@@ -9,14 +9,16 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
+import msgspec
 import pytest
 
 from course.errors import InternalError, UsageError
 from course.grading import batch
 from course.grading.batch import MAX_TRIES, BatchOptions, Graded, grade_all
 from course.grading.gradebook import Gradebook
+from course.grading.grader import Answer
 from course.grading.intake import read_class
 from course.grading.override import override
 from course.grading.run import RunOptions, Summary, grade_class, open_results
@@ -143,6 +145,38 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
     else:
         with pytest.raises(InternalError, match="cannot start"):
             list(graded)
+
+
+@pytest.mark.parametrize("forger", ["the verdict of another", "nonsense", "the number alone"])
+def test_a_verdict_is_taken_from_who_was_asked_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, doubling: Exercise, solution: bytes, forger: str
+) -> None:
+    """Whoever writes to the pipe of a grader, a frame too many must not move the next verdicts by one."""
+    make_class(tmp_path / "class", solution, 3)
+    read, forged = batch.read_frame, []
+
+    def first_a_forgery(source: IO[bytes]) -> bytes | None:
+        frame = read(source)
+        answer = msgspec.msgpack.decode(frame, type=Answer) if frame else None
+        if forged or answer is None or answer.verdict is None:
+            return frame
+        perfect = msgspec.structs.replace(answer.verdict, score=99.0)
+        forged.append(
+            {
+                "the verdict of another": Answer(perfect, number=5, sha256=answer.sha256),
+                "nonsense": 7,
+                "the number alone": Answer(perfect, number=answer.number),
+            }[forger]
+        )
+        return msgspec.msgpack.encode(forged[0])
+
+    monkeypatch.setattr(batch, "read_frame", first_a_forgery)
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    found = {one.entry.student: one.verdict for one in grade_all(entries, BatchOptions(at_least="L1"))}
+    assert forged
+    assert {verdict.state for verdict in found.values()} == {"graded"}
+    assert len(found) == 3
+    assert max(verdict.score for verdict in found.values()) <= 10
 
 
 def _children(parent: int) -> list[int]:

@@ -10,6 +10,7 @@ import select
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.isolation import launch
 from course.isolation.failures import IsolationError
+from course.isolation.frames import ENDED
 from course.isolation.levels import MAX_OUTPUT, START_TIMEOUT, Exit, Level
 
 if TYPE_CHECKING:
@@ -170,11 +172,11 @@ class ZygoteSpawner:
         """
         try:
             self._send({"reap": pid})
-            answer, _ = self._receive()
-        except (OSError, ValueError) as error:
+            status, *times = ENDED.unpack(self._control.recv(4096))
+        except (OSError, struct.error) as error:
             raise IsolationError(f"the zygote does not answer: {self._stderr() or error}") from None
-        status = answer["status"]
-        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, answer["cpu_s"])
+        cpu_s = times[0] + times[2] + (times[1] + times[3]) / 1e6
+        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, cpu_s)
 
     def close(self) -> None:
         self._control.close()  # the zygote ends at end of file, and all it started with it

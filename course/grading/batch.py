@@ -23,6 +23,7 @@ from course.errors import CourseError, InternalError
 from course.grading.grader import Answer, Config, Job, read_frame, write_frame
 from course.grading.remote import BUDGET_S
 from course.grading.verdict import Problem, Verdict
+from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class BatchOptions:
     Attributes:
         graders: processes.
         level: protection level to insist on; None takes the best one not below ``at_least``.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         seed: seed of the grading run.
     """
 
@@ -124,8 +125,8 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
 
 
 def hang_s(timeout: float) -> float:
-    """Seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
-    return BUDGET_S + timeout + 30.0
+    """Wall seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
+    return WALL * (BUDGET_S + timeout) + 30.0
 
 
 class _Coordinator:

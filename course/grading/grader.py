@@ -31,7 +31,7 @@ class Config(msgspec.Struct, frozen=True):
 
     Attributes:
         level: protection level to insist on, or None for the best not below ``at_least``.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         seed: seed of the grading run.
         processor: number that picks the processor to stay on.
     """

@@ -41,7 +41,7 @@ class RerunOptions:
     Attributes:
         dry_run: change nothing, only say what would change.
         everything: regrade also what these very graders scored.
-        timeout: wall seconds per check; None takes the first run's.
+        timeout: seconds of CPU time per check; None takes the first run's.
     """
 
     dry_run: bool = False

@@ -58,7 +58,7 @@ class GradingSession:
         scope: "public" for the checks a student has, "full" for the hidden ones too.
         level: protection level to insist on; None takes the best one that works here.
         at_least: the weakest level to accept when ``level`` is None.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         seed: seed of the grading run, for checks that draw their inputs.
         processor: picks the processor to stay on; None picks any.
 
@@ -189,8 +189,8 @@ class GradingSession:
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission) -> CheckResult:
-        start = perf_counter()
         remote.begin_check(check.task)
+        start = perf_counter()
         outcome = self._checks.run(check, remote)
         duration_ms = (perf_counter() - start) * 1e3
         if outcome is None:

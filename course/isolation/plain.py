@@ -13,10 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.isolation import launch
+from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
 from course.isolation.levels import MAX_OUTPUT, Exit, Level
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from course.isolation.levels import Handle, Limits
     from course.isolation.view import View
 
@@ -34,6 +37,7 @@ class ProcessSpawner:
         self._imports = imports
         self._limits = limits
         self._standby: _ProcessHandle | None = None
+        self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
 
     def _start(self) -> _ProcessHandle:
         workdir = Path(tempfile.mkdtemp(dir=self._folder))
@@ -47,7 +51,7 @@ class ProcessSpawner:
         }
         ours, theirs = socket.socketpair()
         with theirs:
-            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir)
+            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir, self._left)
 
     def spawn(self) -> Handle:
         handle, self._standby = self._standby, None
@@ -63,11 +67,14 @@ class ProcessSpawner:
             raise IsolationError(f"a worker process could not be started: {error}") from None
         return handle
 
+    def tidy(self) -> None:
+        launch.tidy(self._left)
+
     def close(self) -> None:
         if self._standby is not None:
             self._standby.finish()
             self._standby = None
-        launch.remove_tree(self._folder)
+        launch.sweep(self._folder)
 
 
 class _ProcessHandle:
@@ -81,8 +88,10 @@ class _ProcessHandle:
         folder: str,
         config: dict[str, Any],
         workdir: Path,
+        left: list[Iterator[None]],
     ) -> None:
         self.sock = ours
+        self._left = left
         self._workdir = workdir
         # Opened twice and at once: later that name may be anything the student's code put there.
         with (workdir / ".output").open("wb") as output:
@@ -98,6 +107,9 @@ class _ProcessHandle:
                     stdin=subprocess.DEVNULL,
                     **streams,
                 )
+
+        clock = ProcessClock(self._process.pid)
+        self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
 
     @staticmethod
     def _start_windows(
@@ -131,5 +143,5 @@ class _ProcessHandle:
         code = self._process.wait()
         self.sock.close()
         self._output.close()
-        launch.remove_tree(self._workdir)
+        self._left.append(launch.removing(self._workdir))
         return Exit(max(code, 0), max(-code, 0))

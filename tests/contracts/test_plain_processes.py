@@ -23,14 +23,15 @@ from tests.contracts.users import ROOT, USERS, command_as, run_as
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
 _TRIAL = """
-import sys, time
+import sys
+from course.isolation.deadline import Deadline
 from course.isolation.launch import keep_private
 from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner
 keep_private()
 level, source = sys.argv[1:]
 found = spawner(Level(level), ("numpy",))
-connection = Connection(found, {"a.py": source.encode()}, "a.py", time.monotonic() + 60)
+connection = Connection(found, {"a.py": source.encode()}, "a.py", Deadline(60))
 print(connection.call("f"), flush=True)
 connection.close()
 found.close()

@@ -27,7 +27,7 @@ class Batch(msgspec.Struct, frozen=True):
     Attributes:
         format: the sender's ``FORMAT``.
         level: protection level to insist on, or None for the best not below ``at_least``.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         seed: seed of the grading run.
     """
 

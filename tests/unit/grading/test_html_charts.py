@@ -18,7 +18,7 @@ from course.grading.exports.html_report.charts import (
     score_bins,
 )
 from course.grading.exports.html_report.words import when
-from course.grading.late import in_days
+from course.grading.results.late import in_days
 from tests.unit.grading.pages import Page
 
 

@@ -27,7 +27,7 @@ from course.grading.exports.html_report.markup import (
     tag,
 )
 from course.grading.exports.html_report.words import when
-from course.grading.numbers import format_points
+from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         Tally,
         TaskTally,
     )
-    from course.grading.results import Results
+    from course.grading.results.effective import Results
 
 __all__ = ["class_page"]
 

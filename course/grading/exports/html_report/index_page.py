@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from course.grading.exports.html_report.markup import Heading
-    from course.grading.records import GradedExercise
-    from course.grading.results import Effective, Results
+    from course.grading.gradebook.records import GradedExercise
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["index_page", "index_row"]
 

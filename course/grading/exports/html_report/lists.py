@@ -15,14 +15,14 @@ from course.grading.exports.html_report.markup import (
     tag,
 )
 from course.grading.exports.html_report.words import when
-from course.grading.late import in_days
+from course.grading.results.late import in_days
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from course.grading.exports.html_report.markup import Heading
     from course.grading.exports.html_report.tally import Listed, Tally
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["late_list", "overrides_list", "protection", "troubled_list"]
 

@@ -22,15 +22,15 @@ from course.grading.exports.html_report.markup import (
     tag,
 )
 from course.grading.exports.html_report.words import when
-from course.grading.late import in_days
-from course.grading.numbers import numbers_of
 from course.grading.quiz import EXERCISE_ID as QUIZ
-from course.grading.verdict import CheckResult, Problem, Status, Visibility
+from course.grading.results.late import in_days
+from course.scoring.numbers import numbers_of
+from course.scoring.verdict import CheckResult, Problem, Status, Visibility
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["student_page"]
 

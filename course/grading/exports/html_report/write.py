@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["write_html", "write_pages"]
 

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 from course.isolation import wire
 from course.isolation.deadline import Deadline
-from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.levels import START_TIMEOUT
 from course.isolation.reports import claimed_text, raised
 from course.physics import systems
+from course.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

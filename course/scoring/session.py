@@ -27,7 +27,7 @@ from course.scoring.places import Places
 from course.scoring.remote import RemoteSubmission
 from course.scoring.submission import Submission
 from course.scoring.terms import Terms
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, bounded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -210,8 +210,8 @@ class GradingSession:
             problem = Problem(
                 "check_failed", f"{broken.id}: {broken.message}", "Regrade once it is repaired."
             )
-            return self._verdict("grader_error", score, tuple(results), error=problem)
-        return self._verdict("graded", score, tuple(results), most=most)
+            return bounded(self._verdict("grader_error", score, tuple(results), error=problem))
+        return bounded(self._verdict("graded", score, tuple(results), most=most))
 
     def _ungradable(self, problem: Problem) -> Verdict:
         return self._verdict("ungradable", 0.0, (), error=problem)

@@ -21,8 +21,9 @@ import msgspec
 
 from course.errors import CourseError, InternalError
 from course.grading.cluster.messages import FORMAT, Answers, decode_batch, encode
+from course.grading.pipes import read_frame, write_frame
 from course.grading.running.batch import MAX_TRIES, answer_to, hang_s, start_grader
-from course.grading.running.grader import Answer, Config, read_frame, write_frame
+from course.grading.running.grader import Answer, Config
 from course.scoring.submission import Submission
 from course.scoring.verdict import Problem
 

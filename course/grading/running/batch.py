@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.errors import CourseError, InternalError
-from course.grading.running.grader import Answer, Config, Job, read_frame, write_frame
+from course.grading.pipes import read_frame, write_frame
+from course.grading.running.grader import Answer, Config, Job
 from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private
 from course.scoring.remote import BUDGET_S

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import os
 import secrets
-import struct
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from course.errors import CourseError, MissingCapabilityError
+from course.grading.pipes import read_frame, write_frame
 from course.handed_in.notebook import opened
 from course.isolation.launch import keep_private
 from course.scoring.submission import Submission
@@ -23,9 +23,7 @@ from course.scoring.verdict import Problem, Verdict
 if TYPE_CHECKING:
     from course.scoring.session import GradingSession
 
-__all__ = ["Answer", "Config", "Job", "main", "read_frame", "write_frame"]
-
-_LENGTH = struct.Struct("<I")
+__all__ = ["Answer", "Config", "Job", "main"]
 
 
 class Config(msgspec.Struct, frozen=True):
@@ -156,23 +154,6 @@ class _Grader:
     def close(self) -> None:
         for session in self._sessions.values():
             session.close()
-
-
-def read_frame(source: IO[bytes]) -> bytes | None:
-    """The next frame's content; None at the end of the stream."""
-    header = source.read(_LENGTH.size)
-    if len(header) < _LENGTH.size:
-        return None
-    size = _LENGTH.unpack(header)[0]
-    body = source.read(size)
-    return body if len(body) == size else None
-
-
-def write_frame(sink: IO[bytes], message: Any) -> None:
-    """Write one message and flush it."""
-    body = msgspec.msgpack.encode(message)
-    sink.write(_LENGTH.pack(len(body)) + body)
-    sink.flush()
 
 
 if __name__ == "__main__":

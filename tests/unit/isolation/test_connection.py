@@ -16,11 +16,12 @@ import numpy as np
 import pytest
 
 from course.isolation.deadline import Deadline
-from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.levels import Exit
 from course.isolation.session import Connection, LoadRefusedError, RemoteFunction
 from course.isolation.wire import Codec, Kind
 from course.physics import systems
+from course.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -227,7 +228,7 @@ def test_what_a_submission_says_cannot_steer_a_terminal() -> None:
     connection._handle.printed = "\x1b[1A100/100"  # type: ignore[attr-defined]
     with pytest.raises(StudentFailure) as caught:
         connection.call("f")
-    assert (caught.value.type, caught.value.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\n")
+    assert (caught.value.type, caught.value.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\\n")
     assert connection.output() == "\\x1b[1A100/100"
     connection.close()
     assert connection.output() == "\\x1b[1A100/100"

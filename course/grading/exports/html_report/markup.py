@@ -10,7 +10,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from course.grading.exports.cells import spelled_out
+from course.printable import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,7 +48,7 @@ def text(value: str) -> Html:
 
 def _escaped(value: str) -> Html:
     if not value.isprintable():
-        value = "\n".join(map(spelled_out, value.split("\n")))
+        value = "\n".join(map(one_line, value.split("\n")))
     return Html(html.escape(value, quote=True))
 
 
@@ -63,7 +63,7 @@ def shortened(value: str, longest: int) -> str:
 
 def name_of(student: str) -> Html:
     """A name on one line, isolated so that one written from right to left does not turn its surroundings."""
-    return Html(f"<bdi>{text(spelled_out(shortened(student, _LONGEST_NAME)))}</bdi>")
+    return Html(f"<bdi>{text(one_line(shortened(student, _LONGEST_NAME)))}</bdi>")
 
 
 def tag(name: str, /, *children: str, **attributes: str | float | bool | None) -> Html:
@@ -164,7 +164,7 @@ def page(
             tag("meta", http_equiv="Content-Security-Policy", content=Html(_policy(scripted))),
             tag("meta", name="referrer", content="no-referrer"),
             tag("meta", name="robots", content="noindex"),
-            tag("title", spelled_out(title)),
+            tag("title", one_line(title)),
             tag("style", Html(_style(style))),
         )
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from course.grading.exports.cells import number, spelled_out
+from course.grading.exports.cells import number
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.html_report.charts import bar_rows
 from course.grading.exports.html_report.markup import (
@@ -24,6 +24,7 @@ from course.grading.exports.html_report.markup import (
 from course.grading.exports.html_report.words import when
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.late import in_days
+from course.printable import one_line
 from course.scoring.numbers import numbers_of
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility
 
@@ -69,7 +70,7 @@ def student_page(results: Results, student: str, found: Sequence[Effective]) -> 
         (_overview(results, found), *(_exercise(results, item, at) for at, item in enumerate(found, 1)))
     )
     return page(
-        f"{shortened(spelled_out(shown), 80)}: results",
+        f"{shortened(one_line(shown), 80)}: results",
         header,
         navigation,
         main,

@@ -91,30 +91,28 @@ def shown(verdict: Verdict) -> str:
     return str(plain)
 
 
-def known(verdict: Verdict) -> str:
+def known(verdict: Verdict, *, timed: bool) -> str:
     """What the instructor has of the one check that is tried."""
-    return next(str(msgspec.to_builtins(check)) for check in verdict.checks if check.id == "draw_seeded")
+    check = next(check for check in verdict.checks if check.id == "draw_seeded")
+    return str(msgspec.to_builtins(check if timed else msgspec.structs.replace(check, duration_ms=0.0)))
 
 
-def texts(name: str, numbers: int, level: str | None = None) -> tuple[set[str], set[str]]:
-    """What arrived at the student, and what at the instructor, over so many numbers."""
-    catalog = Catalog(
-        Content(
-            root=ARENA,
-            **{part: ARENA / part for part in ("exercises", "lessons", "quiz", "solutions", "graders")},
-        )
-    )
-    arrived, noted = set(), set()
+def trial(numbers: int, level: str | None = None) -> dict[str, tuple[set[str], set[str]]]:
+    """Of each sender what arrived at the student, and what at the instructor, over so many numbers."""
+    parts = ("exercises", "lessons", "quiz", "solutions", "graders")
+    catalog = Catalog(Content(root=ARENA, **{part: ARENA / part for part in parts}))
+    exercise = catalog.exercise("arena")
+    found: dict[str, tuple[set[str], set[str]]] = {name: (set(), set()) for name in SENDERS}
     for seed in range(numbers):
         terms = Terms(level=level, timeout=1.0, seed=seed)
-        with GradingSession(catalog.exercise("arena"), catalog, scope="full", terms=terms) as session:
-            verdict = session.grade(
-                Submission({session.exercise.module: program(SENDERS[name])}), only="draw_seeded"
-            )
-        assert verdict.state == "graded", verdict.error
-        arrived.add(shown(verdict))
-        noted.add(known(verdict))
-    return arrived, noted
+        with GradingSession(exercise, catalog, scope="full", terms=terms) as session:
+            for name, (arrived, noted) in found.items():
+                handed_in = Submission({exercise.module: program(SENDERS[name])})
+                verdict = session.grade(handed_in, only="draw_seeded")
+                assert verdict.state == "graded", verdict.error
+                arrived.add(shown(verdict))
+                noted.add(known(verdict, timed=name.startswith("time")))
+    return found
 
 
 def main() -> None:
@@ -125,8 +123,7 @@ def main() -> None:
     parser.add_argument("--level", default=None)
     options = parser.parse_args()
     print(f"{'sent by':50} {'student':>8} {'instructor':>10}   bits of {math.log2(options.numbers):.0f}")
-    for name in SENDERS:
-        arrived, noted = texts(name, options.numbers, options.level)
+    for name, (arrived, noted) in trial(options.numbers, options.level).items():
         print(f"{name:50} {math.log2(len(arrived)):8.2f} {math.log2(len(noted)):10.2f}", flush=True)
 
 

@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from course.errors import InternalError, UsageError
+from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake.students import read_class
 from course.grading.results.override import override
@@ -180,6 +180,43 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
     assert {verdict.state for verdict in found.values()} == {"graded"}
     assert len(found) == 3
     assert max(verdict.score for verdict in found.values()) <= 10
+
+
+def test_a_run_that_is_refused_leaves_its_name_free(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    """Also after it noted what could not be read: the corrected command will note that again."""
+    make_class(tmp_path / "class", solution, 2)
+    (tmp_path / "class" / "aaa").mkdir()
+    (tmp_path / "class" / "aaa" / "doubling.py").write_bytes(b"")
+    out, options = tmp_path / "out", RunOptions(exercises=("doubling",), terms=Terms(at_least="L1"))
+
+    def refused(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
+        for entry in entries:
+            if entry.problem is not None:
+                yield Graded(entry, batch.without_grading(entry, "ungradable", entry.problem))
+        raise MissingCapabilityError("No protection here.", help="Get some.", code="protection_level")
+
+    with pytest.raises(MissingCapabilityError):
+        grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
+    assert not out.exists()
+    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None)
+    assert summary.states["graded"] == 2
+
+    # What was there before, or has a result in it, stays.
+    with pytest.raises(UsageError):
+        grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
+    assert (out / "gradebook.sqlite").exists()
+
+    def broken_off(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+        yield next(grade_all((entry for entry in entries if entry.submission is not None), terms))
+        raise MissingCapabilityError("The scheduler is gone.", help="Start it.", code="no_scheduler")
+
+    with pytest.raises(MissingCapabilityError):
+        grade_class(
+            tmp_path / "class", tmp_path / "part", catalog, options, lambda *_: None, grade=broken_off
+        )
+    assert (tmp_path / "part" / "gradebook.sqlite").exists()
 
 
 def _children(parent: int) -> list[int]:

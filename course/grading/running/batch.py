@@ -252,8 +252,17 @@ class _Coordinator:
     def _end_hung(self) -> None:
         now = time.monotonic()
         for grader in list(self._graders.values()):
-            if grader.work and now - grader.since > self._hang_s:
+            if grader.work and (now - grader.since > self._hang_s or _is_stopped(grader.process.pid)):
                 grader.process.kill()  # its pipe closes, and the next round finds it dead
+
+
+def _is_stopped(pid: int) -> bool:
+    """Whether a signal stopped that process: a submission at L1 may send one, and nobody would wake it."""
+    if not hasattr(os, "waitid"):
+        return False
+    with contextlib.suppress(ChildProcessError):
+        return os.waitid(os.P_PID, pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
+    return False
 
 
 def answer_to(job: Job, frame: bytes | None) -> Answer | None:

@@ -182,6 +182,17 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
     assert max(verdict.score for verdict in found.values()) <= 10
 
 
+def test_a_submission_that_stops_its_grader_holds_nobody_up(
+    tmp_path: Path, doubling: Exercise, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 3)
+    stop = b"\nimport os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
+    (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + stop)
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    found = {one.entry.student: one.verdict.state for one in grade_all(entries, Terms(level="L1"))}
+    assert found == {"student-000": "graded", "student-001": "grader_error", "student-002": "graded"}
+
+
 def test_a_run_that_is_refused_leaves_its_name_free(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:

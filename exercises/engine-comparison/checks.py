@@ -149,7 +149,7 @@ def test_choose_nothing(submission):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(4)
 def test_choose_real_engines(submission):
-    """Among ODE, Bullet, PhysX and MuJoCo as measured, each is chosen for the job it is known for"""
+    """Among ODE, Bullet, PhysX and MuJoCo as measured, the cheapest that fits is chosen for six jobs"""
     reports = measured.reports()
     choosing.expect_choices(
         submission,

@@ -116,12 +116,13 @@ def renamed(rng, question):
 #: Further questions about the engines as measured: requirements, and the right name.
 REAL = (
     ([need("as_it_comes", "==", True)], "physx, as it comes"),
-    ([need("pendulum_loss", "<=", 0.12), need("slope_error", "<=", 0.01)], "physx, well set"),
-    ([need("rebound_m", ">=", 0.2), need("rebound_m", "<=", 0.26), need("as_it_comes", "==", True)],
+    ([need("pendulum_loss", "<=", 0.2), need("slope_error", "<=", 0.001)], "physx, well set"),
+    ([need("rebound_m", ">=", 0.2), need("rebound_m", "<=", 0.28), need("as_it_comes", "==", True)],
      "physx, as it comes"),
-    ([need("graphics_card", "==", False), need("clash_error", "<=", 0.01)], "mujoco, well set"),
-    ([need("graphics_card", "==", False), need("as_it_comes", "==", True), need("slope_error", "<=", 0.001)],
-     "ode, as it comes"),
-    ([need("gazebo_classic", "==", True), need("steps_per_s", ">=", 2000.0)], None),
+    ([need("graphics_card", "==", False), need("clash_error", "<=", 0.01)], "ode, as it comes"),
+    ([need("graphics_card", "==", False), need("as_it_comes", "==", True), need("diagonal", "<=", 1.1)],
+     "bullet, as it comes"),
+    ([need("clash_error", "<=", 0.01), need("stack_mm", "<=", 0.1)], "mujoco, well set"),
+    ([need("gazebo_classic", "==", True), need("rate", ">=", 0.2)], None),
     ([need("price_eur", "<=", 0.0)], None),
 )  # fmt: skip

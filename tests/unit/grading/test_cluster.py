@@ -154,9 +154,9 @@ def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling
     assert max(map(len, sizes)) <= 2 * 3, "one in hand and one waiting for each"
     assert sizes[0][0] == 8
     assert sizes[-1][-1] == 1
-    assert {(batch.seed, job.version) for row in workers.rounds for batch in row for job in batch.jobs} == {
-        (5, "v1")
-    }
+    assert {
+        (batch.terms.seed, job.version) for row in workers.rounds for batch in row for job in batch.jobs
+    } == {(5, "v1")}
 
 
 @pytest.mark.parametrize(("each_s", "largest"), [(0.02, 50), (0.001, 64), (0.3, 8), (2.0, 8)])
@@ -275,7 +275,7 @@ def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(
 
 
 def test_messages_of_another_format_are_refused_and_not_half_understood() -> None:
-    batch = Batch(FORMAT, None, "L2", 1.0, 0, ())
+    batch = Batch(FORMAT, Terms(), ())
     assert decode_batch(encode(batch)) == batch
     newer = msgspec.structs.replace(batch, format=FORMAT + 1)
     for payload in (encode(newer), b"", b"\xc1", msgspec.msgpack.encode({"format": FORMAT})):
@@ -362,7 +362,9 @@ def at_work(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Answers]]
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
 
     def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
-        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, level, "L1", 5.0, 0, tuple(jobs)))))
+        reply = decode_answers(
+            worker.grade_batch(encode(Batch(FORMAT, Terms(level, "L1", 5.0), tuple(jobs))))
+        )
         assert reply is not None
         return reply
 

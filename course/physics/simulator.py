@@ -44,9 +44,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Recording", "Simulator", "step_count"]
 
-_INSTANTS = (
-    8  # at which surfaces meet that one step finds and goes back to; those after them overlap a little
-)
+# A step goes back to this many instants at which surfaces meet; what meets after that overlaps a little.
+_INSTANTS = 8
 _BLOWS = 64  # that pass from pair to pair at one instant, as along a row of balls
 _REST = 1.5  # speeds below this many g h are what gravity adds in one step, no blow: they do not bounce
 _STILL = 0.01  # a speed below this share of g h is rest: the forces of the next step end it
@@ -321,7 +320,7 @@ class Simulator:
             self._solve(normal, motion, fast, now, target=-e * speed)
             speed = normal_speed(self._pairs.numbers, normal, motion.velocity)
         if np.any(touching & (speed < -self._still)):
-            self._solve(normal, motion, touching & (speed <= self._still), now)
+            self._solve(normal, motion, touching, now)
         velocity, spin = self._difference(motion, before)
         for i, body in enumerate(self.bodies):
             q, w = body.state.orientation, body.state.angular_velocity

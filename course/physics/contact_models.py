@@ -5,11 +5,11 @@
     soft convex   MuJoCo's: the acceleration is drawn towards that of a spring, by a share called impedance
 
 Each model is a step ``(gap, velocity) -> (gap, velocity)``. All of them find the new velocity first and move
-with it, see contact only once the ball has touched the floor, and cannot pull. One ball and one contact is all
-there is to solve, so what differs is the model and not the solver.
+with it, see contact only once the ball has touched the floor, and cannot pull. One ball and one contact is
+all there is to solve, so what differs is the model and not the solver.
 
-Source: Catto, Soft Constraints (Game Developers Conference), 2011, and Open Dynamics Engine, Manual (ERP, CFM);
-MuJoCo documentation, Computation (solref, solimp); Horak and Trinkle, IEEE RA-L 4, 2019 (comparison).
+Source: Catto, Soft Constraints (Game Developers Conference), 2011, and Open Dynamics Engine, Manual (ERP,
+CFM); MuJoCo documentation, Computation (solref, solimp); Horak and Trinkle, IEEE RA-L 4, 2019 (comparison).
 """
 
 from __future__ import annotations
@@ -143,16 +143,14 @@ def drop(model: ContactModel, gap: float, v: float, h: float, n: int, g: float =
     return np.array(gaps), np.array(speeds)
 
 
-def slide_across(
-    angle: float, speed: float, mu: float, h: float, *, pyramid: bool, g: float = 9.81
-) -> Array:
+def slide_across(angle: float, speed: float, mu: float, h: float, *, pyramid: bool, g: float = 9.81) -> Array:
     """Where a block is that slides over a level floor, until it stands; shape (n, 2), m.
 
     Args:
         angle: of its velocity, rad, from the x axis; speed: m/s.
         mu: friction.
-        pyramid: limit the friction along x and along y each by ``mu`` times the weight, as an engine does that
-            solves two rows of friction a contact; otherwise limit the vector (the cone).
+        pyramid: limit the friction along x and along y each by ``mu`` times the weight, as an engine does
+            that solves two rows of friction a contact; otherwise limit the vector (the cone).
     """
     v = speed * np.array([math.cos(angle), math.sin(angle)])
     most = mu * g * h

@@ -44,7 +44,7 @@ def _run(p: Mapping[str, Any]) -> Result:
         simulation="contact-models",
         settings=p,
         rows=rows,
-        headline=f"With e = {e:g} the ball rises to {low:.3f} up to {high:.3f} of its height, not {e**2:.3f}",
+        headline=f"With e = {e:g} a ball rises to {low:.3f} to {high:.3f} of its height, not to {e**2:.3f}",
         finding=f"A floor that looks once a step of {h:g} s lets the ball rise to between {digits(low)} and "
         f"{digits(high)} of its height, by where in the step it arrives; theory says {digits(e**2)}. "
         f"Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic ball "

@@ -109,11 +109,13 @@ def _of_bounces(rebound: Mapping[str, Array], kept: Mapping[str, Array], e: floa
 
 
 def _rebound(model: ContactModel, height: float, h: float, g: float) -> float:
-    """The highest sample after the ball first rose from the floor, m."""
+    """Top of the first bounce, m: the highest sample between the first that rises and the next that falls."""
     # Down takes one fall; up again another, or two more where a correction doubles the speed.
     gaps, speeds = drop(model, height, 0.0, h, math.ceil(3.5 * math.sqrt(2 * height / g) / h) + 2, g)
-    rising = np.flatnonzero(speeds > 0)
-    return float(gaps[rising[0] :].max()) if rising.size else 0.0
+    rising = speeds > 0
+    first = int(np.argmax(rising))
+    falls = np.flatnonzero(~rising[first:])
+    return float(gaps[first : first + falls[0] + 1].max()) if rising.any() and falls.size else 0.0
 
 
 SIMULATION = Simulation(

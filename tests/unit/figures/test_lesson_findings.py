@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.figures import engines, sim_to_real, summary, twins
+from course.figures import engines, how_contact_is_solved, sim_to_real, summary, twins
+from course.physics.contact_models import Constraint
 
 
 @pytest.mark.parametrize("test", engines.TESTS)
@@ -22,6 +23,16 @@ def test_every_engine_has_every_measurement_and_a_rate() -> None:
         assert 0 < low < high
         for setting in ("default", "tuned"):
             assert set(row.get(setting, row["default"])) == set(engines.TESTS)
+
+
+def test_a_bounce_depends_on_its_phase_and_an_engine_bounces_as_the_model_says() -> None:
+    plain = how_contact_is_solved.rebounds(Constraint(0.5))
+    assert 0.22 < plain.min() < 0.225
+    assert 0.25 < plain.max() < 0.26
+    for part in np.arange(8) / 8:
+        (modelled,) = how_contact_is_solved.rebounds(Constraint(0.5), np.array([part]))
+        assert how_contact_is_solved.in_pymunk(float(part)) == pytest.approx(modelled, abs=0.005)
+    assert how_contact_is_solved.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
 
 
 def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None:

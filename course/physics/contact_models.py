@@ -88,36 +88,50 @@ class Constraint:
 
 @dataclass(frozen=True, slots=True)
 class SoftConvex:
-    """MuJoCo's contact in one dimension, with a constant impedance.
+    """MuJoCo's contact in one dimension, with the defaults of its documentation.
 
     The acceleration is ``(1 - impedance)`` times the free one plus ``impedance`` times that of a spring and a
-    damper, ``-damping v - stiffness gap``, chosen by a time constant and a damping ratio.
+    damper, ``-damping v - stiffness gap``, which a time constant and a damping ratio choose (``solref``). The
+    impedance grows with the depth (``solimp``, with its midpoint in the middle and its power 2).
 
     Attributes:
-        timeconst: s; dampratio: 1 is critical (``solref``).
-        impedance: between 0 and 1 (``solimp``); MuJoCo lets it grow from 0.9 to 0.95 with the depth.
+        timeconst: s; dampratio: 1 is critical.
+        least, most: the impedance at the surface and from ``width`` (m) on.
     """
 
     timeconst: float = 0.02
     dampratio: float = 1.0
-    impedance: float = 0.9
+    least: float = 0.9
+    most: float = 0.95
+    width: float = 0.001
 
-    @property
-    def stiffness(self) -> float:
-        """Of the reference, 1/s²."""
-        return 1.0 / (self.impedance * self.timeconst**2 * self.dampratio**2)
+    def impedance(self, depth: float) -> float:
+        """The share of the spring in the acceleration, at a depth in m."""
+        x = min(depth / self.width, 1.0)
+        rise = 2 * x**2 if x <= 0.5 else 1 - 2 * (1 - x) ** 2
+        return self.least + rise * (self.most - self.least)
+
+    def stiffness(self, depth: float) -> float:
+        """Of the spring, at a depth in m; 1/s²."""
+        return self.impedance(depth) / (self.most * self.timeconst * self.dampratio) ** 2
 
     def step(self, gap: float, v: float, h: float, g: float) -> tuple[float, float]:
         a = -g
         if gap < 0:
-            reference = -2.0 / (self.impedance * self.timeconst) * v - self.stiffness * gap
-            a += max(0.0, self.impedance * (reference + g))
+            spring = -2.0 / (self.most * self.timeconst) * v - self.stiffness(-gap) * gap
+            a += max(0.0, self.impedance(-gap) * (spring + g))
         v += h * a
         return gap + h * v, v
 
     def resting_depth(self, g: float) -> float:
         """How deep the ball sinks in, m: where the free part and the spring's balance."""
-        return (1.0 - self.impedance) * g / (self.impedance * self.stiffness)
+        low, high = 0.0, g * (self.most * self.timeconst * self.dampratio) ** 2 / self.least**2
+        for _ in range(60):  # each halves the bracket; 53 of them exhaust a float
+            middle = 0.5 * (low + high)
+            d = self.impedance(middle)
+            sinks = (1.0 - d) * g > d * self.stiffness(middle) * middle
+            low, high = (middle, high) if sinks else (low, middle)
+        return high
 
 
 def erp_cfm(stiffness: float, damping: float, h: float) -> tuple[float, float]:

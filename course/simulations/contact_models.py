@@ -74,7 +74,7 @@ def _at_rest(p: Mapping[str, Any]) -> tuple[Row, ...]:
     models: tuple[tuple[str, ContactModel, float, str], ...] = (
         ("constraint", Constraint(), 0.0, "it may not enter"),
         ("ERP and CFM of the spring", Constraint(erp=erp, cfm=cfm), g / k, "m g / k"),
-        ("soft convex", soft, soft.resting_depth(g), "(1 - d) g / (d k)"),
+        ("soft convex", soft, soft.resting_depth(g), "(1 - d) g = d k depth"),
         ("penalty", Penalty(k, damping), g / k, "m g / k"),
     )
     rows = []

@@ -53,7 +53,23 @@ def test_a_constraint_holds_a_ball_exactly_and_never_pulls() -> None:
 def test_mujocos_floor_lets_every_ball_sink_as_its_impedance_says(timeconst: float) -> None:
     model = SoftConvex(timeconst)
     assert lies(model) == pytest.approx(model.resting_depth(G), rel=1e-6)
-    assert model.resting_depth(G) == pytest.approx(0.1 * G * timeconst**2)
+    flat = SoftConvex(timeconst, least=0.9, most=0.9)  # d k r = (1 - d) g, with k = 1 / (d timeconst²)
+    assert flat.resting_depth(G) == pytest.approx(0.1 * G * timeconst**2)
+
+
+@pytest.mark.parametrize("h", [0.01, 0.002])
+def test_mujoco_itself_does_the_same_step_by_step(h: float) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    world = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="{h}"/><worldbody><geom type="plane" size="5 5 1"/>
+        <body pos="0 0 0.52"><freejoint/><geom type="sphere" size="0.5" mass="3"/></body>
+        </worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(world)
+    gaps = drop(SoftConvex(), 0.02, 0.0, h, 300, G)[0]
+    for gap in gaps[1:]:
+        mujoco.mj_step(world, data)
+        assert data.qpos[2] - 0.5 == pytest.approx(gap, abs=1e-6)
 
 
 def test_a_correction_in_the_velocity_makes_a_ball_hop_and_a_split_one_does_not() -> None:

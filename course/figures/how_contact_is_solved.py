@@ -16,13 +16,12 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["PHASES", "cone", "in_pymunk", "phases", "rebounds", "rest"]
+__all__ = ["PHASES", "cone", "phases", "rebounds", "rest"]
 
 _STEP_S, _G = 0.01, 9.81
 _STIFFNESS, _DAMPING = 1e4, 20.0  # N/m and N s/m under a ball of 1 kg
-#: Of the curves and of the engine's points, as shares of a step.
+#: Where in a step the ball arrives, as shares of it.
 PHASES = np.arange(80) / 80
-_POINTS = np.arange(8) / 8
 
 
 def rest() -> Figure:
@@ -60,29 +59,8 @@ def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Ar
     return np.array(tops)
 
 
-def in_pymunk(part: float, h: float = _STEP_S, restitution: float = 0.5) -> float:
-    """The same in pymunk, with a slop of 1 mm; one start."""
-    import pymunk
-
-    space = pymunk.Space()
-    space.gravity = (0.0, -_G)
-    space.collision_slop = 0.001
-    floor = pymunk.Segment(space.static_body, (-1.0, 0.0), (1.0, 0.0), 0.0)
-    body = pymunk.Body(1.0, 0.1)
-    ball = pymunk.Circle(body, 0.5)
-    height = 1.0 + part * h * math.sqrt(2 * _G)
-    body.position = (0.0, 0.5 + height)
-    floor.elasticity, ball.elasticity = 1.0, restitution
-    space.add(floor, body, ball)
-    gaps = []
-    for _ in range(round(1.1 / h)):
-        space.step(h)
-        gaps.append(body.position.y - 0.5)
-    return max(gaps[int(np.argmin(gaps[: round(0.6 / h)])) :]) / height
-
-
 def phases() -> Figure:
-    """The rebound over the phase of the step: exact, looked at once a step, with correction, in pymunk."""
+    """The rebound over the phase of the step: exact, looked at once a step, and with correction."""
     figure, (axes,) = new_figure(3.6)
     plain, corrected = rebounds(Constraint(0.5)), rebounds(Constraint(0.5, erp=0.2))
     for values, color, line in ((plain, "blue", "-"), (corrected, "vermillion", "--")):
@@ -90,13 +68,9 @@ def phases() -> Figure:
         broken = np.where(np.abs(np.diff(values, prepend=values[0])) > 0.02, np.nan, values)
         axes.plot(PHASES, broken, color=PALETTE[color], linestyle=line, linewidth=1.8)
     axes.axhline(0.25, color=PALETTE["black"], linewidth=1.2)
-    axes.plot(
-        _POINTS, [in_pymunk(float(part)) for part in _POINTS], color=PALETTE["orange"], linestyle="none",
-        marker="o", markersize=6, markeredgecolor=PALETTE["black"], markeredgewidth=0.6,
-    )  # fmt: skip
     axes.text(0.99, 0.257, "event-driven: 0.25", ha="right", fontsize=8.5, fontweight="bold")
     axes.text(
-        0.99, 0.188, "looked at once a step; points: pymunk", ha="right", fontsize=8.5, fontweight="bold",
+        0.99, 0.188, "looked at once a step", ha="right", fontsize=8.5, fontweight="bold",
         color=PALETTE["blue"],
     )  # fmt: skip
     axes.text(

@@ -25,13 +25,10 @@ def test_every_engine_has_every_measurement_and_a_rate() -> None:
             assert set(row.get(setting, row["default"])) == set(engines.TESTS)
 
 
-def test_a_bounce_depends_on_its_phase_and_an_engine_bounces_as_the_model_says() -> None:
+def test_a_bounce_depends_on_its_phase() -> None:
     plain = how_contact_is_solved.rebounds(Constraint(0.5))
     assert 0.22 < plain.min() < 0.225
     assert 0.25 < plain.max() < 0.26
-    for part in np.arange(8) / 8:
-        (modelled,) = how_contact_is_solved.rebounds(Constraint(0.5), np.array([part]))
-        assert how_contact_is_solved.in_pymunk(float(part)) == pytest.approx(modelled, abs=0.005)
     assert how_contact_is_solved.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
 
 

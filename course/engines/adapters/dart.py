@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import dartpy as dart
 import numpy as np
 
-from course.engines.base import AS_IT_COMES, Body, Motion, NotApplicableError, Scene, Tuning
+from course.engines.base import Body, Motion, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,7 +23,7 @@ __all__ = ["ADAPTER", "DartAdapter", "DartWorld"]
 class DartWorld:
     """A scene as a DART world of skeletons."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self.world = world = dart.simulation.World()
         world.setTimeStep(scene.dt)
         world.setGravity(list(scene.gravity))
@@ -31,6 +31,7 @@ class DartWorld:
         sleep = world.getDeactivationOptions()
         sleep.mEnabled = False
         world.setDeactivationOptions(sleep)
+        world.getConstraintSolver().setSplitImpulseEnabled(bool(options.get("split_impulse")))
         self._friction, self._restitution = scene.friction, math.sqrt(scene.restitution)
         if scene.floor:
             # A box: not every detector knows planes.
@@ -126,14 +127,8 @@ class DartAdapter:
     """See ``Adapter``."""
 
     def build(self, scene: Scene, options: Mapping[str, Any]) -> DartWorld:
-        """See ``Adapter``; there are no options, since nothing here is bettered by one."""
-        if options:
-            raise NotApplicableError(f"DART takes no options here, and was given {', '.join(options)}.")
-        return DartWorld(scene)
-
-    def tuning(self, scenario: str) -> Tuning:  # noqa: ARG002 - the same for all
         """See ``Adapter``."""
-        return AS_IT_COMES
+        return DartWorld(scene, options)
 
 
 ADAPTER = DartAdapter()

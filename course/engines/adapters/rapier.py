@@ -10,27 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import rapier3d as rapier
 
-from course.engines.base import AS_IT_COMES, Body, Motion, Scene, Tuning
+from course.engines.base import Body, Motion, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "RapierAdapter", "RapierWorld"]
-
-_SUBSTEPS = "substeps 16 instead of 4: smaller steps do more for joints and piles than more iterations."
-_STIFF = "stiffness 480 rad/s (fixed bodies: twice that) instead of 30: contacts are springs here."
-_FINE = Tuning({"substeps": 16}, (_SUBSTEPS,))
-_PILE = Tuning({"substeps": 16, "stiffness": 480.0}, (_SUBSTEPS, _STIFF))
-_TUNINGS = {
-    "free-fall": _FINE,
-    "pendulum": _FINE,
-    "double-pendulum": _FINE,
-    "bounce": _FINE,
-    "small-drop": _FINE,
-    "stack": _PILE,
-    "mass-ratio": _PILE,
-    "boxes": _PILE,
-}
 
 
 class RapierWorld:
@@ -46,6 +31,10 @@ class RapierWorld:
             stiffness = options["stiffness"]
             parameters.contact_softness = rapier.SpringCoefficients(stiffness, 1.0)
             parameters.static_contact_softness = rapier.SpringCoefficients(2.0 * stiffness, 1.0)
+        if "allowed_error" in options:
+            parameters.normalized_allowed_linear_error = options["allowed_error"]
+        if "foresight" in options:
+            parameters.normalized_prediction_distance = options["foresight"]
         self._scene = scene
         self.handles = [self._add(body) for body in scene.bodies]
         if scene.floor:
@@ -131,10 +120,6 @@ class RapierAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> RapierWorld:
         """See ``Adapter``."""
         return RapierWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, AS_IT_COMES)
 
 
 ADAPTER = RapierAdapter()

@@ -15,27 +15,13 @@ import numpy as np
 from panda3d import ode
 from panda3d.core import Quat, Vec4
 
-from course.engines.base import AS_IT_COMES, Body, Motion, Scene, Tuning
+from course.engines.base import Body, Motion, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "OdeAdapter", "OdeWorld"]
 
-_EXACT = "solver exact: `step` solves all constraints together, which a small scene can afford."
-_ERP = "erp 0.8: a joint that has come apart is closed almost within a step; by default it takes many."
-_JOINTS = Tuning({"exact": True, "erp": 0.8}, (_EXACT, _ERP))
-_PILE = Tuning(
-    {"iterations": 200},
-    ("iterations 200 instead of 20: the solver has to carry a load through many contacts.",),
-)
-_TUNINGS = {
-    "pendulum": _JOINTS,
-    "double-pendulum": _JOINTS,
-    "stack": _PILE,
-    "mass-ratio": _PILE,
-    "boxes": _PILE,
-}
 #: At most so many points between two bodies; two cubes face to face have at most eight.
 _POINTS = 8
 
@@ -61,9 +47,8 @@ class OdeWorld:
         world.initSurfaceTable(1)
         # Two surfaces, friction, restitution, the speed below which nothing bounces, then how hard a contact
         # is (the world's own values), slip and damping.
-        world.setSurfaceEntry(
-            0, 0, scene.friction, scene.restitution, 0.0, world.getErp(), world.getCfm(), 0.0, 0.0
-        )
+        cfm = options.get("contact_cfm", world.getCfm())
+        world.setSurfaceEntry(0, 0, scene.friction, scene.restitution, 0.0, world.getErp(), cfm, 0.0, 0.0)
         self._geoms: list[Any] = []
         self.bodies = [self._add(body, collides=not scene.pivots) for body in scene.bodies]
         if scene.floor:
@@ -141,10 +126,6 @@ class OdeAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> OdeWorld:
         """See ``Adapter``."""
         return OdeWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, AS_IT_COMES)
 
 
 ADAPTER = OdeAdapter()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.engines.base import AS_IT_COMES, Body, Motion, Scene, Tuning
+from course.engines.base import Body, Motion, Scene
 
 with warnings.catch_warnings():
     # It looks for Vulkan, which draws; nothing is drawn here.
@@ -23,26 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "PhysxAdapter", "PhysxWorld"]
-
-_BOUNCE = "bounce_threshold 0.01 m/s instead of 2: slower contacts do not bounce at all."
-_JOINT = "joint_friction 0 instead of 0.05."
-_AHEAD = "contact_offset 2 m: contacts are foreseen from afar; sapien's continuous detection does nothing."
-_AIR = "damping 0: a link of an articulation is braked by 0.05 of its speed and spin by default."
-_ITERATIONS = "iterations 100 instead of 10: uneven piles need them."
-_BALL = Tuning({"bounce_threshold": 0.01}, (_BOUNCE,))
-_FREE = Tuning({"joint_friction": 0.0, "damping": 0.0}, (_JOINT, _AIR))
-_PILE = Tuning({"iterations": 100}, (_ITERATIONS,))
-_TUNINGS = {
-    "bounce": _BALL,
-    "small-drop": _BALL,
-    "clash": _BALL,
-    "pendulum": _FREE,
-    "double-pendulum": _FREE,
-    "stack": _PILE,
-    "mass-ratio": _PILE,
-    "boxes": _PILE,
-    "thin-wall": Tuning({"contact_offset": 2.0}, (_AHEAD,)),
-}
 
 
 class PhysxWorld:
@@ -172,10 +152,6 @@ class PhysxAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> PhysxWorld:
         """See ``Adapter``."""
         return PhysxWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, AS_IT_COMES)
 
 
 ADAPTER = PhysxAdapter()

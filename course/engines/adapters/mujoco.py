@@ -7,60 +7,19 @@ quantities are still those of the step's beginning, so ``motion`` brings them up
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
 
-from course.engines.base import AS_IT_COMES, Motion, Scene, Tuning
+from course.engines.base import Motion, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "MujocoAdapter", "MujocoWorld"]
-
-_SPRING = (
-    "solref from the restitution: a contact is a spring and a damper here, and e = exp(-pi z / sqrt(1 - z²)) "
-    "gives the damping ratio z (0.2155 for e = 0.5); solimp 0.99 makes it follow that spring."
-)
-_SOFT = "spring {}: its frequency in radians a step; {}."
-_STAGES = "integrator RK4: looks at the spring of a contact four times a step."
-_CONE = "cone elliptic: the default pyramid of friction gives way sooner across its corners."
-_IMPRATIO = "impratio 100: friction as hard as the normal force, or a box at rest creeps downhill."
-_RK4 = Tuning({"integrator": "RK4"}, ("integrator RK4: smooth motion without contacts is what it is for.",))
-_GRIP = Tuning({"cone": "elliptic", "impratio": 100.0}, (_CONE, _IMPRATIO))
-_STIFF = Tuning(
-    {"stiff": True}, ("solref 2 steps, solimp 0.99: the stiffest contact that the step still resolves.",)
-)
-_TUNINGS = {
-    "bounce": Tuning(
-        {"spring": 0.3},
-        (_SPRING + " " + _SOFT.format(0.3, "a contact then lasts ten steps, enough to resolve it"),),
-    ),
-    "small-drop": Tuning(
-        {"spring": 0.5, "integrator": "RK4"},
-        (
-            _SPRING + " " + _SOFT.format(0.5, "stiffer, since a slow ball's weight presses the spring too"),
-            _STAGES,
-        ),
-    ),
-    "clash": Tuning(
-        {"spring": 0.2, "integrator": "RK4"},
-        (
-            _SPRING + " " + _SOFT.format(0.2, "softer, since nothing presses and energy is what counts"),
-            _STAGES,
-        ),
-    ),
-    "slide": _GRIP,
-    "stick": _GRIP,
-    "diagonal": _GRIP,
-    "pendulum": _RK4,
-    "double-pendulum": _RK4,
-    "stack": _STIFF,
-    "mass-ratio": _STIFF,
-    "boxes": _STIFF,
-}
 
 
 class MujocoWorld:
@@ -138,12 +97,37 @@ def _contact(scene: Scene, options: Mapping[str, Any]) -> str:
         return f'solref="{2.0 * scene.dt!r} 1" solimp="0.99 0.99 0.001"'
     if "spring" not in options:
         return ""
-    # A contact lasts half a period of its spring, pi over the frequency: it must last several steps.
+    # A contact lasts about half a period of its spring, pi over the frequency: it must last several steps.
     stiffness = (options["spring"] / scene.dt) ** 2
-    log = math.log(scene.restitution)
-    ratio = -log / math.sqrt(math.pi**2 + log**2)
-    damping = 2.0 * ratio * math.sqrt(stiffness)
+    damping = 2.0 * damping_ratio(scene.restitution) * math.sqrt(stiffness)
     return f'solref="{-stiffness!r} {-damping!r}" solimp="0.99 0.99 0.001"'
+
+
+@functools.cache
+def damping_ratio(restitution: float) -> float:
+    """The damping ratio with which a spring and a damper give back a share of the speed.
+
+    A contact cannot pull, so it ends when its force has sunk to zero, which is before the spring is relaxed:
+    ln e = -(z / w) (pi - atan2(2 z w, w² - z²)) with w = sqrt(1 - z²), in units of the frequency. The formula
+    without that end, e = exp(-pi z / w), gives a ball back too much of its speed.
+
+    Args:
+        restitution: e, above 0.21 (there z is 1 / sqrt(2)) and up to 1.
+
+    Source: T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465-469, equation for low damping; also
+    arXiv 2204.10917.
+    """
+    low, high = 0.0, math.sqrt(0.5)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _given_back(middle) > restitution else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _given_back(ratio: float) -> float:
+    root = math.sqrt(1.0 - ratio**2)
+    until_no_force = math.pi - math.atan2(2.0 * ratio * root, root**2 - ratio**2)
+    return math.exp(-ratio / root * until_no_force)
 
 
 def _join(values: Any) -> str:
@@ -156,10 +140,6 @@ class MujocoAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> MujocoWorld:
         """See ``Adapter``."""
         return MujocoWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, AS_IT_COMES)
 
 
 ADAPTER = MujocoAdapter()

@@ -1,8 +1,8 @@
 """Bullet 2.84 as panda3d carries it: single precision, bodies with joints as constraints.
 
 Restitutions and frictions of two bodies are multiplied. ``doPhysics`` has a step of its own, 1/60 s unless it
-is told another one. It is told here; left alone it would only interpolate. Even so, what it reports lags one
-step behind, unless it may take the time it is given as one step (``max_substeps`` 0).
+is told another one, and interpolates in between. It is told here to take the time it is given as one step
+(``max_substeps`` 0); otherwise what it reports lags behind by up to a step.
 """
 
 from __future__ import annotations
@@ -12,25 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from panda3d import bullet
-from panda3d.core import BitMask32, NodePath, Point3, Vec3
+from panda3d.core import BitMask32, ConfigVariableBool, ConfigVariableInt, NodePath, Point3, Vec3
 
-from course.engines.base import Body, Motion, Scene, Tuning
+from course.engines.base import Body, Motion, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "BulletAdapter", "BulletWorld"]
 
-_STEP = "substeps 0: one call is one step; by default the positions reported lag a step behind the state."
-_CCD = "ccd: a ball that moves more than half its radius a step is swept through it."
-_COMMON = Tuning({"substeps": 0}, (_STEP,))
-_NEAR = (
-    "contact_distance 0: a contact is solved once bodies touch; a slow ball is else stopped before it does."
-)
-_TUNINGS = {
-    "small-drop": Tuning({"substeps": 0, "contact_distance": 0.0}, (_STEP, _NEAR)),
-    "thin-wall": Tuning({"substeps": 0, "ccd": True}, (_STEP, _CCD)),
-}
+
+#: The package's own default.
+_ITERATIONS = 10
 
 
 class BulletWorld:
@@ -38,10 +31,12 @@ class BulletWorld:
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self._dt = scene.dt
+        # A world reads them while it is made; the next one may want others.
+        ConfigVariableInt("bullet-solver-iterations").setValue(options.get("iterations", _ITERATIONS))
+        ConfigVariableBool("bullet-split-impulse").setValue(bool(options.get("split_impulse")))
         self.world = bullet.BulletWorld()
         self.world.setGravity(Vec3(*scene.gravity))
         self._root = NodePath("scene")
-        self._substeps = options.get("substeps", 1)
         self._ccd = bool(options.get("ccd"))
         self._contact_distance = options.get("contact_distance")
         # The product of two equal coefficients is to be the one that acts.
@@ -102,9 +97,9 @@ class BulletWorld:
 
     def step(self, n: int = 1) -> None:
         """See ``World``."""
-        advance, dt, substeps = self.world.doPhysics, self._dt, self._substeps
+        advance, dt = self.world.doPhysics, self._dt
         for _ in range(n):
-            advance(dt, substeps, dt)
+            advance(dt, 0, dt)
 
     def motion(self) -> Motion:
         """See ``World``."""
@@ -130,10 +125,6 @@ class BulletAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> BulletWorld:
         """See ``Adapter``."""
         return BulletWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, _COMMON)
 
 
 ADAPTER = BulletAdapter()

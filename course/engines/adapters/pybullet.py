@@ -13,29 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pybullet as p
 
-from course.engines.base import Body, Motion, Scene, Tuning
+from course.engines.base import Body, Motion, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "PybulletAdapter", "PybulletWorld"]
-
-_AIR = "damping 0: by default every body is braked by about 0.04 of its speed a second, and of its spin."
-_BOUNCE = "bounce_above 0: contacts slower than a threshold do not bounce by default."
-_CCD = "ccd, for a plain body (maximal coordinates): one that moves far in a step is swept through it."
-_ITERATIONS = "iterations 200 instead of 50: uneven piles need them."
-_COMMON = Tuning({"damping": 0.0}, (_AIR,))
-_PILE = Tuning({"damping": 0.0, "iterations": 200}, (_AIR, _ITERATIONS))
-_BALL = Tuning({"damping": 0.0, "bounce_above": 0.0}, (_AIR, _BOUNCE))
-_TUNINGS = {
-    "bounce": _BALL,
-    "small-drop": _BALL,
-    "clash": _BALL,
-    "stack": _PILE,
-    "mass-ratio": _PILE,
-    "boxes": _PILE,
-    "thin-wall": Tuning({"damping": 0.0, "ccd": True}, (_AIR, _CCD)),
-}
 
 
 class PybulletWorld:
@@ -51,6 +34,8 @@ class PybulletWorld:
         solver = {"numSolverIterations": options["iterations"]} if "iterations" in options else {}
         if "bounce_above" in options:
             solver["restitutionVelocityThreshold"] = options["bounce_above"]
+        if "contact_erp" in options:
+            solver["contactERP"] = options["contact_erp"]
         if solver:
             p.setPhysicsEngineParameter(**solver, physicsClientId=server)
         # The product of two equal coefficients is to be the one that acts.
@@ -95,6 +80,8 @@ class PybulletWorld:
         extra: dict[str, Any] = {"localInertiaDiagonal": [body.inertia] * 3}
         if "damping" in self._options:
             extra |= {"linearDamping": self._options["damping"], "angularDamping": self._options["damping"]}
+        if "contact_distance" in self._options:
+            extra["contactProcessingThreshold"] = self._options["contact_distance"]
         if self._options.get("ccd"):
             extra["ccdSweptSphereRadius"] = 0.5 * body.size
         p.changeDynamics(made, link, **self._surface, **extra, physicsClientId=self._server)
@@ -174,10 +161,6 @@ class PybulletAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> PybulletWorld:
         """See ``Adapter``."""
         return PybulletWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, _COMMON)
 
 
 ADAPTER = PybulletAdapter()

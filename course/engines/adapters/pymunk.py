@@ -12,34 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pymunk
 
-from course.engines.base import AS_IT_COMES, Body, Motion, NotApplicableError, Scene, Tuning, Wall
+from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "PymunkAdapter", "PymunkWorld"]
-
-_SLOP = "collision_slop 1e-4: metres, not pixels; the default lets bodies overlap by 0.1 m."
-_ITERATIONS = "iterations 60: the load of a tall or uneven pile has to travel through every contact."
-_MANY = "iterations 1000: a small body under a heavy one needs as many as their masses differ by."
-_PILE = Tuning({"iterations": 60, "collision_slop": 1e-4}, (_ITERATIONS, _SLOP))
-_TUNINGS = {
-    "bounce": Tuning({"collision_slop": 1e-4}, (_SLOP,)),
-    "small-drop": Tuning({"collision_slop": 1e-4}, (_SLOP,)),
-    "slide": Tuning({"collision_slop": 1e-4}, (_SLOP,)),
-    "stick": Tuning({"collision_slop": 1e-4}, (_SLOP,)),
-    "stack": _PILE,
-    "mass-ratio": Tuning({"iterations": 1000, "collision_slop": 1e-4}, (_MANY, _SLOP)),
-    "boxes": _PILE,
-    "double-pendulum": Tuning(
-        {"iterations": 60, "error_bias": 0.0},
-        (
-            "iterations 60: both joints are solved together until they agree.",
-            "error_bias 0: a joint's drift is corrected within a step instead of over many.",
-        ),
-    ),
-}
-_TUNINGS["pendulum"] = _TUNINGS["double-pendulum"]
 
 
 class PymunkWorld:
@@ -128,10 +106,6 @@ class PymunkAdapter:
     def build(self, scene: Scene, options: Mapping[str, Any]) -> PymunkWorld:
         """See ``Adapter``."""
         return PymunkWorld(scene, options)
-
-    def tuning(self, scenario: str) -> Tuning:
-        """See ``Adapter``."""
-        return _TUNINGS.get(scenario, AS_IT_COMES)
 
 
 ADAPTER = PymunkAdapter()

@@ -6,7 +6,7 @@ engine's rule for two materials needs for the friction and the restitution that 
 switched off everywhere, because they would measure something else: sleeping, motors that hold joints, and
 contacts between the bodies of a chain.
 
-*Well set*: an engine's options are listed in ``options/<engine>.toml``, each with what it does, the
+*Well set*: an engine's options are listed in ``adapters/<engine>.toml``, each with what it does, the
 documentation it was read from, and the values worth trying for a topic; those left alone are listed as well.
 Of all combinations, the defaults among them, the one that comes nearest to the truth is taken, on the
 mean over the phases of a step; among equals the one that sets least. No engine's solver gets more than
@@ -100,7 +100,7 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 @functools.cache
 def options_of(engine: str) -> Options:
     """The options of an engine, as its file lists them."""
-    path = files("course").joinpath("engines", "options", f"{engine}.toml")
+    path = files("course").joinpath("engines", "adapters", f"{engine}.toml")
     return msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), Options)
 
 

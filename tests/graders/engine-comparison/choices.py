@@ -62,13 +62,19 @@ def questions(rng, truths, wanted, fits):
 
 
 def telling(reports, needs, answer):
-    """A question in which neither the first, nor the cheapest, nor the dearest engine that fits is right
-    by accident."""
+    """A question in which neither the cheapest of all engines, nor the first, the last or the dearest that
+    fits is right by accident."""
     if answer is None:
         return False
     fitting = [name for name, r in reports.items() if all(choosing.meets(r, n) for n in needs)]
     cheapest = min(reports, key=lambda name: reports[name]["cost"])
-    return answer != cheapest and len(fitting) >= 2 and fitting[0] != answer
+    return answer != cheapest and answer not in (fitting[0], fitting[-1])
+
+
+def all_count(reports, needs, answer):
+    """A question in which neither the first nor the last requirement alone gives the right answer."""
+    alone = [choosing.choose(reports, [need]) for need in (needs[0], needs[-1])]
+    return answer is not None and answer not in alone
 
 
 def with_gaps(rng, question):

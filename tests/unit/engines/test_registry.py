@@ -67,7 +67,7 @@ def test_every_engine_is_in_the_extra_that_it_names():
 
 
 def test_an_engine_has_an_adapter_of_its_name():
-    folder = ROOT / "course" / "engines"
+    folder = ROOT / "course" / "engines" / "adapters"
     assert all((folder / f"{name}.py").is_file() for name in ENGINES)
 
 
@@ -78,7 +78,7 @@ def test_an_unknown_engine_is_not_found():
 
 
 def test_loading_goes_through_the_table():
-    from course.engines.pymunk import ADAPTER
+    from course.engines.adapters.pymunk import ADAPTER
 
     assert module.load("pymunk") is ADAPTER
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from course.engines import scenarios_contact, scenarios_motion
+from course.engines.adapters.pymunk import ADAPTER
 from course.engines.base import Body, Motion, Scene, energy, momentum
-from course.engines.pymunk import ADAPTER
 from course.engines.scenarios import DT, IMPACTS, SCENARIOS, get
 from course.engines.settings import tuning
 from course.errors import NotFoundError

@@ -75,6 +75,12 @@ def of_motor(submission):
     """The mistake that ``motor_step`` makes."""
     values = submission.call_each("motor_step", [(w, u, _DT, _TAU, _U_MAX, _DEAD) for w, u in _MOTOR])
     values = [kit.as_number(value, "w_next") for value in values]
+    brief, long = (
+        kit.as_number(value, "w_next")
+        for value in submission.call_each("motor_step", [(1.0, 6.0, dt, 0.5, 10.0, 2.0) for dt in (0.01, 1.0)])
+    )
+    if brief == long:
+        return named("LAG_WITHOUT_DT")
     # With several mistakes at once: the first call has neither dead band nor saturation in it.
     lags = [(code, row[:1]) for code, row in _motor_slips() if code.startswith("LAG")]
     return _matching(values, _motor_slips()) or _matching(values[:1], lags)
@@ -129,6 +135,8 @@ def of_backlash(submission):
     values = submission.call_each("backlash", [(x, 1.0, state) for x, state in _PLAY])
     pairs = [kit.as_tuple(value, ("y", "state_next")) for value in values]
     outputs = [kit.as_number(y, "y") for y, _ in pairs]
+    if _remembers(submission):
+        return named("STATE_IN_MODULE")
     found = _matching(outputs, _play_slips())
     if found:
         return found
@@ -141,6 +149,14 @@ def of_backlash(submission):
         (y - s) / (r - s) for y, r, (_, s) in zip(outputs, right, _PLAY, strict=True) if abs(r - s) > 1e-9
     ]
     return named("BACKLASH_RATE_DEPENDENT") if all(0 < share < 1 for share in shares) else None
+
+
+def _remembers(submission):
+    """Whether one and the same call gives something else after another call."""
+    far = (-9.0, 1.0, -9.0), (9.0, 1.0, 9.0)
+    values = submission.call_each("backlash", [far[0], (0.3, 1.0, 0.1), far[1], (0.3, 1.0, 0.1)])
+    first, again = (kit.as_number(kit.as_tuple(values[i], ("y", "state_next"))[0], "y") for i in (1, 3))
+    return first != again and not (math.isnan(first) and math.isnan(again))
 
 
 # -- delay ----------------------------------------------------------------------------------------------

@@ -168,6 +168,29 @@ def test_lidar_room(submission):
 
 @pytest.mark.task("lidar")
 @pytest.mark.points(0)
+def test_lidar_nearest(submission):
+    """Of walls in a row the nearest counts; one behind, and those that a beam misses, do not"""
+    across = ((2.0, 1.0), (1.0, 0.2), (3.5, 2.0), (-1.0, 3.0))  # at x, from -y to y
+    walls = np.array([[[x, -y], [x, y]] for x, y in across])
+    angles = np.array([0.0, 0.3, -0.49, 0.7])
+    expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0]
+    value = submission.call("lidar", np.zeros(3), walls, angles, 5.0, 0.0, np.random.default_rng(1))
+    kit.expect_array(
+        kit.as_vector(value, 4, "ranges"),
+        expected,
+        abs=1e-9,
+        source="rounding",
+        quantity="ranges",
+        units="m",
+        input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
+        message="Of several walls, another one than the nearest that the beam hits is read.",
+        help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
+        diagnose=lambda: sensors.sensors.of_lidar(submission),
+    )
+
+
+@pytest.mark.task("lidar")
+@pytest.mark.points(0)
 def test_lidar_noise_on_hits(submission):
     """Noise of std sigma is on hits only, from the generator passed in; nothing is below zero"""
     sensors.expect_scan_noise(submission, 7.0, 0.05, np.random.default_rng(9))
@@ -280,7 +303,7 @@ def test_sync_follows(submission):
         submission,
         scenes.new_twin(0.5, 0.5, speed=1.0),
         scenes.measured(cart, 0.5, scenes.moments(rng, 24.0), rng),
-        settled=((2.0, 8.0), (12.0, 24.0)),
+        settled=((2.0, 8.0), (14.0, 24.0)),
         frictions=((3.0, 8.0, 0.5), (16.0, 24.0, 0.8)),
         message="The twin does not stay with its cart.",
     )

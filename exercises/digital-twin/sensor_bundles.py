@@ -123,13 +123,26 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
 
 
 def expect_rate_kept(submission, true, dt, bias0, rng):
-    """Without white noise, measured minus bias is the true rate, which is left alone."""
+    """The bias starts at bias0; without white noise, measured minus it is the true rate, which is left alone."""
     call = (true, dt, 0.0, 0.02, bias0, rng)
     value = expect_clean(submission, "imu", call, ("true", *[None] * 5))
     measured, bias = kit.as_tuple(value, ("measured", "bias"))
     n = len(true)
+    bias = kit.as_vector(bias, n, "bias")
+    kit.expect_close(
+        bias[0],
+        bias0,
+        abs=1e-12,
+        source="exact",
+        quantity="bias[0]",
+        units="rad/s",
+        message="The first bias is not bias0.",
+        help="bias[0] = bias0; the first step leads to bias[1].",
+        input={"bias0": bias0, "dt": dt},
+        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+    )
     kit.expect_array(
-        kit.as_vector(measured, n, "measured") - kit.as_vector(bias, n, "bias"),
+        kit.as_vector(measured, n, "measured") - bias,
         true,
         abs=1e-9,
         source="rounding",

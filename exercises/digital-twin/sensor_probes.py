@@ -155,6 +155,8 @@ def of_randomness(submission):
     call = np.zeros(8), 0.1, 0.1, 0.1, 0.0
     runs = submission.call_each("imu", [(*call, np.random.default_rng(seed)) for seed in _SEEDS])
     pairs = [[kit.as_vector(part, 8, "measured") for part in kit.as_tuple(run, _NAMES)] for run in runs]
+    if pairs[0][1][0] != pairs[1][1][0]:  # bias0 is the same
+        return named("BIAS_CARRIED_OVER")
     return _of_draws([measured - bias for measured, bias in pairs]) or _of_draws([bias for _, bias in pairs])
 
 
@@ -284,6 +286,10 @@ _PLAIN = (
 )
 
 
+#: One wall in three places; what a beam at it reads has to differ.
+_SHIFTS = ((0.0, 0.0), (1.0, 0.0), (-0.7, 0.0))
+
+
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_lidar(submission):
     """The mistake that ``lidar`` makes, from a room and from scenes with one wall or two, without noise.
@@ -293,13 +299,16 @@ def of_lidar(submission):
     scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
     calls = [((_X, _Y, heading), _ROOM, _FAN) for heading in (_HEADING, 0.0)]
     calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
+    calls += [(_ORIGIN, _WALL + shift, np.array([0.05])) for shift in _SHIFTS]
     calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
     results = submission.call_each("lidar", calls)
     turned, ahead = (kit.as_vector(result, len(_FAN), "ranges") for result in results[:2])
     for code, readings in _lidar_slips():
         if np.allclose(turned, readings, rtol=0, atol=1e-9):
             return named(code)
-    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[2:]])
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[2:-3]])
+    if len({float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-3:]}) == 1:
+        return named("WALLS_NOT_READ")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
     if np.all(right) and np.allclose(turned, _seen(_FAN + _HEADING), rtol=0, atol=1e-9):
         return of_lidar_noise(submission)

@@ -199,6 +199,10 @@ SENSORS: dict[str, tuple[str, str]] = {
         "Moving the robot does not change what it sees.",
         "Subtract the robot's position from the end points of the walls first.",
     ),
+    "WALLS_NOT_READ": (
+        "A wall that is moved nearer or further off still reads the same.",
+        "Look at the segments of this very call, and keep none from an earlier one.",
+    ),
     "WALLS_BEHIND_SEEN": (
         "A wall behind the robot is measured by the beam that points away from it.",
         "A beam goes one way: a hit counts only at a distance of zero or more.",

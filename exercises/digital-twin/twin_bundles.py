@@ -14,9 +14,10 @@ twins = kit.companion("digital-twin", "twin_probes")
 CALIBRATED, new_twin = bundles.CALIBRATED, scenes.new_twin
 
 
-#: The rms error of the twin's position over that of the measurements themselves. Passing z on is 1; shares of
-#: 0.3, 0.3 and -0.15 reach 0.4 to 0.78 and a Kalman filter 0.36 to 0.72 over 200 seeds.
-FOLLOWS_WITHIN = 0.85
+#: The rms error of the twin's position over that of the measurements themselves: after those that came in
+#: time, and after late ones. In time, passing z on is 1; constant shares reach 0.37 to 0.78 and Kalman filters
+#: 0.34 to 0.75 over 400 runs. After late ones, which are fewer, right twins reach up to 0.93.
+FOLLOWS_WITHIN, FOLLOWS_LATE_WITHIN = 0.85, 1.25
 
 
 def _rms(values):
@@ -49,13 +50,13 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
     )
     counts = np.any([(truth[:, 0] >= a) & (truth[:, 0] <= b) for a, b in settled], axis=0)
     sensor = _rms(run.errors[counts & ~run.late])
-    for when in (~run.late, run.late):  # after a measurement that came in time, and after one that came late
+    for when, limit in ((~run.late, FOLLOWS_WITHIN), (run.late, FOLLOWS_LATE_WITHIN)):
         with np.errstate(all="ignore"):
             rms = _rms((rows[:, 1] - truth[:, 1])[counts & when])
         kit.expect_bounded(
             rms,
-            high=FOLLOWS_WITHIN * sensor,
-            source="0.85 of the measurements' own; " + CALIBRATED,
+            high=limit * sensor,
+            source="the README's share of the measurements' own; " + CALIBRATED,
             quantity="rms error of the position",
             units="m",
             input={"measurements": len(calls), "rms error of the measurements": sensor, "twin": twin},
@@ -110,15 +111,15 @@ def jump(rng):
 
 
 def expect_keeps_up(submission, rng, *, sign, late, message):
-    """Half a minute at a steady drive, the friction jumping after 8 s; the twin starts a little off.
+    """27 s at a steady drive, the friction jumping after 9 s; the twin starts a little off.
 
     sign: 1.0 forwards, -1.0 backwards
     late: share of the measurements that arrive late
     """
     before, after = jump(rng)
     speed, sigma = sign * rng.uniform(0.8, 1.2), rng.uniform(1.0, 1.5) * scenes.SIGMA
-    cart = scenes.Cart(((0.0, before), (8.0, after)), v=speed)
-    run = scenes.measured(cart, before * speed, scenes.moments(rng, 30.0), rng, late=late, sigma=sigma)
+    cart = scenes.Cart(((0.0, before), (9.0, after)), v=speed)
+    run = scenes.measured(cart, before * speed, scenes.moments(rng, 27.0), rng, late=late, sigma=sigma)
     off = rng.uniform(-0.03, 0.03, 2)
     guess = before * rng.uniform(0.75, 1.33)
     twin = new_twin(guess, before * speed, speed=speed + off[0], position=off[1], sigma=sigma)
@@ -126,8 +127,8 @@ def expect_keeps_up(submission, rng, *, sign, late, message):
         submission,
         twin,
         run,
-        settled=((4.0, 8.0), (12.0, 30.0)),
-        frictions=((18.0, 30.0, after),),
+        settled=((5.0, 9.0), (15.0, 27.0)),
+        frictions=((17.0, 27.0, after),),
         message=message,
     )
 
@@ -140,7 +141,7 @@ def expect_twin_contract(submission, rng):
     """
     friction, sign = rng.uniform(0.4, 0.9), rng.choice([-1.0, 1.0])
     cart = scenes.Cart(((0.0, friction),), v=sign)
-    run = scenes.measured(cart, sign * friction, scenes.moments(rng, 20.0), rng, late=0.3)
+    run = scenes.measured(cart, sign * friction, scenes.moments(rng, 16.0), rng, late=0.3)
     folded = submission.fold("sync", new_twin(0.6, sign * friction, speed=sign), run.calls)
     twins.states(folded)
     in_time, late = (int(np.flatnonzero(run.late == when)[5]) for when in (False, True))
@@ -170,7 +171,7 @@ def expect_twin_contract(submission, rng):
         twins.numbers_in(folded[-1]["memory"]),
         high=MEMORY_WITHIN,
         source="the README's; two seconds of a Kalman filter's history are some 300",
-        quantity="numbers in the memory after 20 s",
+        quantity="numbers in the memory after 16 s",
         message="The memory grows with the length of the run.",
         help="Keep the last second or two of the history, and drop what is older.",
         diagnose=bundles.diagnosis.named("MEMORY_GROWS"),
@@ -201,7 +202,7 @@ def expect_sync_closes_loop(submission, rng):
     given = {"target": target, "frictions": [before, after], "first guess": guess}
     ask = lambda: twins.of_sync(submission, late=False)  # noqa: E731
     speeds, friction = [], 0.0
-    for i in range(6):
+    for i in range(5):
         start = 5.0 * i
         times = np.append(scenes.moments(rng, 4.95, start), start + 5.0)
         run = scenes.measured(cart, twin["drive"], times, rng, sigma=QUIET)

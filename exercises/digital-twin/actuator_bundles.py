@@ -20,7 +20,7 @@ def expect_play(submission, inputs, gap, states, outputs):
         kit.expect_array(
             [kit.as_number(pair[column], name) for pair in pairs],
             outputs,
-            abs=1e-12,
+            abs=1e-9,
             source="rounding",
             quantity=name,
             t=np.arange(len(inputs)),  # the number of the input stands for its time

@@ -68,7 +68,7 @@ def _expect_bias(submission, measured, bias, true, step, given):
     kit.expect_close(
         bias[0],
         given["bias0"],
-        abs=1e-12,
+        abs=1e-9,
         source="exact",
         quantity="bias[0]",
         units="rad/s",
@@ -91,7 +91,7 @@ def _expect_bias(submission, measured, bias, true, step, given):
     kit.expect_array(
         measured,
         true + bias,
-        abs=1e-12,
+        abs=1e-9,
         source="rounding",
         quantity="measured",
         units="rad/s",

@@ -132,7 +132,7 @@ def expect_rate_kept(submission, true, dt, bias0, rng):
     kit.expect_close(
         bias[0],
         bias0,
-        abs=1e-12,
+        abs=1e-9,
         source="exact",
         quantity="bias[0]",
         units="rad/s",

@@ -160,7 +160,7 @@ def expect_twin_contract(submission, rng):
         kit.expect_close(
             kit.as_number(value["drive"], "drive"),
             twin["drive"],
-            abs=1e-12,
+            abs=1e-9,
             source="it is not for sync to change",
             quantity="drive",
             units="m/s²",

@@ -12,6 +12,7 @@ import numpy as np
 
 from course.grading import kit
 
+bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")
 named = kit.companion("sim-to-real", "diagnosis").named
 NAMES = cart.NAMES
@@ -21,14 +22,14 @@ ALL = (*NAMES, "lag")
 # -- reading what came back -----------------------------------------------------------------------------
 
 
-def patient(call):
-    """``call()``; where time runs out, a finding that says how such code is made quick."""
+def patient(call, slow):
+    """``call()``; where time runs out, a finding that says how such code is made quick, by its code ``slow``."""
     try:
         return call()
     except kit.StudentFailure as failure:
         if failure.kind != "timeout":
             raise
-        kit.fail("It is too slow to be executed.", diagnose=named("TOO_SLOW"))
+        kit.fail("It is too slow to be executed.", diagnose=named(slow))
 
 
 def command_of(value, seconds, u_max):
@@ -128,15 +129,33 @@ def of_command(u):
 # -- identify -------------------------------------------------------------------------------------------
 
 
-def of_values(estimates, truths):
-    """What the values of several estimates look like beside the true carts."""
+def of_values(estimates, truths, recordings=()):
+    """What the values of several estimates look like beside the true carts.
+
+    recordings: (t, u, y) of each, where there is one
+    """
     got = {k: np.array([estimate[k][0] for estimate in estimates]) for k in ALL}
     true = {k: np.array([_known(truth)[k] for truth in truths]) for k in ALL}
     for code, looks in _LIKENESSES:
         with np.errstate(all="ignore"):
             if looks(got, true):
                 return named(code)
+    wrong = [
+        bench.differentiated(u, y, truth) for (_, u, y), truth in zip(recordings, truths, strict=False)
+    ]
+    for masses in zip(*wrong, strict=True):  # by either way to differentiate
+        if _alike(got["m"], np.array(masses), 0.1) and not _right(got, true, "m"):
+            return named("NOISE_DIFFERENTIATED")
     return None
+
+
+def of_misses(estimates, truths):
+    """Why intervals miss the truth: values that are off by themselves come first."""
+    for estimate, truth in zip(estimates, truths, strict=True):
+        known = _known(truth)
+        if any(abs(estimate[k][0] / known[k] - 1) > limit for k, limit in cart.SCORED.items()):
+            return of_values(estimates, truths) or named("VALUES_OFF")
+    return named("INTERVAL_OVERCONFIDENT")
 
 
 def _known(truth):
@@ -177,6 +196,10 @@ _LIKENESSES = (
     ),
     ("LATENCY_IGNORED", lambda got, true: np.median(np.abs(got["latency"])) < 0.012),
     ("LAG_IGNORED", lambda got, true: np.median(np.abs(got["tau"])) < 0.012),
+    (
+        "TIME_FROM_SHEET",
+        lambda got, true: len(got["tau"]) > 1 and any(_sheet(got, true, k) for k in ("tau", "latency")),
+    ),
     ("LOCAL_MINIMUM", lambda got, true: np.median(np.abs(got["lag"] / true["lag"] - 1)) > 0.25),
     ("FRICTION_SIGN", lambda got, true: _share(got, true, "b") < -0.5 or _share(got, true, "Fc") < -0.5),
     (
@@ -190,10 +213,17 @@ _LIKENESSES = (
     ("COULOMB_AS_VISCOUS", lambda got, true: _share(got, true, "Fc") < 0.3 and _share(got, true, "b") > 1.05),
     ("VISCOUS_AS_COULOMB", lambda got, true: _share(got, true, "b") < 0.3 and _share(got, true, "Fc") > 1.05),
     (
-        "NOISE_DIFFERENTIATED",
-        lambda got, true: _share(got, true, "m") > 1.03 or _share(got, true, "b") < 0.9,
+        "FRICTIONS_SWAPPED",
+        lambda got, true: _alike(got["b"], true["Fc"], 0.1) and _alike(got["Fc"], true["b"], 0.1),
     ),
+    ("VISCOUS_MISSING", lambda got, true: abs(_share(got, true, "b")) < 0.3),
+    ("COULOMB_MISSING", lambda got, true: abs(_share(got, true, "Fc")) < 0.3),
 )
+
+
+def _sheet(got, true, name):
+    """Whether a time is the data sheet's each time, to many digits, though the carts have others."""
+    return bool(np.all(np.abs(got[name] / cart.SHEET[name] - 1) < 1e-6)) and bool(np.ptp(true[name]) > 0)
 
 
 def _right(got, true, name):
@@ -204,7 +234,10 @@ def _right(got, true, name):
 
 
 def of_gains(submission, estimate, box, gains, success):
-    """Why gains do badly: what becomes of them when the estimate or the box changes.
+    """Why gains do badly: what they are best for, and what becomes of them when the question changes.
+
+    Gains that stay as they are prove nothing while the search may have ended at its edge, so that is looked
+    at first; and each question is changed both ways, or so far that other gains must come out.
 
     Args:
         estimate, box: what they were asked for.
@@ -213,29 +246,66 @@ def of_gains(submission, estimate, box, gains, success):
     kp, kd = gains
     if success(kd, kp) > 1.2 * success(kp, kd):
         return named("GAINS_SWAPPED")
-    heavy = {**estimate, "m": [1.7 * x for x in estimate["m"]], "b": [1.7 * x for x in estimate["b"]]}
-    late = {k: [1.8 * x for x in v] if k in ("latency", "lag") else v for k, v in estimate.items()}
-    one = {k: [1.0, 1.0] for k in NAMES}
-    other = kit.attempt(
-        lambda: [
-            gains_of(each)
-            for each in submission.call_each("tune", [(heavy, box), (late, box), (estimate, one)])
-        ]
+    if kd < 0.05 * kp:
+        return named("NO_DAMPING")
+    heavy, light = (_with(estimate, ("m", "b"), factor) for factor in (2.5, 0.4))
+    late = _with(estimate, ("latency", "lag"), 2.2)
+    loaded = {
+        k: [low * _LOAD.get(k, 1.0), high * _LOAD.get(k, 1.0)] for k, (low, high) in box.items()
+    }
+    questions = [(heavy, box), (light, box), (late, box), (estimate, loaded)]
+    other = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", questions)])
+    if other is None:
+        return None
+    same = [math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in other]
+    if all(same):
+        return named("GAINS_HARD_CODED")
+    if _at_edge(gains, other, success):
+        return named("SEARCH_AT_EDGE")
+    if same[2] and _is_best(kp, kd, {**estimate, "latency": [0.001] * 3}, box):
+        return named("DELAY_IGNORED")
+    if same[3]:
+        return named("RANDOMIZATION_IGNORED")
+    if _is_best(kp, kd, estimate, box, np.max) and not _is_best(kp, kd, estimate, box):
+        return named("WORST_CART_ONLY")
+    return named("SEARCH_ENDED_EARLY") if success(*_better(gains, success)) > 1.03 * success(kp, kd) else None
+
+
+#: How a box is shifted to see whether it is read: a load, and everything later.
+_LOAD = {"m": 2.0, "latency": 1.8, "tau": 1.5}
+
+
+def _with(estimate, names, factor):
+    return {k: [factor * x for x in v] if k in names else v for k, v in estimate.items()}
+
+
+def _at_edge(gains, other, success):
+    """Whether a gain, or the ratio kd/kp, comes out again for another question and better ones lie beyond it."""
+    kp, kd = gains
+    here = success(kp, kd)
+    beyond = {
+        0: [(kp * f, kd * f) for f in (0.7, 1.4)],
+        1: [(kp, kd * f) for f in (0.7, 1.4)],
+    }
+    again = (
+        any(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other),
+        any(math.isclose(kd, d, rel_tol=1e-6) or math.isclose(kd / kp, d / p, rel_tol=1e-6) for p, d in other if p),
     )
-    if other is not None:
-        same = [math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in other]
-        if same[0] and same[1]:
-            return named("GAINS_HARD_CODED")
-        if same[1]:
-            prompt = {**estimate, "latency": [0.001] * 3}
-            return named("DELAY_IGNORED" if _is_best(kp, kd, prompt, box) else "SEARCH_ENDED_EARLY")
-        if same[2]:
-            return named("RANDOMIZATION_IGNORED")
-    return named("SEARCH_ENDED_EARLY")
+    return any(again[i] and max(success(*pair) for pair in beyond[i]) > 1.03 * here for i in (0, 1))
 
 
-def _is_best(kp, kd, estimate, box):
-    """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate."""
+def _better(gains, success):
+    """The best of some gains about these."""
+    kp, kd = gains
+    around = [(kp * a, kd * b) for a in (1.0, 0.6, 1.6) for b in (1.0, 0.6, 1.6)]
+    return max(around, key=lambda pair: success(*pair))
+
+
+def _is_best(kp, kd, estimate, box, of=np.mean):
+    """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate.
+
+    of: what counts of the carts' settling times
+    """
     share = (cart.stratified(100, np.random.default_rng(31)) + 1) / 2
     ends = [np.log(box[k]) for k in NAMES]
     carts = {
@@ -244,5 +314,6 @@ def _is_best(kp, kd, estimate, box):
     }
     around = [(a, b) for a in (1.0, 0.6, 1.6) for b in (1.0, 0.6, 1.6)]  # (1, 1) first: the gains themselves
     factors = np.array(around).T
-    mean = cart.rollout(kp * factors[0], kd * factors[1], carts, np.random.default_rng(32)).mean(axis=0)
-    return bool(mean.min() > 0.85 * mean[0])
+    times = cart.rollout(kp * factors[0], kd * factors[1], carts, np.random.default_rng(32))
+    counted = of(times, axis=0)
+    return bool(counted.min() > 0.85 * counted[0])

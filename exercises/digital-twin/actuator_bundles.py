@@ -79,8 +79,8 @@ def expect_motor(submission, w, calls, message, source="rounding"):
     )
 
 
-#: What the README allows of the position after one step, m, and of the heading, rad. Arcs by their radius lose
-#: up to 1e-6 m to cancelling sines at the best threshold, and 1e-4 m and more without one.
+#: What the README allows of the position after one step, m, and of the heading, rad. Arcs by their radius
+#: lose up to 1e-6 m to cancelling sines at the best threshold, and 1e-4 m and more without one.
 POSITION_WITHIN, HEADING_WITHIN = 1e-5, 1e-9
 
 

@@ -75,15 +75,18 @@ def of_motor(submission):
     """The mistake that ``motor_step`` makes."""
     values = submission.call_each("motor_step", [(w, u, _DT, _TAU, _U_MAX, _DEAD) for w, u in _MOTOR])
     values = [kit.as_number(value, "w_next") for value in values]
-    brief, long = (
-        kit.as_number(value, "w_next")
-        for value in submission.call_each("motor_step", [(1.0, 6.0, dt, 0.5, 10.0, 2.0) for dt in (0.01, 1.0)])
-    )
-    if brief == long:
-        return named("LAG_WITHOUT_DT")
     # With several mistakes at once: the first call has neither dead band nor saturation in it.
     lags = [(code, row[:1]) for code, row in _motor_slips() if code.startswith("LAG")]
-    return _matching(values, _motor_slips()) or _matching(values[:1], lags)
+    found = _matching(values, _motor_slips()) or _matching(values[:1], lags)
+    if found:
+        return found
+    brief, long = (
+        kit.as_number(value, "w_next")
+        for value in submission.call_each(
+            "motor_step", [(1.0, 6.0, dt, 0.5, 10.0, 2.0) for dt in (0.01, 1.0)]
+        )
+    )
+    return named("LAG_WITHOUT_DT") if brief == long else None
 
 
 def _matching(values, slips):
@@ -135,11 +138,11 @@ def of_backlash(submission):
     values = submission.call_each("backlash", [(x, 1.0, state) for x, state in _PLAY])
     pairs = [kit.as_tuple(value, ("y", "state_next")) for value in values]
     outputs = [kit.as_number(y, "y") for y, _ in pairs]
-    if _remembers(submission):
-        return named("STATE_IN_MODULE")
     found = _matching(outputs, _play_slips())
     if found:
         return found
+    if _remembers(submission):
+        return named("STATE_IN_MODULE")
     right = [min(max(s, x - 0.5), x + 0.5) for x, s in _PLAY]
     if np.allclose(outputs, right, rtol=0, atol=1e-12):
         states = [kit.as_number(state, "state_next") for _, state in pairs]

@@ -201,7 +201,14 @@ def test_lidar_noise_on_hits(submission):
 @pytest.mark.points(0)
 def test_lidar_keeps(submission):
     """The scanner leaves pose, walls and angles as they are"""
-    call = (np.array([2.0, 1.7, 0.35]), scenes.ROOM, np.linspace(-1, 1, 9), 3.5, 0.0, np.random.default_rng(1))
+    call = (
+        np.array([2.0, 1.7, 0.35]),
+        scenes.ROOM,
+        np.linspace(-1, 1, 9),
+        3.5,
+        0.0,
+        np.random.default_rng(1),
+    )
     bundles.expect_clean(submission, "lidar", call, ("pose", "segments", "angles", *[None] * 3))
 
 

@@ -141,7 +141,7 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
     "PUSHES_AWAY": (
         "Where the twin is slower than asked, the drive is smaller: the correction has the wrong sign.",
-        "Add a share of target_speed - twin[\"speed\"], not of the speed minus the target.",
+        'Add a share of target_speed - twin["speed"], not of the speed minus the target.',
     ),
     "ADDS_CURRENT_DRIVE": (
         "The result depends on the drive that acts just now.",

@@ -1,4 +1,4 @@
-"""What public and hidden checks of the sensors of ``digital-twin`` have in common: a call, then its comparison."""
+"""What public and hidden checks of the sensors of ``digital-twin`` have in common."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
 
 
 def expect_rate_kept(submission, true, dt, bias0, rng):
-    """The bias starts at bias0; without white noise, measured minus it is the true rate, which is left alone."""
+    """The bias starts at bias0; without white noise, measured minus it is the true rate, which is kept."""
     call = (true, dt, 0.0, 0.02, bias0, rng)
     value = expect_clean(submission, "imu", call, ("true", *[None] * 5))
     measured, bias = kit.as_tuple(value, ("measured", "bias"))

@@ -176,7 +176,7 @@ def _of_draws(draws):
 
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_density(found, cases):
-    """The mistake behind noise densities found in recordings; found: shape (n,), cases: as ``expect_fits``."""
+    """The mistake behind noise densities found in recordings; found (n,), cases as of ``expect_fits``."""
     stills, dts, right = [case[0] for case in cases], *np.array([case[1:3] for case in cases]).T
     std, step = (np.array([np.std(f(still)) for still in stills]) for f in (np.asarray, np.diff))
     root = np.sqrt(dts)

@@ -149,7 +149,7 @@ SENSORS: dict[str, tuple[str, str]] = {
     ),
     "WALK_WITHOUT_THREE": (
         "The random walk comes out too small by the square root of three.",
-        "A mean over T smooths the walk on its way: the walk's part of the Allan variance is K² T/3, not K² T.",
+        "A mean over T smooths the walk: its part of the Allan variance is K² T/3, not K² T.",
     ),
     "WALK_TOO_SMALL": (
         "The random walk comes out too small.",

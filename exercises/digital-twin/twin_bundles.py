@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from course.grading import kit
@@ -14,9 +12,9 @@ twins = kit.companion("digital-twin", "twin_probes")
 CALIBRATED, new_twin = bundles.CALIBRATED, scenes.new_twin
 
 
-#: The rms error of the twin's position over that of the measurements themselves: after those that came in
-#: time, and after late ones. In time, passing z on is 1; constant shares reach 0.37 to 0.78 and Kalman filters
-#: 0.34 to 0.75 over 400 runs. After late ones, which are fewer, right twins reach up to 0.93.
+#: The rms error of the twin's position over that of the measurements themselves: after those that came
+#: in time, and after late ones. In time, passing z on is 1; constant shares reach 0.37 to 0.78 and Kalman
+#: filters 0.34 to 0.75 over 400 runs. After late ones, which are fewer, right twins reach up to 0.93.
 FOLLOWS_WITHIN, FOLLOWS_LATE_WITHIN = 0.85, 1.25
 
 

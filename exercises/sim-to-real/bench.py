@@ -1,4 +1,4 @@
-"""What a run on the bench can tell: the excitations that a plan may name, and the README's fit on a recording.
+"""What a run on the bench can tell: the excitations that a plan may name, and the README's fit.
 
 ``cart.attainable`` says what the best of all estimators could read from a command. The fit that the README
 gives is not the best, and it is what a recording is made for: it is judged too.

@@ -108,7 +108,7 @@ def test_identify_intervals(submission):
     values = probes.patient(lambda: submission.call_each("identify", both), "IDENTIFY_TOO_SLOW")
     estimates = [probes.estimate_of(value) for value in values]
     full, weak = estimates[: len(carts)], estimates[len(carts) :]
-    judge.expect_intervals(full)
+    judge.expect_intervals(full, carts)
     judge.expect_honest_widths(full, recordings, carts)
     judge.expect_growth(full, weak)
 

@@ -238,9 +238,8 @@ WORDS: dict[str, tuple[str, str]] = {
         "The truth lies outside twice the interval, again and again.",
         "The residuals of neighbouring samples hang together, because integrals add noise up, and an "
         "uncertain delay makes everything else uncertain. Leave out one block after the other and refit all "
-        "parameters, times too. Fits that share all blocks but one are alike, so their plain spread is far too "
-        "small: the standard error is sqrt((n-1)/n * sum((each - mean)**2)), n - 1 times what the standard "
-        "error of their mean would be.",
+        "parameters, times too. Fits that share all blocks but one are alike, so their plain spread is far "
+        "too small: the standard error is sqrt((n-1)/n * sum((each - mean)**2)), with its factor n - 1.",
     ),
     "INTERVAL_WITHOUT_RECORDING": (
         "Their widths do not follow from what the recording tells.",
@@ -280,10 +279,10 @@ WORDS: dict[str, tuple[str, str]] = {
         "kd is zero, or next to nothing beside kp: nothing brakes the cart before its mark.",
         "Search over the ratio kd/kp as well, from 0.25 to 0.7 say.",
     ),
-    "SEARCH_AT_EDGE": (
-        "For different questions the same gain comes out, and beyond it the cart does better: it is the last "
-        "one that the search tries.",
-        "Widen the grid until the best gains lie inside it: kp from 2 to 40, kd/kp from 0.25 to 0.7.",
+    "GAINS_BY_FORMULA": (
+        "The gains follow the mass, and neither the latency nor the box: no rollout is behind them.",
+        "Draw carts from the box that is passed in, about the estimate, roll them out, and take the gains "
+        "that do best on them.",
     ),
     "WORST_CART_ONLY": (
         "The gains are best for the slowest cart of the draws and not for their mean.",

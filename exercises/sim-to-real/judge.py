@@ -91,7 +91,7 @@ def expect_shows(u, carts):
             high=limit,
             source="the README's; random full force leaves a tenth of it, a chirp four fifths",
             quantity=f"rms error of {name} in the given fit, as a share",
-            message="From a recording with this excitation, the README's own fit does not find every parameter.",
+            message="From a recording with this excitation, the README's fit does not find every parameter.",
             input={"parameter": name},
             diagnose=lambda: probes.of_command(u),
         )
@@ -180,7 +180,7 @@ def expect_accurate(estimates, carts, recordings=()):
 _UNITS = {"m": "kg", "b": "N s/m", "Fc": "N", "lag": "s"}
 
 
-def expect_intervals(estimates):
+def expect_intervals(estimates, carts):
     """Low, value and high are in order, and the scored ones are narrow enough to say something."""
     for estimate in estimates:
         for name, (value, low, high) in estimate.items():
@@ -200,7 +200,7 @@ def expect_intervals(estimates):
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
                 message="An interval is too wide to say anything.",
-                diagnose=named("INTERVAL_USELESS"),
+                diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
                 input={"parameter": name, "value": value},
             )
 
@@ -225,7 +225,7 @@ def expect_honest_widths(estimates, recordings, carts):
             source="the README's; correct solutions are 1 to 8 times as wide",
             quantity=f"mean half-width of {name} over the narrowest possible",
             message="The intervals are far wider than what the recordings hold.",
-            diagnose=named("INTERVAL_WITHOUT_RECORDING"),
+            diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_WITHOUT_RECORDING"),
             input={"parameter": name},
         )
 

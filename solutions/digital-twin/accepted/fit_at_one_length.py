@@ -1,4 +1,4 @@
-"""N from neighbouring samples, K from blocks of the one length at which both noises are alike, guessed twice."""
+"""N from neighbouring samples, K from blocks of the one length at which both noises are alike."""
 
 
 def fit_noise(still, dt):

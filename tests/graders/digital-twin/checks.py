@@ -114,7 +114,7 @@ def test_lidar_walls(submission, rng):
 @pytest.mark.task("lidar")
 @pytest.mark.points(3)
 def test_lidar_noise(submission, rng):
-    """Hits have noise of std sigma from the generator passed in, never below zero; others read r_max exactly"""
+    """Hits have noise of std sigma from the generator passed in, from zero on; others read r_max exactly"""
     sensors.expect_scan_noise(submission, rng.uniform(6.0, 9.0), rng.uniform(0.02, 0.08), rng)
     sensors.expect_scan_draws(submission, int(rng.integers(2**32)))
 

@@ -91,15 +91,16 @@ def _uneven(rng, low, high):
 def test_identify_accurate(submission):
     """identify finds mass, frictions and lag of three unknown carts, as the mean of two recordings each"""
     estimates, carts = execution.bench(submission)
-    judge.expect_accurate(execution.means(estimates), carts[:3])
+    recordings = reference.recordings(submission.seed)[:3]
+    judge.expect_accurate(execution.means(estimates), carts[:3], recordings)
 
 
 @pytest.mark.task("identify")
 @pytest.mark.points(10)
 def test_identify_honest(submission):
-    """Intervals are as wide as the recordings ask for, wider for weak ones, and twice as wide hold the truth"""
+    """Intervals are as wide as recordings ask for, wider for weak ones, and doubled they hold the truth"""
     estimates, carts = execution.bench(submission)
-    judge.expect_intervals(estimates)
+    judge.expect_intervals(estimates, carts)
     judge.expect_honest_widths(estimates, reference.recordings(submission.seed), carts)
     judge.expect_growth(estimates, execution.weak(submission))
     missed, total = judge.misses(estimates, carts)
@@ -109,7 +110,7 @@ def test_identify_honest(submission):
         source="of 24; those of correct solutions missed none in the calibration",
         quantity="intervals that miss the truth when doubled",
         message="Intervals twice as wide as those of identify miss the truth too often.",
-        diagnose=lambda: probes.of_misses(estimates, carts),
+        diagnose=lambda: probes.of_misses(estimates, carts, reference.recordings(submission.seed)),
         input={"intervals": total},
     )
 
@@ -134,7 +135,9 @@ def test_tune_other_boxes(submission):
         (cart.with_intervals(each), box)
         for each, box in zip(reference.realities(submission.seed), reference.OTHER_BOXES, strict=True)
     ]
-    _expect_success(submission, asked, reference.other_success, "carts drawn from the box it was given settle")
+    _expect_success(
+        submission, asked, reference.other_success, "carts drawn from the box it was given settle"
+    )
 
 
 def _expect_success(submission, asked, success, who):

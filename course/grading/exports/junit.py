@@ -13,12 +13,12 @@ from xml.etree import ElementTree as ET
 from course.grading.exports.cells import number, replacing, spelled_out
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.selection import ExportOptions, Written, select
-from course.grading.verdict import CheckResult, Problem, Status
+from course.scoring.verdict import CheckResult, Problem, Status
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["suite", "write_junit"]
 
@@ -37,7 +37,7 @@ def write_junit(path: Path, results: Results, options: ExportOptions) -> Written
     with replacing(path) as handle:
         handle.write(b'<?xml version="1.0" encoding="utf-8"?>\n')
         handle.write(b"<testsuites name=%s>\n" % _attribute(results.course.id))
-        for effective in selection.each():
+        for effective in (item for item in selection.each() if not item.missing):
             handle.write(ET.tostring(suite(effective), encoding="utf-8", xml_declaration=False) + b"\n")
         handle.write(b"</testsuites>\n")
     selection.written.paths.append(path)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import datetime as dt
+import importlib.util
 from typing import TYPE_CHECKING
 
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.downloads import ClassList, class_list
-from course.grading.gradebook import FromDownload
-from course.grading.intake import read_student
+from course.grading.gradebook.book import FromDownload
+from course.grading.intake.downloads import ClassList, class_list
+from course.grading.intake.students import read_student
 from tests.unit.grading.test_intake import archive
 
 if TYPE_CHECKING:
@@ -186,8 +187,8 @@ def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gradescope(tmp_path)
-    monkeypatch.setitem(__import__("sys").modules, "yaml", None)
-    with pytest.raises(MissingCapabilityError, match="PyYAML") as caught:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(MissingCapabilityError, match="pyyaml") as caught:
         class_list(tmp_path)
     assert "pip install" in caught.value.help
 

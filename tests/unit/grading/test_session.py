@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 from course.errors import ContentError, MissingCapabilityError
-from course.grading.session import GradingSession, Submission, grader_version
-from course.grading.verdict import Status, for_student
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+from course.scoring.verdict import Status, for_student
+from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.grading.verdict import CheckResult, Verdict
+    from course.scoring.verdict import CheckResult, Verdict
 
 
 def grade(session: GradingSession, source: bytes | str) -> Verdict:
@@ -29,7 +31,7 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
     session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     checks = sum(check.task == "double" for check in session.checks)
-    monkeypatch.setattr("course.grading.remote.BUDGET_S", float(checks))  # each waits for a second
+    monkeypatch.setattr("course.scoring.remote.BUDGET_S", float(checks))  # each waits for a second
     verdict = grade(session, solution + b"\ndef double(x):\n    while True:\n        pass\n")
     assert {str(check.status) for check in results(verdict, "double")} <= {"timeout", "skipped"}
     assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
@@ -225,7 +227,7 @@ def test_the_same_seed_draws_the_same_inputs(catalog: Catalog, doubling: Exercis
     )
     seen = []
     for seed in (1, 1, 2):
-        with GradingSession(doubling, catalog, scope="full", seed=seed) as session:
+        with GradingSession(doubling, catalog, scope="full", terms=Terms(seed=seed)) as session:
             seen.append(next(c.input for c in session.grade(wrong).checks if c.id == "doublings_values"))
     assert seen[0] == seen[1] != seen[2]
 
@@ -270,7 +272,7 @@ def test_a_check_that_computes_with_infinite_numbers_is_no_fault_of_ours(
     def computing(*_: object) -> None:
         seen.append(np.array([np.inf]) - np.inf)  # numpy would warn, and a warning may be an error
 
-    monkeypatch.setattr("course.grading.collected._run_item", computing)
+    monkeypatch.setattr("course.scoring.collected._run_item", computing)
     grade(session, solution)
     assert np.isnan(seen).all()
 
@@ -286,8 +288,8 @@ def test_hidden_checks_need_a_checkout(catalog: Catalog, doubling: Exercise) -> 
 def test_a_check_without_its_marks_names_the_file_and_the_line(
     catalog: Catalog, doubling: Exercise, tmp_path: Path
 ) -> None:
-    from course.grading.collected import CollectedChecks
-    from course.grading.verdict import Visibility
+    from course.scoring.collected import CollectedChecks
+    from course.scoring.verdict import Visibility
 
     path = tmp_path / "checks.py"
     path.write_text('import pytest\n\n\ndef test_it(submission):\n    """It"""\n', "utf-8")
@@ -320,7 +322,7 @@ def test_the_graders_version_follows_what_decides_a_score(catalog: Catalog, doub
 def test_a_check_that_pytest_never_called_is_no_pass(
     session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("course.grading.collected._run_item", lambda _item: None)
+    monkeypatch.setattr("course.scoring.collected._run_item", lambda _item: None)
     assert grade(session, solution).state == "grader_error"
 
 

@@ -1,0 +1,110 @@
+"""How a check ends when it does not pass.
+
+``CheckFailed`` carries a finding: the check looked and something was wrong. ``StudentFailure`` means there
+was nothing to look at, because the student's code raised, hung, died or is missing. Neither is our fault;
+any other exception out of a check is.
+"""
+
+from __future__ import annotations
+
+import builtins
+from dataclasses import dataclass
+
+from course.isolation.failures import FailureKind, StudentFailure
+from course.scoring.places import Places
+from course.scoring.verdict import Divergence, Finding
+
+__all__ = ["CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "finding_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """Which mistake a failure looks like.
+
+    Attributes:
+        code: stable name, upper case with underscores.
+        looks_like: one sentence, without values, that says what the student's code seems to do.
+        advice: what to change, without values.
+        divergence: where the trajectory first left the reference, if that was looked for.
+    """
+
+    code: str
+    looks_like: str
+    advice: str
+    divergence: Divergence | None = None
+
+
+class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
+    """A check found something wrong; ``finding`` says what."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding.message)
+        self.finding = finding
+
+
+def finding_of(failure: StudentFailure) -> Finding:
+    """A failure as words: what happened and what to do, without any value of the check's.
+
+    The exception's own message is in ``actual``, which hidden checks do not show.
+    """
+    if failure.kind == "error":
+        return _error_finding(failure)
+    if failure.kind == "missing":
+        return Finding(
+            message=f"Your file has no function `{failure.type}`.",
+            help="Keep the names the stub gave: define it at the top level of the file, spelled exactly so.",
+            diagnosis="MISSING_FUNCTION",
+        )
+    message, advice, code = _OTHER[failure.kind]
+    return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
+
+
+def _error_finding(failure: StudentFailure) -> Finding:
+    if failure.type == "NotImplementedError":
+        return Finding(
+            message="This function is not written yet: it still raises NotImplementedError.",
+            help="Replace the `raise` line by your code; the docstring above it says what to return.",
+            diagnosis="NOT_IMPLEMENTED",
+        )
+    places: Places = failure.places or Places()
+    where = f" {places.phrase(failure.line)}" if failure.line else ""
+    if failure.type == "ImportNotDeclaredError":
+        return Finding(
+            message=f"Your code needs a module{where} that this exercise does not allow.",
+            help="Do without it. Plots and experiments belong in a file of your own that imports this one.",
+            diagnosis="IMPORT_NOT_ALLOWED",
+            actual=failure.message,
+        )
+    # A class name is the student's to choose and could spell out a hidden input: only known ones are said.
+    known = isinstance(getattr(builtins, failure.type, None), type)
+    name = failure.type if known else "an exception of its own"
+    return Finding(
+        message=f"Your code raised {name}{where}.",
+        help="Call the function yourself as the README's example does, and read the traceback from below.",
+        diagnosis="RAISED",
+        actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
+    )
+
+
+_OTHER: dict[str, tuple[str, str, str]] = {
+    "timeout": (
+        "Your code had not answered when the time was up.",
+        "Look for a loop whose condition never becomes false, or one that takes far more steps than asked.",
+        "TIMEOUT",
+    ),
+    "memory": (
+        "Your code asked for more memory than a check may use.",
+        "Look for a list or array that grows in a loop without end.",
+        "OUT_OF_MEMORY",
+    ),
+    "crash": (
+        "The Python process that ran your code ended.",
+        "Look for exit(), os._exit(), or a recursion without an end.",
+        "CRASHED",
+    ),
+    "protocol": (
+        "Your function returned something that is not plain data.",
+        "Return numbers, lists, tuples, dicts or numpy arrays of numbers, nothing else.",
+        "NOT_PLAIN_DATA",
+    ),
+}

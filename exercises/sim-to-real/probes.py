@@ -252,8 +252,7 @@ def of_gains(submission, estimate, box, gains, success):
     heavy, light = (_with(estimate, ("m", "b"), factor) for factor in (2.5, 0.4))
     late = _with(estimate, ("latency", "lag"), 2.2)
     loaded = {k: [_LOAD.get(k, 1.0) * end for end in ends] for k, ends in box.items()}
-    narrow = cart.shifted_box(0.25)
-    questions = [(heavy, box), (light, box), (late, box), (estimate, loaded), (estimate, narrow)]
+    questions = [(heavy, box), (light, box), (late, box), (estimate, loaded)]
     other = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", questions)])
     if other is None:
         return None
@@ -261,12 +260,10 @@ def of_gains(submission, estimate, box, gains, success):
     better = _better(gains, success)
     ended_early = success(*better) > 1.03 * success(kp, kd)
     # One kp for most questions, with others better: the grid ends there, or the search never leaves it.
-    found_again = any(math.isclose(other[4][0], p, rel_tol=1e-6) for p, _ in [gains, *other[:4]])
-    stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other[:4]) >= 3
+    stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other) >= 3
     prompt = {**estimate, "latency": [0.001] * 3}
     looks = (
         ("GAINS_HARD_CODED", lambda: all(same)),
-        ("WORST_CART_ONLY", lambda: not found_again and _for_the_worst(other[4], estimate, narrow)),
         ("SEARCH_ENDED_EARLY", lambda: stays and ended_early),
         ("GAINS_BY_FORMULA", lambda: same[2] and same[3] and not (same[0] or same[1])),
         ("DELAY_IGNORED", lambda: same[2] and _is_best(kp, kd, prompt, box)),
@@ -285,14 +282,6 @@ def _with(estimate, names, factor):
 
 
 _AROUND = [(a, b) for a in (1.0, 0.6, 1.6) for b in (1.0, 0.6, 1.6)]  # (1, 1) first: the gains themselves
-
-
-def _for_the_worst(gains, estimate, box):
-    """Whether no gains about these are quicker for the slowest of the carts, and some are on average."""
-    factors = np.array(_AROUND).T
-    times = _settling((gains[0] * factors[0], gains[1] * factors[1]), estimate, box)
-    mean, worst = times.mean(axis=0), times.max(axis=0)
-    return bool(mean.min() < 0.97 * mean[0] and worst[0] <= 1.005 * worst.min())
 
 
 def _better(gains, success):

@@ -293,11 +293,12 @@ WORDS: dict[str, tuple[str, str]] = {
         "Search among positive gains only; a logarithmic grid has no others.",
     ),
     "SEARCH_ENDED_EARLY": (
-        "Other gains do clearly better, on average, on the very carts it was asked about: the search stopped in "
-        "a local minimum, at its edge, or between coarse points, or looked for something else than the mean.",
+        "Other gains do clearly better, on average, on the very carts it was asked about: the search stopped "
+        "in a local minimum, at its edge, or between coarse points, or it looked for something else than the "
+        "mean.",
         "Take the mean settling time over the carts. Search on a grid first, over kp from 2 to 40 and the "
-        "ratio kd/kp from 0.25 to 0.7, and refine around the best; use the same noise for all gains, and some "
-        "hundred carts.",
+        "ratio kd/kp from 0.25 to 0.7, and refine around the best; use the same noise for all gains, and "
+        "some hundred carts.",
     ),
 }
 

@@ -7,8 +7,9 @@ import pytest
 
 from course.engines import reference
 from course.engines.registry import ENGINES
-from course.figures import engines, sim_to_real, summary, twins
+from course.figures import engines, how_contact_is_solved, sim_to_real, summary, twins
 from course.figures.style import house_style
+from course.physics.contact_models import Constraint
 
 
 def test_the_title_of_the_settings_counts_errors_that_are_there() -> None:
@@ -41,6 +42,13 @@ def test_an_error_of_the_reference_is_its_value_against_the_truth() -> None:
     assert engines.error("mujoco", "bounce", "default").mean == pytest.approx(100.0)
     swing = reference.row("dart", "double-pendulum", "tuned")
     assert engines.error("dart", "double-pendulum", "tuned").worst == pytest.approx(swing.highest)
+
+
+def test_a_bounce_depends_on_its_phase() -> None:
+    plain = how_contact_is_solved.rebounds(Constraint(0.5))
+    assert 0.22 < plain.min() < 0.225
+    assert 0.25 < plain.max() < 0.26
+    assert how_contact_is_solved.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
 
 
 def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None:

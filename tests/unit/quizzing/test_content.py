@@ -12,6 +12,7 @@ from course.authoring.quiz_audit import audit_quiz
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.physics import integrators as steppers
+from course.physics.contact_models import Constraint, drop
 from course.physics.systems import FreeFall, Oscillator
 from course.quizzing.attempt import mark
 from course.quizzing.bank import Bank, Posed, pose_case, same_answer
@@ -217,6 +218,30 @@ def test_the_finer_verlet_error_falls_as_the_method_does(bank: Bank) -> None:
         err, finer = numbers(shown.prompt)[:2]
         measured = err * error(0.01 / finer) / error(0.01)
         assert numbers(shown.key.text)[0] == pytest.approx(measured, rel=0.01)
+
+
+def test_the_block_that_is_moved_first_creeps_as_far_as_the_key_says(bank: Bank) -> None:
+    for shown in cases(bank, "numerical-integration", "moved-first"):
+        _, _, h, _, t_end = numbers(shown.prompt)[:5]
+        x = v = 0.0
+        for _ in range(round(t_end / h)):
+            v += h * 9.81 * 0.6
+            x += h * v
+            v = 0.0  # friction holds up to mu g cos(alpha), more than the slope asks for
+        assert numbers(shown.key.text)[0] == pytest.approx(1000 * x, rel=0.006)
+
+
+def test_the_correction_costs_the_energy_that_the_key_says_at_two_steps(bank: Bank) -> None:
+    for shown in cases(bank, "numerical-integration", "paid-correction"):
+        (erp,) = (value for value in numbers(shown.prompt) if 0 < value < 1)
+        for h in (0.01, 0.002):
+            kept = []
+            for phase in (np.arange(50) + 0.5) / 50:
+                height = 2.0 + phase * h * np.sqrt(2 * 9.81 * 2.0)
+                gaps, v = drop(Constraint(1.0, erp=erp), height, 0.0, h, round(1.7 / h))
+                kept.append(gaps[int(np.argmax(v > 0)) :].max() / height)
+            # Two digits are shown, and a step of h finds the ball a little deeper than v h/2.
+            assert numbers(shown.key.text)[0] / 100 == pytest.approx(np.mean(kept) - 1, rel=0.08)
 
 
 def test_the_sliding_box_stops_where_friction_says(bank: Bank) -> None:

@@ -26,6 +26,7 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     out: str
     troubled: tuple[Trouble, ...]
     unrecognised: tuple[str, ...] = ()
+    unjudged: tuple[str, ...] = ()
 
 
 class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):

@@ -8,12 +8,14 @@ any other exception out of a check is.
 from __future__ import annotations
 
 import builtins
+import traceback
 from dataclasses import dataclass
+from pathlib import Path
 
 from course.grading.verdict import Divergence, Finding
-from course.isolation.failures import FailureKind, StudentFailure
+from course.isolation.failures import FailureKind, StudentFailure, printable
 
-__all__ = ["CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "finding_of"]
+__all__ = ["OURS", "CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "broke_at", "finding_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +36,30 @@ class Diagnosis:
 
 
 class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
-    """A check found something wrong; ``finding`` says what."""
+    """A check found something wrong; ``finding`` says what.
 
-    def __init__(self, finding: Finding) -> None:
+    Attributes:
+        broke: where the search for the mistake behind it raised, for the check's author; empty if it did not.
+    """
+
+    def __init__(self, finding: Finding, broke: str = "") -> None:
         super().__init__(finding.message)
         self.finding = finding
+        self.broke = broke
+
+
+#: Begins the traceback of a result whose check, or its search for the mistake, raised on a student's value.
+OURS = "In the check's own code: "
+
+
+def broke_at(error: BaseException) -> str:
+    """An exception of a check's own and the place it comes from, in one line for the check's author."""
+    frames = traceback.extract_tb(error.__traceback__)
+    try:
+        said = f"{type(error).__name__}: {printable(str(error), 200)}"
+    except Exception:  # noqa: BLE001 - an exception may carry a value that cannot even be printed
+        said = type(error).__name__
+    return f"{said} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else said
 
 
 def finding_of(failure: StudentFailure) -> Finding:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from course.isolation.spawn import Spawner
+
+T = TypeVar("T")
 
 __all__ = ["BUDGET_S", "RemoteSubmission"]
 
@@ -32,6 +34,9 @@ class RemoteSubmission:
         timeout: wall seconds per check.
         seed: seed of the grading run.
 
+    Attributes:
+        returned: name and value of the last function of the student's that returned in this check.
+
     Raises:
         LoadRefusedError: it cannot be loaded.
     """
@@ -48,6 +53,7 @@ class RemoteSubmission:
         self._deadline = min(monotonic() + timeout, self._end)
         self._printed_before = 0
         self._task, self._began = "", monotonic()
+        self.returned: tuple[str, Any] | None = None
         self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
@@ -71,11 +77,12 @@ class RemoteSubmission:
             StudentFailure: it gave no value.
             CheckFailed: a function given to it refused its arguments.
         """
-        return self._live().call(name, *args, **kwargs)
+        return self._told(name, self._live().call(name, *args, **kwargs))
 
     def call_inspect(self, name: str, *args: Any) -> Inspected:
         """Call it, and say what became of the arguments."""
         value, after, shared = self._live().inspect(name, *args)
+        self._told(name, value)
         return Inspected(value, after, shared)
 
     def ref(self, name: str) -> Any:
@@ -110,7 +117,7 @@ class RemoteSubmission:
             marches: (system, q0, v0, h, n, t0) of each, as for ``march``.
         """
         sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
-        values = self._live().march(step_name, sent)
+        values = self._told(step_name, self._live().march(step_name, sent))
         return [
             (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
             for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
@@ -122,7 +129,7 @@ class RemoteSubmission:
         Raises:
             StudentFailure: one of the calls gave no value; the later ones were not made.
         """
-        return self._live().each(name, [list(args) for args in calls])
+        return self._told(name, self._live().each(name, [list(args) for args in calls]))
 
     def fold(
         self,
@@ -146,7 +153,11 @@ class RemoteSubmission:
             StudentFailure: one of the calls gave no value.
         """
         kept = None if keep is None else list(keep)
-        return self._live().fold(name, state, [list(args) for args in calls], carry, kept)
+        return self._told(name, self._live().fold(name, state, [list(args) for args in calls], carry, kept))
+
+    def _told(self, name: str, value: T) -> T:
+        self.returned = name, value
+        return value
 
     # -- for the grader -------------------------------------------------------------------------------
 
@@ -162,6 +173,7 @@ class RemoteSubmission:
         left = self._left.setdefault(task, (self._end - now) / 2)
         self._task, self._began = task, now
         self._deadline = min(now + min(self._timeout, left), self._end)
+        self.returned = None
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 

@@ -17,6 +17,7 @@ from course.grading.batch import BatchOptions, grade_all
 from course.grading.downloads import class_list
 from course.grading.exports.html_report.write import write_pages
 from course.grading.exports.lines import write_csv, write_jsonl
+from course.grading.failures import OURS
 from course.grading.gradebook import Gradebook, GradedExercise, Key, Result, SubmittedAt
 from course.grading.intake import Entry, read_quiz, read_student, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
@@ -89,6 +90,7 @@ class Summary:
         not_submitted: pairs without a file, which count for nothing.
         already: results that an earlier run had.
         unrecognised: what in the class folder belongs to nobody, one sentence each.
+        unjudged: how often a check broke on what a submission returned: (exercise, check, where).
         elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
     """
@@ -100,6 +102,7 @@ class Summary:
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
+    unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     seed: int = 0
     elapsed_s: float = 0.0
     write_s: float = 0.0
@@ -120,6 +123,9 @@ class Summary:
             self.passed += effective.passed
             if verdict.isolation:
                 self.levels[verdict.isolation] += 1
+            for check in verdict.checks:
+                if (check.traceback or "").startswith(OURS):
+                    self.unjudged[effective.exercise, check.id, str(check.traceback)] += 1
             if verdict.error is not None and not settled:
                 error = verdict.error
                 self.troubled.append(

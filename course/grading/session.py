@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from course.errors import InternalError, MissingCapabilityError, UngradableError
 from course.grading.collected import Check, CollectedChecks
-from course.grading.failures import CheckFailed, finding_of
+from course.grading.failures import OURS, CheckFailed, broke_at, finding_of
 from course.grading.notebook_source import RECORD, NotebookSource
-from course.grading.outcomes import found, load_problem, no_functions, result, skipped
+from course.grading.outcomes import found, load_problem, no_functions, result, skipped, unjudged
 from course.grading.remote import RemoteSubmission
 from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
 from course.isolation.failures import IsolationError, StudentFailure
@@ -103,6 +103,8 @@ class GradingSession:
         self._timeout = timeout
         self._seed = seed
         self._processor = _choose(processor)
+        self._catalog = catalog
+        self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
         self._checks = CollectedChecks(check_files(exercise, catalog, scope))
         with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, level, at_least)
@@ -217,14 +219,38 @@ class GradingSession:
             case IsolationError():
                 raise outcome
             case CheckFailed():
-                return found(check, Status.FAIL, outcome.finding, duration_ms, stdout=printed)
+                ours = OURS + outcome.broke if outcome.broke else None
+                return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
                 status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
                 traceback = outcome.traceback or None
                 finding = finding_of(outcome)
                 return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
-        message = f"The check itself failed: {type(outcome).__name__}: {outcome}"
-        return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+        where = broke_at(outcome)
+        proven = self._passes_the_model(check)
+        if proven is False:
+            message = f"The check itself failed, on the model solution too: {where}"
+            return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+        finding = unjudged(remote.returned, proven=bool(proven))
+        return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _passes_the_model(self, check: Check) -> bool | None:
+        """Whether a check that broke on a submission passes the model solution; None without one here."""
+        solutions = self._catalog.content.solutions
+        if solutions is None:
+            return None
+        if check.id not in self._sound:
+            source = (solutions / self.exercise.id / self.exercise.module).read_bytes()
+            try:
+                model = self._load(Submission({self.exercise.module: source}))
+            except LoadRefusedError:
+                return False
+            try:
+                model.begin_check(check.task)
+                self._sound[check.id] = self._checks.run(check, model) is None
+            finally:
+                model.close()
+        return self._sound[check.id]
 
     # -- verdicts -------------------------------------------------------------------------------------
 

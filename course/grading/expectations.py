@@ -74,6 +74,7 @@ def fail(
 ) -> NoReturn:
     """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
     found, broke = _explained(diagnose)
+    bare = message, help
     code: str | None = found if isinstance(found, str) else None
     if isinstance(found, Diagnosis):
         code = found.code
@@ -93,6 +94,8 @@ def fail(
             first_divergence=first_divergence,
         ),
         broke,
+        bare,
+        found if isinstance(found, Diagnosis) else None,
     )
 
 

@@ -9,42 +9,35 @@ from __future__ import annotations
 
 import builtins
 import traceback
-from dataclasses import dataclass
 from pathlib import Path
 
-from course.grading.verdict import Divergence, Finding
+from course.grading.verdict import Finding
 from course.isolation.failures import FailureKind, StudentFailure, printable
+from course.scoring.explain.words import Diagnosis
 
 __all__ = ["OURS", "CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "broke_at", "finding_of"]
-
-
-@dataclass(frozen=True, slots=True)
-class Diagnosis:
-    """Which mistake a failure looks like.
-
-    Attributes:
-        code: stable name, upper case with underscores.
-        looks_like: one sentence, without values, that says what the student's code seems to do.
-        advice: what to change, without values.
-        divergence: where the trajectory first left the reference, if that was looked for.
-    """
-
-    code: str
-    looks_like: str
-    advice: str
-    divergence: Divergence | None = None
 
 
 class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
     """A check found something wrong; ``finding`` says what.
 
     Attributes:
-        broke: where the search for the mistake behind it raised, for the check's author; empty if it did not.
+        bare: message and advice of the check itself, without what its probe thinks.
+        guess: the mistake that its probe thinks it is.
+        broke: where the probe raised, for the check's author; empty if it did not.
     """
 
-    def __init__(self, finding: Finding, broke: str = "") -> None:
+    def __init__(
+        self,
+        finding: Finding,
+        broke: str = "",
+        bare: tuple[str, str] | None = None,
+        guess: Diagnosis | None = None,
+    ) -> None:
         super().__init__(finding.message)
         self.finding = finding
+        self.bare = bare or (finding.message, finding.help)
+        self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
         self.broke = broke
 
 

@@ -59,6 +59,10 @@ from course.grading.values import (
     plain,
 )
 from course.grading.verdict import Divergence, Finding, Tolerance
+from course.scoring.explain.table import FILE as TABLE
+from course.scoring.explain.table import read_table
+from course.scoring.explain.words import FILE as WORDS
+from course.scoring.explain.words import Words, read_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -84,6 +88,7 @@ __all__ = [
     "Series",
     "StudentFailure",
     "Tolerance",
+    "Words",
     "acceleration",
     "as_array",
     "as_bool",
@@ -117,10 +122,13 @@ __all__ = [
     "finding_of",
     "first_divergence",
     "guarded_section",
+    "known_answers",
     "march_all_errors",
     "march_errors",
     "plain",
+    "reference",
     "sibling",
+    "words",
 ]
 
 
@@ -243,6 +251,40 @@ def companion(exercise_id: str, module: str) -> ModuleType:
     from course.catalog.locate import content
 
     return _load(content().exercises / exercise_id / f"{module}.py", f"{exercise_id}_{module}")
+
+
+def reference(exercise_id: str, module: str) -> ModuleType | None:
+    """A module that answers for the student, ``solutions/<id>/<module>.py``; None at home, which has none."""
+    from course.catalog.locate import content
+
+    solutions = content().solutions
+    return (
+        None
+        if solutions is None
+        else _load(solutions / exercise_id / f"{module}.py", f"{exercise_id}_{module}_right")
+    )
+
+
+def known_answers(exercise_id: str, check: str) -> list[Any]:
+    """What a public check with fixed inputs expects where there is no reference, in the order it asks."""
+    from course.catalog.locate import content
+
+    return [_known(value) for value in read_table(content().exercises / exercise_id / TABLE).answers[check]]
+
+
+def _known(value: Any) -> Any:
+    """A known answer as it was: "inf" a number, and lists of numbers arrays."""
+    if isinstance(value, list):
+        items = [_known(item) for item in value]
+        return np.array(items) if items and all(isinstance(item, float) for item in items) else items
+    return float(value) if isinstance(value, str) else value
+
+
+def words(exercise_id: str) -> Words:
+    """The diagnoses of an exercise by their codes, from its ``diagnoses.toml``."""
+    from course.catalog.locate import content
+
+    return read_words(content().exercises / exercise_id / WORDS)
 
 
 def sibling(file: str, module: str) -> ModuleType:

@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from course.errors import InternalError, MissingCapabilityError, UngradableError
 from course.grading.collected import Check, CollectedChecks
+from course.grading.explaining import Explainer
 from course.grading.failures import OURS, CheckFailed, broke_at, finding_of
+from course.grading.kit import companion
 from course.grading.notebook_source import RECORD, NotebookSource
 from course.grading.outcomes import found, load_problem, no_functions, result, skipped, unjudged
 from course.grading.remote import RemoteSubmission
@@ -104,8 +106,10 @@ class GradingSession:
         self._seed = seed
         self._processor = _choose(processor)
         self._catalog = catalog
+        self._failed: dict[str, CheckFailed] = {}  # of the submission at hand
+        self._explainer = _explainer(exercise)
         self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
-        self._checks = CollectedChecks(check_files(exercise, catalog, scope))
+        self._checks = CollectedChecks(check_files(exercise, catalog, scope), draws=scope == "full")
         with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, level, at_least)
         self.level: str = self._spawner.level.value
@@ -155,7 +159,7 @@ class GradingSession:
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._ungradable(no_functions(self.exercise))
-            results = self._run(remote, only)
+            results = self._run(remote, only, submission.files[self.exercise.module])
         except IsolationError as error:
             return self._grader_error(str(error))
         finally:
@@ -194,17 +198,20 @@ class GradingSession:
             self._spawner, files, self.exercise.module, timeout=self._timeout, seed=self._seed
         )
 
-    def _run(self, remote: RemoteSubmission, only: str | None) -> list[CheckResult]:
+    def _run(self, remote: RemoteSubmission, only: str | None, source: bytes) -> list[CheckResult]:
         ordered = self._checks.in_order()
         if only is not None:
             wanted = _with_required(only, ordered)
             ordered = [check for check in ordered if check.id in wanted]
         results: dict[str, CheckResult] = {}
+        self._failed.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
             )
             results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote)
+        if self._explainer is not None and self._failed:
+            self._explainer.explain(results, self._failed, remote, source)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission) -> CheckResult:
@@ -219,6 +226,7 @@ class GradingSession:
             case IsolationError():
                 raise outcome
             case CheckFailed():
+                self._failed[check.id] = outcome
                 ours = OURS + outcome.broke if outcome.broke else None
                 return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
@@ -336,17 +344,28 @@ def grader_version(exercise: Exercise, catalog: Catalog) -> str:
     folders = [Path(exercise.folder), package / "grading", package / "isolation", package / "physics"]
     if catalog.content.graders is not None:
         folders.append(catalog.content.graders / exercise.id)
+    if catalog.content.solutions is not None:
+        folders.append(catalog.content.solutions / exercise.id)
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*")):
             part = path.relative_to(folder).parts[0].removesuffix(".py")
             if folder == package / "grading" and part in _DECIDES_NOTHING:
                 continue
-            if path.suffix in {".py", ".toml", ".ini"} and "__pycache__" not in path.parts:
+            if part in {"mutants", "accepted"}:
+                continue
+            if path.suffix in {".py", ".toml", ".ini", ".json"} and "__pycache__" not in path.parts:
                 digest.update(
                     path.relative_to(folder).as_posix().encode() + b"\0" + path.read_bytes() + b"\0"
                 )
     return digest.hexdigest()[:16]
+
+
+def _explainer(exercise: Exercise) -> Explainer | None:
+    """What explains failed checks, for an exercise whose words are data."""
+    if not (Path(exercise.folder) / "diagnoses.toml").is_file():
+        return None
+    return Explainer(Path(exercise.folder), companion(exercise.id, "questions").QUESTIONS)
 
 
 def _open(imports: tuple[str, ...], level: Level | str | None, at_least: Level | str) -> Any:

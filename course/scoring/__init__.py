@@ -1,0 +1,1 @@
+"""One submission: what its checks find, and what mistake that shows."""

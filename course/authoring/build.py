@@ -18,7 +18,7 @@ import numpy as np
 from course.authoring.mutants import mutant_path
 from course.authoring.variants import accepted_files, compose, solution_path, solutions_folder
 from course.grading import kit
-from course.scoring.explain.fingerprint import fingerprint
+from course.scoring.explain.fingerprint import fingerprint, in_range
 from course.scoring.explain.table import FILE, Row, Table, is_right, write_table
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class _Asked:
         answers = [_answer(function, args) for args in self._questions]
         if not self._within:
             return fingerprint(answers)
-        return tuple(float(a) if isinstance(a, int | float) else math.nan for a in answers)
+        return tuple(float(f"{in_range(a):.5g}") if isinstance(a, int | float) else -1.0 for a in answers)
 
 
 def _answer(function: Callable[..., Any], args: tuple[Any, ...]) -> Any:

@@ -6,11 +6,13 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+import numpy as np
 
 from course.grading.failures import CheckFailed, StudentFailure
 from course.grading.verdict import CheckResult, Finding, Status
 from course.scoring.explain import Failure, Story, fingerprint, read_table, read_words, tell
 from course.scoring.explain.calls import calls_between
+from course.scoring.explain.fingerprint import in_range
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import Row, is_right, matching
 from course.scoring.explain.words import FILE as WORDS
@@ -102,8 +104,10 @@ def _answer(remote: RemoteSubmission, task: str, args: tuple[Any, ...]) -> Any:
 
 
 def _number(value: Any) -> float:
-    """An answer that is compared as it is; nan, which equals nothing, if it is no number."""
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
+    """An answer that is compared as it is; -1 if it is no number."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    return in_range(value) if isinstance(value, int | float) and not isinstance(value, bool) else -1.0
 
 
 def _retold(

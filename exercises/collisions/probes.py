@@ -1,8 +1,8 @@
 """What a failed check of ``collisions`` shows of the mistake behind it.
 
 Each probe looks for a property that a family of mistakes has: which law is broken, where a nan comes from,
-when a path bends and how fast it goes on. Which known program it is, ``hypotheses.json`` tells; a probe speaks
-where none of them fits.
+when a path bends and how fast it goes on. Which known program it is, ``hypotheses.json`` tells; a probe
+speaks where none of them fits.
 """
 
 from __future__ import annotations

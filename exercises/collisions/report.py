@@ -190,9 +190,9 @@ def _pymunk_head_on(submission, title):
 
 
 def _pymunk_drop(submission, title):
-    scene = paths.Drop(1.0, 0.0, 0.1, 0.7)
-    t_end, rows, series, seen = 0.9, [], [], []
-    first = float(truth.contacts(t_end, 0.0)[0][0])
+    cases = bundles.asked("drop_pymunk", None)
+    (scene, t_end, _), first = cases[0], bundles.bounces(cases, "drop_pymunk")[0].times[0]
+    rows, series, seen = [], [], []
     for h in (0.008, 0.004, 0.002):
         n = round(t_end / h)
         t, z, _ = _drop_samples(submission, scene, n * h, h)

@@ -315,9 +315,11 @@ def _never(rng):
 
 def _no_rub(rng):
     smooth = (*blow(rng, 3), 0.0)
-    ma, mb, va, vb, n, e = blow(rng, 3)
-    straight = va - float((va - vb) @ n) * n
-    return [smooth, (ma, mb, va, straight, n, e, 0.4), parting(rub(rng, 3, 0.6)), rub(rng, 3, 0.6)]
+    # Along an axis and in whole numbers the slip is exactly zero.
+    axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
+    n, va = side * np.eye(3)[axis], rng.integers(-4, 5, 3).astype(float)
+    straight = (*masses(rng), va, va - float(rng.integers(1, 6)) * n, n, float(rng.uniform(0.2, 0.8)), 0.4)
+    return [smooth, straight, parting(rub(rng, 3, 0.6)), rub(rng, 3, 0.6)]
 
 
 def _mended(rng):

@@ -330,7 +330,7 @@ _TOUCHING = (
 _BLOWS = {
     "acts": (
         ("IMPULSE_ON_SEPARATING", lambda c: True),
-        ("APPROACH_REVERSED", lambda c: c < 0),
+        ("NORMAL_REVERSED", lambda c: c < 0),
     ),
     "factor": FACTORS,
     "give": GIVES,

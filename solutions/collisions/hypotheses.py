@@ -61,7 +61,7 @@ def _head_on(
 ):
     """``late``: the blow comes at the sample after; ``rest``: what is flown of the rest of the step;
 
-    ``overlaps``: it acts only if the balls overlap at the end of the step; ``first``: keeps the initial state.
+    ``overlaps``: it acts only if the balls overlap at the end of the step; ``first``: keeps row 0.
     """
 
     def struck(m, va, vb, e):

@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["SAME", "SUMS", "Answers", "fingerprint"]
+__all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range"]
 
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
@@ -27,6 +27,7 @@ SAME = 3e-5
 
 _NONE, _TRUE, _FALSE, _TEXT, _NAN, _INFINITE, _RAISED, _OTHER = 0.7071, 1.1, -1.1, 2.3, 31.4, 27.2, 51.7, 43.1
 _MOST = 20_000
+_LARGEST = 1e300  # JSON has no infinity
 
 
 def fingerprint(answers: Answers) -> tuple[float, ...]:
@@ -39,6 +40,15 @@ def fingerprint(answers: Answers) -> tuple[float, ...]:
     weights = np.random.default_rng(20260).uniform(-1.0, 1.0, (SUMS, _MOST))[:, : len(numbers)]
     # Large values count by their logarithm: a path that explodes is compared by its digits all the same.
     return tuple(round(float(total), 5) for total in weights @ np.arcsinh(numbers))
+
+
+def in_range(value: float) -> float:
+    """A number that JSON has: infinities as the largest one, nan as -1, which no answer here is."""
+    try:
+        number = float(value)
+    except OverflowError:
+        return _LARGEST
+    return -1.0 if math.isnan(number) else max(-_LARGEST, min(number, _LARGEST))
 
 
 def _numbers(value: Any, depth: int = 8) -> Iterator[float]:

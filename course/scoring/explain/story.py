@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.scoring.explain.words import Diagnosis
+from course.scoring.explain.words import NOT_FINITE, Diagnosis
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -14,10 +14,7 @@ if TYPE_CHECKING:
     from course.scoring.explain.table import Row
     from course.scoring.explain.words import Words
 
-__all__ = ["NOT_FINITE", "Failure", "Story", "tell"]
-
-#: Codes of values that are nan or infinite where a number belongs, whatever made them so.
-NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
+__all__ = ["Failure", "Story", "tell"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,14 +60,15 @@ def tell(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Stor
     """
     own = frozenset(f.check for f in failures if f.guess and words.kind(f.guess.code) == "fact")
     left = [failure for failure in failures if failure.check not in own]
-    shared = common(fits)
+    guesses = [failure.guess for failure in left if failure.guess]
+    shared = common(fits, [guess.code for guess in guesses])
     if shared:
         return Story(told(shared, words), True, own)
-    guesses = [failure.guess for failure in left if failure.guess]
     if not all(failure.finite for failure in left):
-        origin = [g for g in guesses if words.kind(g.code) == "nan"] or [
-            g for g in guesses if g.code in NOT_FINITE
-        ]
+        origin = sorted(
+            (guess for guess in guesses if words.kind(guess.code) == "nan"),
+            key=lambda guess: guess.code in NOT_FINITE,  # where it comes from says more than that it is there
+        )
         return Story(origin[0] if origin else None, False, own)
     for kind in ("cause", "nan", "consequence"):
         said = [guess for guess in guesses if words.kind(guess.code) == kind]
@@ -79,10 +77,17 @@ def tell(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Stor
     return Story(None, False, own)
 
 
-def common(fits: Sequence[Row]) -> tuple[str, ...]:
-    """The codes that all the fitting programs share, in the order of the first."""
+def common(fits: Sequence[Row], guesses: Sequence[str] = ()) -> tuple[str, ...]:
+    """The codes that all the fitting programs share, in the order of the first.
+
+    Programs with one mistake that answer every question alike are one program under two names, and each name
+    is true of it: the one that a probe says too, or else the first, which a mutant has.
+    """
     if not fits:
         return ()
+    if len(fits[0].codes) == 1:
+        names = [row.codes[0] for row in fits]
+        return (next((code for code in guesses if code in names), names[0]),)
     shared = set(fits[0].codes).intersection(*(row.codes for row in fits[1:]))
     return tuple(dict.fromkeys(code for code in fits[0].codes if code in shared))
 

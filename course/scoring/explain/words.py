@@ -13,10 +13,12 @@ from course.catalog.reading import read_document
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["FILE", "Diagnosis", "Divergence", "Entry", "Words", "read_words"]
+__all__ = ["FILE", "NOT_FINITE", "Diagnosis", "Divergence", "Entry", "Words", "read_words"]
 
 
 FILE = "diagnoses.toml"
+#: Codes of values that are nan or infinite where a number belongs, whatever made them so.
+NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
 
 
 class Divergence(msgspec.Struct, frozen=True):
@@ -80,8 +82,10 @@ class Words:
         return Diagnosis(code, entry.looks_like, entry.advice, divergence)
 
     def kind(self, code: str) -> str:
-        """Its kind; what has no words of the exercise's own is a fact that the reading of a value shows."""
-        return self.entries[code].kind if code in self.entries else "fact"
+        """Its kind; what has no words of the exercise's own is a fact that reading a value shows."""
+        if code in self.entries:
+            return self.entries[code].kind
+        return "nan" if code in NOT_FINITE else "fact"
 
 
 @cache

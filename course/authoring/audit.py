@@ -10,6 +10,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from course.authoring.diagnoses import audit_diagnoses
 from course.authoring.files import audit_files, blanks_in, find_blanks
 from course.authoring.grading import GradeSources, declared_checks, grade_sources
 from course.authoring.lessons import audit_lesson, audit_syllabus
@@ -137,6 +138,7 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
             exercise = catalog.read_exercise(exercise_id)
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
+            audit_diagnoses(catalog, exercise, own)
             proofs = plan(catalog, exercise, own)
             # Checks that lack a marker would only fail again, all at once and less clearly.
             if not own.of("check"):

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "app",
+    "build",
     "check",
     "coverage",
     "mutants",
@@ -206,6 +207,37 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
             problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in report.problems),
         )
     )
+
+
+@app.command(epilog="Example: course author build collisions")
+def build(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
+        ),
+    ] = None,
+) -> int:
+    """Compute what is shipped so that a diagnosis works at home, where there are no solutions.
+
+    Writes `hypotheses.json` into each exercise that has hypotheses: what every known wrong program answers to
+    the exercise's questions, as fingerprints. `course author check` refuses one that is out of date.
+    """
+    from course.authoring import build as desk
+    from course.authoring.variants import instructors
+    from course.cli.author_schemas import AuthorBuild
+    from course.cli.here import load_catalog
+
+    console, catalog = current(), load_catalog()
+    instructors(catalog)
+    chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
+    written = [shown(path, catalog) for exercise in chosen if (path := desk.build(catalog, exercise))]
+    for file in written:
+        console.line(f"Wrote {file}")
+    if not written:
+        console.note("None of these exercises has hypotheses.")
+    console.emit(AuthorBuild(files=tuple(written)))
+    return 0
 
 
 @app.command(epilog="Example: course author mutants integrators")

@@ -7,6 +7,7 @@ import msgspec
 from course.cli.schemas import CourseRef, Envelope
 
 __all__ = [
+    "AuthorBuild",
     "AuthorCheck",
     "AuthorCoverage",
     "AuthorMutants",
@@ -33,6 +34,12 @@ class AuthorNew(Envelope, tag="course.author-new/1", frozen=True, kw_only=True):
 
     kind: str
     id: str
+    files: tuple[str, ...]
+
+
+class AuthorBuild(Envelope, tag="course.author-build/1", frozen=True, kw_only=True):
+    """The files that were computed, relative to the course."""
+
     files: tuple[str, ...]
 
 

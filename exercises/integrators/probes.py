@@ -224,6 +224,7 @@ def _first_row(t, q, v, h, states):
     pairs = list(zip((q, v), states, strict=True))
     if (
         len(q) > 2
+        and np.any(q)
         and np.array_equal(q, np.broadcast_to(q[-1], q.shape))
         and not np.allclose(q[0], states[0][0])
     ):

@@ -10,21 +10,21 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.authoring.diagnoses import audit_diagnoses
-from course.authoring.files import audit_files, blanks_in, find_blanks
-from course.authoring.grading import GradeSources, declared_checks, grade_sources
-from course.authoring.lessons import audit_lesson, audit_syllabus
-from course.authoring.links import LinkChecker
-from course.authoring.proofs import Proof, Prover, plan
+from course.authoring.exercises.diagnoses import audit_diagnoses
+from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
+from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources
+from course.authoring.exercises.proofs import Proof, Prover, plan
+from course.authoring.exercises.variants import instructors, solutions_folder
+from course.authoring.lessons.audit import audit_lesson, audit_syllabus
+from course.authoring.lessons.links import LinkChecker
 from course.authoring.quiz_audit import audit_quiz
 from course.authoring.report import AuditReport, Findings
-from course.authoring.variants import instructors, solutions_folder
 from course.errors import ContentError, NotFoundError
-from course.sandbox.loading import FOLDER, read_scene, scene_ids
+from course.sandbox.scene.loading import FOLDER, read_scene, scene_ids
 
 if TYPE_CHECKING:
+    from course.authoring.exercises.source import CheckSource
     from course.authoring.report import Progress
-    from course.authoring.source import CheckSource
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.authoring.variants import instructors, solution_path, solutions_folder
+from course.authoring.exercises.variants import instructors, solution_path, solutions_folder
 from course.catalog.pack import pack_bytes
 from course.errors import ContentError, UsageError
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from course.authoring.files import blanks_in
+from course.authoring.exercises.files import blanks_in
 from course.catalog.questions import read_questions
 from course.errors import ContentError
 from course.quizzing.proof import faults_in

@@ -6,61 +6,144 @@ Nothing is ever overwritten, and either all files are written or none.
 
 from __future__ import annotations
 
+import ast
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
-from course.authoring.variants import instructors
+import jinja2
+
+from course.authoring.exercises.variants import instructors
 from course.errors import UsageError
 from course.ids import ExerciseId, LessonId, QuestionId, SceneId
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from course.catalog.load import Catalog
 
-__all__ = ["new_exercise", "new_lesson", "new_question", "new_scene"]
+__all__ = ["Function", "new_exercise", "new_lesson", "new_question", "new_scene"]
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
-def new_exercise(catalog: Catalog, exercise_id: str) -> tuple[Path, ...]:
-    """Write the files of a new exercise.
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function that a new exercise asks for.
+
+    Attributes:
+        signature: as it stands in the stub: "swing_period(length, gravity=9.81)".
+        gives: what it returns, in a sentence without a subject: "gives the period of small swings, s."
+    """
+
+    signature: str
+    gives: str = ""
+
+    @classmethod
+    def parse(cls, text: str, gives: str = "") -> Self:
+        """A function as its author writes it.
+
+        Raises:
+            UsageError: it is no signature.
+        """
+        try:
+            (node,) = ast.parse(f"def {text.strip()}: ...").body
+        except (SyntaxError, ValueError):
+            node = None
+        plain = isinstance(node, ast.FunctionDef) and node.args.args and not node.args.vararg
+        if not plain or "\n" in text.strip():
+            raise UsageError(
+                f"{text!r} is not a function with its arguments.",
+                help="Write it as in the stub: swing_period(length, gravity)",
+                code="bad_signature",
+            )
+        return cls(text.strip(), gives.strip())
+
+    @property
+    def name(self) -> str:
+        return self.signature.partition("(")[0].strip()
+
+    @property
+    def docstring(self) -> str:
+        """What the stub says of it."""
+        if self.gives:
+            return self.gives[:1].upper() + self.gives[1:]
+        return "<<FILL IN: what it gives; shapes and units of arguments and result>>"
+
+    @property
+    def readme(self) -> str:
+        """What the README says of it, after its name."""
+        return self.gives or "<<FILL IN: what it gives, with formula, shapes and units of its arguments>>"
+
+    def case(self, value: float) -> str:
+        """Arguments of one call, as a dict in Python."""
+        (node,) = ast.parse(f"def {self.signature}: ...").body
+        assert isinstance(node, ast.FunctionDef)
+        pairs = ", ".join(f'"{argument.arg}": {value}' for argument in node.args.args)
+        return f"{{{pairs}}}"
+
+
+def new_exercise(
+    catalog: Catalog,
+    exercise_id: str,
+    functions: Sequence[Function] = (),
+    *,
+    title: str = "",
+    summary: str = "",
+    lesson: str = "",
+) -> tuple[Path, ...]:
+    """Write the files of a new exercise, with whatever is known of it in every place where it stands.
+
+    Args:
+        functions: that it asks for; one of the exercise's own name and an ``x`` if none is given.
+        title, summary: what people call it, and one line for lists; blanks are left if empty.
+        lesson: id of the one to read first; the last one if empty.
 
     Returns:
         The files, in the order an author fills them.
 
     Raises:
-        UsageError: the id is no id, cannot be a module, or one of the files exists.
+        UsageError: the id is no id, cannot be a module, two functions have one name, or a file exists.
+        NotFoundError: there is no such lesson.
         MissingCapabilityError: this installation has no place for solutions and graders.
     """
     name = ExerciseId(exercise_id)
     solutions, graders = (folder / name for folder in instructors(catalog))
     student = catalog.content.exercises / name
-    function = name.replace("-", "_")
-    module = _module(function)
+    module = _module(name.replace("-", "_"))
+    asked = tuple(functions) or (Function(f"{name.replace('-', '_')}(x)"),)
+    names = [function.name for function in asked]
+    if len(set(names)) < len(names):
+        raise UsageError("Two functions have one name.", help="Name each one once.", code="bad_signature")
+    if lesson:
+        catalog.lesson(lesson)
     lessons = catalog.lesson_ids()
     words = {
         "id": name,
         "module": module,
-        "function": function,
-        "lesson": lessons[-1] if lessons else "<<FILL IN: id of the lesson to read first>>",
-        "order": str(1 + max((exercise.order for exercise in catalog.exercises()), default=0)),
+        "functions": asked,
+        "title": title or "<<FILL IN: what people call this exercise>>",
+        "summary": summary or "<<FILL IN: what it is about, in one line>>",
+        "lesson": lesson or (lessons[-1] if lessons else "<<FILL IN: id of the lesson to read first>>"),
+        "order": 1 + max((exercise.order for exercise in catalog.exercises()), default=0),
     }
-    templates = _TEMPLATES / "exercise"
-    return _write(
-        {
-            student / "exercise.toml": templates / "exercise.toml.tmpl",
-            student / "README.md": templates / "README.md.tmpl",
-            student / module: templates / "stub.py.tmpl",
-            student / "hints.toml": templates / "hints.toml.tmpl",
-            student / "checks.py": templates / "checks.py.tmpl",
-            graders / "checks.py": templates / "hidden_checks.py.tmpl",
-            solutions / module: templates / "solution.py.tmpl",
-            solutions / "README.md": templates / "prose.md.tmpl",
-            solutions / "mutants.toml": templates / "mutants.toml.tmpl",
-            solutions / "accepted" / "unusual.py": templates / "unusual.py.tmpl",
-            solutions / "mutants" / "wrong.py": templates / "wrong.py.tmpl",
-        },
-        words,
-    )
+    files = {
+        student / "exercise.toml": ("exercise.toml", words),
+        student / "README.md": ("README.md", words),
+        student / module: ("stub.py", words),
+        student / "hints.toml": ("hints.toml", words),
+        student / "checks.py": ("checks.py", words),
+        graders / "checks.py": ("hidden_checks.py", words),
+        solutions / module: ("solution.py", words),
+        solutions / "README.md": ("prose.md", words),
+        solutions / "mutants.toml": ("mutants.toml", words),
+        solutions / "accepted" / "unusual.py": ("unusual.py", words),
+    }
+    files |= {
+        solutions / "mutants" / f"{function.name}_wrong.py": ("wrong.py", words | {"f": function})
+        for function in asked
+    }
+    return _write({path: (f"exercise/{template}", known) for path, (template, known) in files.items()})
 
 
 def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:
@@ -72,7 +155,7 @@ def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:
     """
     instructors(catalog)
     name = LessonId(lesson_id)
-    return _write({catalog.content.lessons / f"{name}.md": _TEMPLATES / "lesson.md.tmpl"}, {"id": name})
+    return _write({catalog.content.lessons / f"{name}.md": ("lesson.md", {"id": name})})
 
 
 def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
@@ -90,7 +173,7 @@ def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
         "lesson": lessons[-1] if lessons else "<<FILL IN: id of the lesson it is about>>",
         "order": str(1 + len(list(catalog.content.quiz.glob("*.toml")))),
     }
-    return _write({catalog.content.quiz / f"{name}.toml": _TEMPLATES / "question.toml.tmpl"}, words)
+    return _write({catalog.content.quiz / f"{name}.toml": ("question.toml", words)})
 
 
 def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
@@ -100,12 +183,12 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
         UsageError: the id is no id, or the file exists.
         MissingCapabilityError: this is a student's installation.
     """
-    from course.sandbox.loading import FOLDER, scene_ids
+    from course.sandbox.scene.loading import FOLDER, scene_ids
 
     instructors(catalog)
     name = SceneId(scene_id)
     words = {"id": name, "order": str(1 + len(scene_ids()))}
-    return _write({FOLDER / f"{name}.toml": _TEMPLATES / "scene.toml.tmpl"}, words)
+    return _write({FOLDER / f"{name}.toml": ("scene.toml", words)})
 
 
 def _module(function: str) -> str:
@@ -118,17 +201,26 @@ def _module(function: str) -> str:
     return f"{function}.py"
 
 
-def _write(files: dict[Path, Path], words: dict[str, str]) -> tuple[Path, ...]:
-    """Fill each template and write it where nothing is yet."""
+def _write(files: Mapping[Path, tuple[str, Mapping[str, Any]]]) -> tuple[Path, ...]:
+    """Fill each template with its words and write it where nothing is yet."""
     for target in files:
         if target.exists() or target.is_symlink():
             raise UsageError(
                 f"{target} exists, and nothing is overwritten.", help="Choose another id.", code="exists"
             )
-    for target, template in files.items():
-        text = template.read_text(encoding="utf-8")
-        for key, word in words.items():
-            text = text.replace(f"@{key}@", word)
+    # Nothing is escaped: these are Python, TOML and Markdown.
+    templates = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    texts = {
+        target: templates.get_template(f"{name}.tmpl").render(words)
+        for target, (name, words) in files.items()
+    }
+    for target, text in texts.items():
         target.parent.mkdir(parents=True, exist_ok=True)
         with target.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)

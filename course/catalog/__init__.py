@@ -1,0 +1,8 @@
+"""What the course consists of: files in, frozen models out, a fault told with its file, line and fix.
+
+locate, load       where the content of the course lies; lessons, exercises and the syllabus as models
+reading, rules     TOML into types, and what a type cannot say (toml_lines knows where in the file)
+markdown, blocks   lessons as blocks; mathtext and mathtree speak and spell their formulas
+questions          the quiz; formulas computes the numbers in it
+pack               archives of solutions
+"""

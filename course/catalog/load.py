@@ -15,7 +15,7 @@ from course.catalog import rules
 from course.catalog.front_matter import split_front_matter
 from course.catalog.locate import Content
 from course.catalog.locate import content as current_content
-from course.catalog.models import Exercise, Hints, Lesson, Mutant, MutantList, Syllabus
+from course.catalog.models import CourseRef, Exercise, Hints, Lesson, Mutant, MutantList, Syllabus
 from course.catalog.reading import (
     Document,
     read_document,
@@ -66,6 +66,11 @@ class Catalog:
     @property
     def title(self) -> str:
         return self.syllabus.title
+
+    @property
+    def ref(self) -> CourseRef:
+        """Which course this is."""
+        return CourseRef(self.course_id, self.version)
 
     @property
     def version(self) -> str:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FORMAT_VERSION",
+    "CourseRef",
     "Exercise",
     "Hints",
     "Lesson",
@@ -30,6 +31,13 @@ __all__ = [
 
 #: Files that declare a newer format are refused: an older program must not half-understand them.
 FORMAT_VERSION = 1
+
+
+class CourseRef(msgspec.Struct, frozen=True):
+    """Which course something is about."""
+
+    id: str
+    version: str
 
 
 class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

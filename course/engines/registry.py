@@ -7,8 +7,8 @@ import platform
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from course.engines.extras import Requirement, requirement_of
 from course.errors import NotFoundError
+from course.extras import requirement_of
 
 if TYPE_CHECKING:
     from course.engines.base import Adapter
@@ -122,7 +122,7 @@ def availability(info: EngineInfo) -> Availability:
         return Availability(importlib.metadata.version(info.package))
     except importlib.metadata.PackageNotFoundError:
         pass
-    wanted: Requirement = requirement_of(info.package)
+    wanted = requirement_of(info.package)
     if not wanted.applies:
         where = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
         return Availability(None, f"{info.package} has no wheel for {where}")

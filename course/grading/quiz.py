@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 
 from course.errors import ContentError, UngradableError
-from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
 from course.progress.quiz import MAX_RECORDS
 from course.quizzing.attempt import Result, mark, needed
 from course.quizzing.bank import MAX_SEED, Bank
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 if TYPE_CHECKING:
     from course.quizzing.attempt import Marked

@@ -7,7 +7,7 @@ StudentFailure          the student's code, or the process it ran in, gave no va
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,6 +33,7 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         line: line of the student's file where it arose, 1 first.
         traceback: the student's own frames, as text.
         bases: names of the classes the exception derives from, its own included.
+        places: how ``line`` is told to whoever wrote it, for who turns this into words; None if unknown here.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         self.line = line
         self.traceback = traceback
         self.bases = tuple(bases) or (type,)
+        self.places: Any = None
 
     @classmethod
     def missing(cls, function: str) -> Self:

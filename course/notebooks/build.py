@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from course.errors import NotFoundError
-from course.notebooks.layout import FOLDERS, Layout
+from course.notebooks.building.layout import FOLDERS, Layout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -61,7 +61,7 @@ def generate(catalog: Catalog, ids: Sequence[str] = (), layout: Layout = FOLDERS
 
 def _makers(catalog: Catalog, layout: Layout) -> Makers:
     """By kind and id: where a notebook lies and what makes it. Nothing is read before it is asked for."""
-    from course.notebooks.exercises import exercise_notebook
+    from course.notebooks.building.exercises import exercise_notebook
     from course.notebooks.quiz import quiz_notebook
     from course.notebooks.sandbox import sandbox_notebook
 
@@ -79,7 +79,7 @@ def _makers(catalog: Catalog, layout: Layout) -> Makers:
 
 
 def _lesson(catalog: Catalog, lesson_id: str, layout: Layout) -> bytes:
-    from course.notebooks.lessons import lesson_notebook
+    from course.notebooks.building.lessons import lesson_notebook
 
     return lesson_notebook(catalog, catalog.lesson(lesson_id), layout)
 

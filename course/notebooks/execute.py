@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from course.errors import InternalError
-from course.notebooks.cells import dumped
-from course.notebooks.extra import require
+from course.extras import require
+from course.notebooks.building.cells import dumped
 from course.notebooks.sandbox import STILL
 
 __all__ = ["executed"]
@@ -32,7 +32,7 @@ def executed(data: bytes, name: str) -> bytes:
         MissingCapabilityError: there is nothing to run it with.
         InternalError: a cell raises.
     """
-    require("Running a notebook", "nbclient", "ipykernel")
+    require("notebook", "nbclient", "ipykernel")
     import nbformat
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError

@@ -6,10 +6,10 @@ import re
 from html import escape
 from typing import TYPE_CHECKING
 
-from course.grading.numbers import format_points, numbers_of
+from course.scoring.numbers import format_points, numbers_of
 
 if TYPE_CHECKING:
-    from course.grading.verdict import CheckResult, Verdict
+    from course.scoring.verdict import CheckResult, Verdict
 
 __all__ = ["CheckTable"]
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.grading.verdict import Verdict
     from course.notebooks.page import ReportPage
+    from course.scoring.verdict import Verdict
 
 __all__ = ["check", "register", "report", "typed_in"]
 
@@ -75,16 +75,14 @@ def report(history: Sequence[str], exercise_id: str) -> ReportPage:
         UngradableError: there is nothing to run yet, or it cannot be run.
     """
     from course.catalog.load import Catalog
-    from course.grading.notebook_places import placed_report
-    from course.grading.report import report_of
     from course.notebooks.page import ReportPage
     from course.notebooks.typed import module_of
+    from course.scoring.reporting import report_of
 
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     module = module_of(history, exercise)
-    made = report_of(exercise, catalog, {exercise.module: module.source})
-    return ReportPage(placed_report(made, module, exercise))
+    return ReportPage(report_of(exercise, catalog, module.submission(exercise)))
 
 
 def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> CheckTable:
@@ -98,8 +96,8 @@ def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> 
         UngradableError: there is nothing to check yet.
     """
     from course.catalog.load import Catalog
-    from course.grading.notebook_places import placed
     from course.notebooks.typed import defines_all, module_of
+    from course.scoring.session import GradingSession
 
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
@@ -110,7 +108,8 @@ def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> 
         )
     module = module_of(history, exercise)
     begin = time.perf_counter()
-    verdict = _graded(catalog, exercise, module.source)
+    with GradingSession(exercise, catalog, scope="public") as session:
+        verdict = session.grade(module.submission(exercise))
     seconds = time.perf_counter() - begin
     if task is not None and not defines_all(module.source, known):
         # What was not run yet is not missing: the attempt is at this function alone.
@@ -118,15 +117,7 @@ def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> 
         note = _recorded(catalog, exercise, verdict, module.source, seconds, only=task)
     else:
         note = _recorded(catalog, exercise, verdict, module.source, seconds)
-    return CheckTable(placed(verdict, module, exercise), task, note)
-
-
-def _graded(catalog: Catalog, exercise: Exercise, source: bytes) -> Verdict:
-    from course.grading.session import GradingSession, Submission
-
-    with GradingSession(exercise, catalog, scope="public") as session:
-        verdict: Verdict = session.grade(Submission({exercise.module: source}))
-    return verdict
+    return CheckTable(verdict, task, note)
 
 
 def _of_task(verdict: Verdict, exercise: Exercise, task: str) -> Verdict:

@@ -12,8 +12,8 @@ import ast
 import re
 from typing import TYPE_CHECKING, Any
 
-from course.grading.notebook_source import SOLUTION
-from course.notebooks.cells import Cell, document
+from course.handed_in.notebook import SOLUTION
+from course.notebooks.building.cells import Cell, document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -39,7 +39,7 @@ def nbgrader_notebook(catalog: Catalog, exercise: Exercise) -> bytes:
     Raises:
         ContentError: a check file is wrong.
     """
-    from course.notebooks.exercises import exercise_cells
+    from course.notebooks.building.exercises import exercise_cells
 
     worth = _public_points(catalog, exercise)
     stub = exercise.stub_path.read_text(encoding="utf-8")
@@ -67,8 +67,8 @@ def points(exercise_id: str, task: str) -> float:
 
 def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
     """Public points of each task."""
-    from course.grading.collected import CollectedChecks
-    from course.grading.session import check_files
+    from course.scoring.collected import CollectedChecks
+    from course.scoring.session import check_files
 
     collected = CollectedChecks(check_files(exercise, catalog, "public"))
     try:

@@ -7,7 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from course.grading.report import Report, Section
+    from course.scoring.report import Report, Section
 
 __all__ = ["ReportPage"]
 

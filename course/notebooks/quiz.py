@@ -5,8 +5,8 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from course.notebooks.cells import Cell, code, document, markdown
-from course.notebooks.lowering import escaped
+from course.notebooks.building.cells import Cell, code, document, markdown
+from course.notebooks.building.lowering import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

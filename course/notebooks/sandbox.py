@@ -9,13 +9,13 @@ from html import escape
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from course.notebooks.cells import code, document, markdown
-from course.notebooks.lowering import escaped
+from course.notebooks.building.cells import code, document, markdown
+from course.notebooks.building.lowering import escaped
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
-    from course.sandbox.running import Run
-    from course.sandbox.scene import Scene
+    from course.sandbox.runs.running import Run
+    from course.sandbox.scene.model import Scene
 
 __all__ = ["STILL", "Film", "film", "play", "sandbox_notebook"]
 
@@ -35,7 +35,7 @@ anywidget is not installed, a cell shows a film instead and tells what happened;
 
 def sandbox_notebook(catalog: Catalog) -> bytes:
     """The notebook file of the sandbox: every scene with its question and a cell that runs it."""
-    from course.sandbox.loading import scenes
+    from course.sandbox.scene.loading import scenes
 
     every = scenes()
     cells = [
@@ -54,7 +54,7 @@ def _words(text: str) -> str:
 
 
 def _question(scene: Scene) -> str:
-    from course.sandbox.loading import question, unchanged
+    from course.sandbox.scene.loading import question, unchanged
 
     asked = question(unchanged(scene))
     return f"\n\n**Predict.** {_words(asked)}" if asked else ""
@@ -83,9 +83,9 @@ def film(scene_id: str, **settings: float) -> Film:
         NotFoundError: there is no such scene.
         UsageError: a setting is unknown or out of range.
     """
-    from course.sandbox.film import Film as Frames
-    from course.sandbox.loading import choose
-    from course.sandbox.running import run
+    from course.sandbox.runs.film import Film as Frames
+    from course.sandbox.runs.running import run
+    from course.sandbox.scene.loading import choose
 
     chosen = choose(scene_id, settings)
     frames = Frames(chosen.scene, _WIDTH)
@@ -114,7 +114,7 @@ class Film:
     @property
     def story(self) -> list[str]:
         """The run in sentences, the account of its energy last."""
-        from course.sandbox.describe import account, sentences
+        from course.sandbox.runs.describe import account, sentences
 
         return [*sentences(self.run.events, _MOST_TOLD), *account(self.run.receipt), *self._compared()]
 

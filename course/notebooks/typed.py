@@ -11,9 +11,9 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from course.grading.notebook_cells import CodeCell, typed_cell
-from course.grading.notebook_source import SETUP, NotebookSource, source_of
-from course.notebooks.stub import pieces
+from course.handed_in.cells import CodeCell, typed_cell
+from course.handed_in.notebook import SETUP, NotebookSource, source_of
+from course.notebooks.building.stub import pieces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,9 +10,9 @@ from typing import Any
 import anywidget
 
 from course.notebooks.widget_style import STATIC, style
-from course.sandbox.loading import choose
-from course.sandbox.views.web_session import Page, Session
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.web.session import Page, Session
+from course.sandbox.world.world import World
 
 __all__ = ["Sandbox"]
 

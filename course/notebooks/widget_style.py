@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import course.sandbox.views
+import course.sandbox.views.web
 
 __all__ = ["STATIC", "style"]
 
 #: The web view's files.
-STATIC = Path(course.sandbox.views.__file__).parent / "static"
+STATIC = Path(course.sandbox.views.web.__file__).parent / "static"
 
 #: What the web view asks of its window, a cell has to ask of its own width: two notebooks side by side leave
 #: half a window. Below this width the picture would be narrower than the panel beside it.

@@ -31,7 +31,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course import extras
+from course.errors import IntegrityError, NotFoundError, UsageError
 from course.simulations.streams import ImuStream, OdometryStream, ScanStream, Stream
 
 if TYPE_CHECKING:
@@ -54,9 +55,7 @@ _TOPICS = {
 
 def available() -> bool:
     """Whether the extra is installed."""
-    from importlib.util import find_spec
-
-    return find_spec("rosbags") is not None
+    return extras.available("ros")
 
 
 def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "mcap") -> Path:
@@ -146,15 +145,7 @@ def _rosbag2() -> Any:
     Raises:
         MissingCapabilityError: it is not installed.
     """
-    try:
-        from rosbags import rosbag2
-    except ImportError:
-        raise MissingCapabilityError(
-            "ROS 2 bags need the package rosbags, which is not installed.",
-            help='Install it: pip install "physics-sim-course[ros]"',
-            code="missing_extra",
-        ) from None
-    return rosbag2
+    return extras.load("ros")
 
 
 @cache

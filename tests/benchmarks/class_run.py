@@ -20,6 +20,7 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,14 +28,14 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from course.catalog.load import Catalog  # noqa: E402
-from course.grading.batch import grade_all  # noqa: E402
 from course.grading.cluster.connect import local_cluster  # noqa: E402
-from course.grading.run import RunOptions, Summary, grade_class  # noqa: E402
+from course.grading.running.batch import grade_all  # noqa: E402
+from course.grading.running.run import RunOptions, Summary, grade_class  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from course.grading.run import GradeAll
+    from course.grading.running.run import GradeAll
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -61,7 +62,7 @@ def run(
     exercise: str,
     jobs: int,
     seen: Callable[[int], None],
-    grade: GradeAll = grade_all,
+    grade: GradeAll | None = None,
 ) -> Summary:
     """One run into a folder of its own, beside the class and removed with it.
 
@@ -76,7 +77,8 @@ def run(
         seen(count)
 
     out = Path(tempfile.mkdtemp(prefix="run-", dir=folder.parent)) / "out"
-    options = RunOptions(exercises=(exercise,), graders=jobs, seed=1)
+    options = RunOptions(exercises=(exercise,), seed=1)
+    grade = grade or partial(grade_all, graders=jobs)
     summary = grade_class(folder, out, catalog, options, report, grade=grade)
     assert summary.exit_code == 0, summary.troubled[:3]
     return summary
@@ -180,7 +182,7 @@ def graders() -> list[int]:
     found = []
     for task in Path(f"/proc/{os.getpid()}/task").iterdir():
         children = (task / "children").read_text().split()
-        found += [int(child) for child in children if b"course.grading.grader" in command_line(child)]
+        found += [int(child) for child in children if b"course.grading.running.grader" in command_line(child)]
     return found
 
 

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from course.grading.failures import StudentFailure
-from course.grading.values import Inspected, as_march
 from course.isolation import loops
 from course.physics.systems import SYSTEMS
+from course.scoring.failures import StudentFailure
+from course.scoring.values import Inspected, as_march
 
 _SYSTEM_TYPES = tuple(SYSTEMS.values())
 _FILE = "<submission>"

@@ -23,15 +23,15 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 
 from local_submission import LocalSubmission  # noqa: E402
 
-from course.authoring.variants import (  # noqa: E402
+from course.authoring.exercises.variants import (  # noqa: E402
     accepted_files,
     compose,
     mutant_files,
     solution_path,
 )
 from course.catalog.load import Catalog  # noqa: E402
-from course.grading.session import GradingSession, Submission, kept_on  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
+from course.scoring.session import GradingSession, Submission, kept_on  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")
 

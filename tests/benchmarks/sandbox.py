@@ -15,12 +15,12 @@ import json
 import statistics
 import time
 
-from course.sandbox.engine import Space
-from course.sandbox.film import Film
-from course.sandbox.loading import choose
-from course.sandbox.parts import layout
-from course.sandbox.scene import Body, Material, Repeat, Scene
-from course.sandbox.world import World
+from course.sandbox.runs.film import Film
+from course.sandbox.scene.loading import choose
+from course.sandbox.scene.model import Body, Material, Repeat, Scene
+from course.sandbox.scene.parts import layout
+from course.sandbox.world.engine import Space
+from course.sandbox.world.world import World
 
 #: Steps in a slice; long enough that timers do not matter, short enough that a busy machine hits all alike.
 SLICE = 96

@@ -23,9 +23,9 @@ from typing import Any
 
 from textual.geometry import Size
 
-from course.sandbox.loading import choose
-from course.sandbox.views.terminal_app import SandboxApp
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.terminal.app import SandboxApp
+from course.sandbox.world.world import World
 
 FPS = 30.0
 SIZES = ((80, 24), (160, 50))

@@ -22,9 +22,10 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import Content
-from course.grading.session import GradingSession, Submission
-from course.grading.verdict import Verdict, for_student
 from course.isolation import launch
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+from course.scoring.verdict import Verdict, for_student
 from tests.contracts.levels import require_level
 
 if TYPE_CHECKING:
@@ -144,9 +145,8 @@ def _arena(level: str, exercise: str, folder: Path, patch: pytest.MonkeyPatch) -
     listener, signals = Listener(), []
     handlers = {number: signal.signal(number, lambda got, _: signals.append(got)) for number in (10, 29)}
     try:
-        with GradingSession(
-            catalog.exercise(exercise), catalog, scope="full", level=level, timeout=TIMEOUT_S, seed=5
-        ) as session:
+        terms = Terms(level=level, timeout=TIMEOUT_S, seed=5)
+        with GradingSession(catalog.exercise(exercise), catalog, scope="full", terms=terms) as session:
             arena = Arena(session, wrong, solution.read_bytes(), 0.0, marker, listener, secret, signals)
             arena.wrong_score = arena.grade(wrong).score
             yield arena
@@ -330,7 +330,7 @@ def test_no_plain_value_makes_a_check_itself_fail(exercise: str) -> None:
     template = (CORPUS / "every_value.py").read_text("utf-8")
     template += "".join(f"{task.id} = _answer\n" for task in found.task)
     broken = {}
-    with GradingSession(found, catalog, scope="full", timeout=5.0) as session:
+    with GradingSession(found, catalog, scope="full", terms=Terms(timeout=5.0)) as session:
         for start in range(0, 52, 4):
             for stride in (0, 1):
                 source = template.replace("START", str(start)).replace("STRIDE", str(stride))

@@ -14,15 +14,16 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from course.authoring.variants import solution_path
+from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
-from course.grading.session import GradingSession, Submission
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from course.catalog.models import Exercise
-    from course.grading.verdict import CheckResult
+    from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 #: What stands in the place of a function; ``own`` is the right one.
@@ -102,7 +103,7 @@ def session_of() -> Iterator[Any]:
 
     @cache
     def session(exercise: Exercise, timeout: float) -> GradingSession:
-        opened.append(GradingSession(exercise, CATALOG, scope="full", timeout=timeout))
+        opened.append(GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=timeout)))
         return opened[-1]
 
     yield session

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.kill_table import kill_table
-from course.authoring.variants import accepted_files
+from course.authoring.exercises.kill_table import kill_table
+from course.authoring.exercises.variants import accepted_files
 from course.catalog.load import Catalog
 
 if TYPE_CHECKING:

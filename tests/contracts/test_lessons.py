@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.lesson_cells import run_lesson
-from course.authoring.lesson_lint import findings
+from course.authoring.lessons.cells import run_lesson
+from course.authoring.lessons.lint import findings
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.catalog.locate import content

@@ -14,15 +14,16 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from course.authoring.variants import solution_path
+from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
-from course.grading.session import GradingSession, Submission
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from course.catalog.models import Exercise
-    from course.grading.verdict import Verdict
+    from course.scoring.verdict import Verdict
 
 CATALOG = Catalog()
 
@@ -169,7 +170,7 @@ def session_of() -> Iterator[Any]:
 
     @cache
     def session(exercise: Exercise) -> GradingSession:
-        opened.append(GradingSession(exercise, CATALOG, scope="full", timeout=60.0))
+        opened.append(GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=60.0)))
         return opened[-1]
 
     yield session

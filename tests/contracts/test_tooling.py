@@ -46,8 +46,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("module", "planted", "contract"),
     [
-        ("catalog/locate.py", "import course.cli.console", "Floors: imports go down only BROKEN"),
-        ("physics/systems.py", "import course.grading.verdict", "Floors: imports go down only BROKEN"),
+        ("catalog/locate.py", "import course.cli.frame.console", "Floors: imports go down only BROKEN"),
+        ("physics/systems.py", "import course.scoring.verdict", "Floors: imports go down only BROKEN"),
         ("catalog/pack.py", "import course.isolation.wire", "Floors: imports go down only BROKEN"),
         ("authoring/report.py", "import typer", "Only the command line knows typer BROKEN"),
         ("isolation/worker.py", "import course.errors", "imports nothing of the course BROKEN"),

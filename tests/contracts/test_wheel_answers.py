@@ -15,7 +15,8 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.grading import kit
-from course.grading.session import GradingSession, Submission
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -215,7 +216,7 @@ def _count(source: str, exercise: Exercise, module: str) -> int:
 
 @pytest.mark.parametrize("exercise", CATALOG.exercises(), ids=lambda exercise: exercise.id)
 def test_no_shipped_file_scores_a_point(exercise: Exercise) -> None:
-    with GradingSession(exercise, CATALOG, scope="full", timeout=20.0) as session:
+    with GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=20.0)) as session:
         found = [(file, points, passed) for file, _, points, passed in scores(session) if points > 0]
     worst = max((points for _, points, _ in found), default=0.0)
     assert worst <= STILL.get(exercise.id, 0.0), found
@@ -236,9 +237,9 @@ def test_the_shipped_answers_to_fixed_inputs_score_nothing_in_a_grading_run(exer
     source = f"from numpy import array, inf, nan\nKNOWN = {table!r}\n"
     for task in known:
         source += f"def {task}(*args):\n    return eval(KNOWN[{task!r}].get(repr(args), 'None'))\n"
-    with GradingSession(exercise, CATALOG, scope="public", timeout=20.0) as home:
+    with GradingSession(exercise, CATALOG, scope="public", terms=Terms(timeout=20.0)) as home:
         at_home = home.grade(Submission({exercise.module: source.encode()}))
-    with GradingSession(exercise, CATALOG, scope="full", timeout=20.0, seed=7) as run:
+    with GradingSession(exercise, CATALOG, scope="full", terms=Terms(timeout=20.0, seed=7)) as run:
         graded = run.grade(Submission({exercise.module: source.encode()}))
     assert at_home.score > 0, "the table is what public checks expect"
     assert graded.score == 0

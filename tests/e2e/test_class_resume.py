@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from course.grading.gradebook import Gradebook
+from course.grading.gradebook.book import Gradebook
 from tests.e2e.processes import below, left_running
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -91,14 +91,14 @@ def environment(scratch: Path, content: Path = MINI, gate: Path | None = None) -
 def kind_of(pid: int, mine: dict[int, tuple[int, str]]) -> str:
     """What a process of a run is there for."""
     parent, line = mine[pid]
-    if "course.grading.grader" in line:
+    if "course.grading.running.grader" in line:
         return "grader"
     if "spawn_main" in line:
         return "dask worker"
     if "bwrap" not in line and line == mine.get(parent, (0, ""))[1]:
         return "worker"  # a zygote's fork: its death is the student's code's own
     while parent in mine:
-        if "course.grading.grader" in mine[parent][1]:
+        if "course.grading.running.grader" in mine[parent][1]:
             return "zygote"
         parent = mine[parent][0]
     return "helper"

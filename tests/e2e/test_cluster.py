@@ -14,19 +14,19 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from course.catalog.load import Catalog
-from course.grading.batch import BatchOptions
 from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
-from course.grading.gradebook import Gradebook
-from course.grading.intake import read_class
-from course.grading.run import RunOptions, grade_class
-from course.grading.session import grader_version
+from course.grading.gradebook.book import Gradebook
+from course.grading.intake.students import read_class
+from course.grading.running.run import RunOptions, grade_class
+from course.scoring.terms import Terms
+from course.scoring.version import grader_version
 from tests.e2e.processes import below, left_running
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from course.grading.results import Effective
+    from course.grading.results.effective import Effective
 
 ROOT = Path(__file__).resolve().parents[2]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -104,7 +104,7 @@ def test_a_cluster_scores_as_one_machine_does_even_if_a_worker_is_killed(
 ) -> None:
     students = 60
     make_class(tmp_path / "class", students)
-    options = RunOptions(exercises=("doubling",), at_least="L1", seed=3)
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
     grade_class(tmp_path / "class", tmp_path / "local", catalog, options, lambda *_: None)
     due = scores(tmp_path / "local")
     assert len(due) == students
@@ -137,7 +137,7 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Pat
         found = {
             graded.entry.student: graded.verdict
             for graded in grade_on(
-                workers, entries, BatchOptions(at_least="L1"), lambda it: grader_version(it, catalog)
+                workers, entries, Terms(at_least="L1"), lambda it: grader_version(it, catalog)
             )
         }
     assert len(found) == 12

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from course.sandbox.loading import choose
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -16,8 +16,8 @@ from typing import Any
 import pytest
 
 from course.catalog.load import Catalog
-from course.grading.session import GradingSession, Submission
-from course.notebooks.stub import pieces
+from course.notebooks.building.stub import pieces
+from course.scoring.session import GradingSession, Submission
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.cells import document
-from course.notebooks.exercises import exercise_cells
+from course.notebooks.building.cells import document
+from course.notebooks.building.exercises import exercise_cells
 from tests.unit.notebooks.edits import edited, new_cell
 
 if TYPE_CHECKING:

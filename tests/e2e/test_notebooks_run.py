@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from course.authoring.lesson_cells import as_written
+from course.authoring.lessons.cells import as_written
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks

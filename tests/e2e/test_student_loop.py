@@ -73,8 +73,8 @@ def workspace(course, tmp_path):
 def worked():
     """A warm session over the worked example, as a function of the module's text; and the right text."""
     from course.catalog.load import Catalog
-    from course.cli.demo import worked_example
-    from course.grading.session import GradingSession, Submission
+    from course.cli.work.demo import worked_example
+    from course.scoring.session import GradingSession, Submission
 
     catalog = Catalog()
     example = worked_example(catalog)

@@ -11,7 +11,6 @@ several users everyone can reach a port on it.
 from __future__ import annotations
 
 import contextlib
-import importlib.util
 import logging
 from concurrent.futures import CancelledError
 from functools import cache
@@ -19,25 +18,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from course.errors import InternalError, MissingCapabilityError, UsageError
+from course.extras import require
 from course.grading.cluster.coordinator import Lost, grade_on
 from course.grading.cluster.worker import grade_batch
-from course.grading.session import grader_version
 from course.isolation.launch import private_folder, remove_tree
+from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.grading.batch import BatchOptions, Graded
     from course.grading.cluster.coordinator import Outcome
-    from course.grading.intake import Entry
+    from course.grading.intake.students import Entry
+    from course.grading.running.batch import Graded
+    from course.scoring.terms import Terms
 
 __all__ = ["Cluster", "DaskWorkers", "local_cluster", "remote_cluster", "start_cluster"]
 
 #: Wall seconds for a scheduler to answer, and for its first worker to be there.
 _ANSWER_S = 20.0
-_WANTED = {"distributed": "distributed>=2026.8", "cryptography": "cryptography>=46"}
 
 
 class Cluster:
@@ -59,7 +59,7 @@ class Cluster:
         *,
         remote: bool,
     ) -> None:
-        _needs_dask()
+        require("cluster")
         self._catalog = catalog
         self._connect = connect
         self._remote = remote
@@ -71,14 +71,14 @@ class Cluster:
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def __call__(self, entries: Iterable[Entry], options: BatchOptions) -> Iterator[Graded]:
+    def __call__(self, entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
         """Verdicts on all entries that have a submission or a problem.
 
         Raises:
             UsageError: unprotected submissions may not run beside a scheduler that they could command.
             CourseError: there is no scheduler, or its workers cannot grade.
         """
-        if self._remote and options.at_least == "L1":
+        if self._remote and terms.at_least == "L1":
             raise UsageError(
                 "--isolation process leaves the network open, and a submission could give orders to the whole"
                 " cluster.",
@@ -94,7 +94,7 @@ class Cluster:
         def version_of(exercise: Exercise) -> str:
             return version(exercise.id)
 
-        yield from grade_on(workers, entries, options, version_of)
+        yield from grade_on(workers, entries, terms, version_of)
 
 
 def local_cluster(workers: int, catalog: Catalog) -> Cluster:
@@ -105,17 +105,6 @@ def local_cluster(workers: int, catalog: Catalog) -> Cluster:
 def remote_cluster(address: str, catalog: Catalog) -> Cluster:
     """The cluster whose scheduler is at ``address``, or is described by the scheduler file of that name."""
     return Cluster(catalog, lambda stack: _reach(stack, address), remote=True)
-
-
-def _needs_dask() -> None:
-    missing = [name for name in _WANTED if importlib.util.find_spec(name) is None]
-    if missing:
-        verb = "is" if len(missing) == 1 else "are"
-        raise MissingCapabilityError(
-            f"Grading on a cluster needs {' and '.join(missing)}, which {verb} not installed.",
-            help="Install what it needs: pip install " + " ".join(f"'{_WANTED[name]}'" for name in missing),
-            code="missing_extra",
-        )
 
 
 def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:

@@ -15,18 +15,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from course.errors import InternalError, MissingCapabilityError
-from course.grading.batch import MAX_TRIES, Graded, as_error, killed_its_grader, without_grading
 from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, encode
-from course.grading.grader import Job
-from course.grading.verdict import Problem
+from course.grading.running.batch import MAX_TRIES, Graded, as_error, killed_its_grader, without_grading
+from course.grading.running.grader import Job
+from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from course.catalog.models import Exercise
     from course.errors import CourseError
-    from course.grading.batch import BatchOptions
-    from course.grading.intake import Entry
+    from course.grading.intake.students import Entry
+    from course.scoring.terms import Terms
 
 __all__ = ["Lost", "Outcome", "Workers", "grade_on"]
 
@@ -71,7 +71,7 @@ class Workers(Protocol):
 def grade_on(
     workers: Workers,
     entries: Iterable[Entry],
-    options: BatchOptions,
+    terms: Terms,
     version: Callable[[Exercise], str],
     *,
     patience_s: float = _PATIENCE_S,
@@ -86,7 +86,7 @@ def grade_on(
     Raises:
         CourseError: the workers cannot grade (version, protection level, content), or there are none left.
     """
-    yield from _Coordinator(workers, entries, options, version, patience_s).run()
+    yield from _Coordinator(workers, entries, terms, version, patience_s).run()
 
 
 @dataclass(eq=False)
@@ -102,13 +102,13 @@ class _Coordinator:
         self,
         workers: Workers,
         entries: Iterable[Entry],
-        options: BatchOptions,
+        terms: Terms,
         version: Callable[[Exercise], str],
         patience_s: float,
     ) -> None:
         self._workers = workers
         self._entries = iter(entries)
-        self._options = options
+        self._terms = terms
         self._version = version
         self._patience_s = patience_s
         self._numbers = itertools.count()
@@ -142,15 +142,7 @@ class _Coordinator:
         while len(self._flying) < _AHEAD * self._places and (batch := self._next()):
             number = next(self._numbers)
             self._flying[number] = batch
-            options = self._options
-            message = Batch(
-                FORMAT,
-                options.level,
-                options.at_least,
-                options.timeout,
-                options.seed,
-                tuple(work.job for work in batch),
-            )
+            message = Batch(FORMAT, self._terms, tuple(work.job for work in batch))
             self._workers.send(encode(message), lambda outcome, n=number: self._arrived.put((n, outcome)))  # type: ignore[misc]
 
     def _next(self) -> list[_Work]:

@@ -11,14 +11,15 @@ from typing import TypeVar
 
 import msgspec
 
-from course.grading.grader import Answer, Job
+from course.grading.running.grader import Answer, Job
+from course.scoring.terms import Terms
 
 __all__ = ["FORMAT", "Answers", "Batch", "decode_answers", "decode_batch", "encode"]
 
 T = TypeVar("T", "Batch", "Answers")
 
 #: Grows when a message changes its meaning.
-FORMAT = 2
+FORMAT = 3
 
 
 class Batch(msgspec.Struct, frozen=True):
@@ -26,16 +27,10 @@ class Batch(msgspec.Struct, frozen=True):
 
     Attributes:
         format: the sender's ``FORMAT``.
-        level: protection level to insist on, or None for the best not below ``at_least``.
-        timeout: wall seconds per check.
-        seed: seed of the grading run.
     """
 
     format: int
-    level: str | None
-    at_least: str
-    timeout: float
-    seed: int
+    terms: Terms
     jobs: tuple[Job, ...]
 
 

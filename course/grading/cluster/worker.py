@@ -20,17 +20,17 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.errors import CourseError, InternalError
-from course.grading.batch import MAX_TRIES, hang_s, start_grader
 from course.grading.cluster.messages import FORMAT, Answers, decode_batch, encode
-from course.grading.grader import Answer, Config, read_frame, write_frame
-from course.grading.verdict import Problem
+from course.grading.running.batch import MAX_TRIES, hang_s, start_grader
+from course.grading.running.grader import Answer, Config, read_frame, write_frame
+from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Iterator
 
     from course.grading.cluster.messages import Batch
-    from course.grading.grader import Job
+    from course.grading.running.grader import Job
 
 __all__ = ["IDLE_S", "dask_setup", "grade_batch", "version_mismatch"]
 
@@ -64,7 +64,7 @@ def version_mismatch(what: str) -> Answer:
 
 
 def _answers(batch: Batch) -> Iterator[Answer]:
-    grader = _take(Config(batch.level, batch.at_least, batch.timeout, batch.seed, 0))
+    grader = _take(Config(batch.terms, 0))
     try:
         for job in batch.jobs:
             answer = grader.answer(job)
@@ -116,7 +116,7 @@ class _WarmGrader:
         assert process.stdin is not None
         assert process.stdout is not None
         self._used = True
-        too_long = threading.Timer(hang_s(self.config.timeout), process.kill)
+        too_long = threading.Timer(hang_s(self.config.terms.timeout), process.kill)
         too_long.daemon = True
         too_long.start()
         try:

@@ -5,16 +5,14 @@ It holds hidden graders, so it is the instructor's alone. The same inputs give t
 
 from __future__ import annotations
 
-import importlib.metadata
 import io
 import json
-import re
-import tomllib
 import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError
+from course.extras import requirement_of
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.selection import Written
 
@@ -105,7 +103,8 @@ def write_autograder(
     }
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as packed:
-        setup = _SETUP.replace("{requirements}", " ".join(f"'{item}'" for item in _requirements()))
+        wanted = " ".join(f"'{requirement_of(name).text}'" for name in _NEEDED)
+        setup = _SETUP.replace("{requirements}", wanted)
         _put(packed, "setup.sh", setup.encode(), executable=True)
         _put(packed, "run_autograder", _RUN.encode(), executable=True)
         _put(packed, "config.json", json.dumps(config, indent=1).encode())
@@ -144,14 +143,3 @@ def _put(packed: zipfile.ZipFile, name: str, content: bytes, *, executable: bool
     info.create_system = 3  # Unix everywhere, or the bytes would depend on who packs
     info.external_attr = (0o100755 if executable else 0o100644) << 16
     packed.writestr(info, content, zipfile.ZIP_DEFLATED)
-
-
-def _requirements() -> list[str]:
-    """Requirements of grading, versions included, as the project file of this checkout states them."""
-    project = Path(__file__).resolve().parents[3] / "pyproject.toml"
-    try:
-        stated = tomllib.loads(project.read_text("utf-8"))["project"]["dependencies"]
-    except (OSError, KeyError, tomllib.TOMLDecodeError):
-        stated = importlib.metadata.requires("physics-sim-course") or []
-    names = {re.split(r"[^A-Za-z0-9._-]", text, maxsplit=1)[0].lower(): text for text in stated}
-    return [names[name] for name in _NEEDED]

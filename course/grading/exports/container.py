@@ -15,14 +15,17 @@ from typing import Any
 
 from course.catalog.load import Catalog
 from course.errors import CourseError
-from course.grading.downloads import Place, Student
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.gradescope import results_body
-from course.grading.gradebook import Key, Result
-from course.grading.intake import read_student
-from course.grading.results import Effective
-from course.grading.session import GradingSession, grader_version
-from course.grading.verdict import Problem, Verdict
+from course.grading.gradebook.book import Key, Result
+from course.grading.intake.downloads import Place, Student
+from course.grading.intake.students import read_student
+from course.grading.results.effective import Effective
+from course.handed_in.notebook import opened
+from course.scoring.session import GradingSession
+from course.scoring.terms import Terms
+from course.scoring.verdict import Problem, Verdict
+from course.scoring.version import grader_version
 
 __all__ = ["grade", "main"]
 
@@ -54,6 +57,7 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
     catalog = Catalog()
     exercises = [catalog.exercise(name) for name in config["exercises"]]
     student = Student("submission", Place(folder))
+    terms = Terms(at_least=config["at_least"], timeout=config["timeout"], seed=config["seed"])
     found: list[Effective] = []
     for entry in read_student(student, exercises, required=bool(config["required"])):
         if entry.submission is None and entry.problem is None:
@@ -63,11 +67,8 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
             verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "ungradable", entry.problem)
         else:
             try:
-                with GradingSession(
-                    entry.exercise, catalog, scope="full", at_least=config["at_least"],
-                    timeout=config["timeout"], seed=config["seed"],
-                ) as session:  # fmt: skip
-                    verdict = session.grade(entry.submission)
+                with GradingSession(entry.exercise, catalog, scope="full", terms=terms) as session:
+                    verdict = session.grade(opened(entry.submission.files, entry.exercise))
             except CourseError as error:
                 problem = Problem(error.code, error.message, error.help)
                 verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "grader_error", problem)

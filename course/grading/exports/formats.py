@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from course.grading.results import Results
+    from course.grading.results.effective import Results
 
     Writer = Callable[[Path, Results, ExportOptions], Written]
 

@@ -13,13 +13,13 @@ import msgspec
 from course.grading.exports.cells import csv_bytes, number, spelled_out, write_bytes
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.selection import ExportOptions, Written, select
-from course.grading.verdict import CheckResult, Problem, Status, Visibility, finite
+from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["results_body", "write_gradescope"]
 

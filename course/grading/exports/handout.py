@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.grading.verdict import CheckResult, Problem, for_student
+from course.scoring.verdict import CheckResult, Problem, for_student
 
 if TYPE_CHECKING:
-    from course.grading.verdict import Verdict
+    from course.scoring.verdict import Verdict
 
 __all__ = ["checks_for_student", "problem_for_student"]
 

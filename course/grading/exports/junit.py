@@ -13,12 +13,12 @@ from xml.etree import ElementTree as ET
 from course.grading.exports.cells import number, replacing, spelled_out
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.selection import ExportOptions, Written, select
-from course.grading.verdict import CheckResult, Problem, Status
+from course.scoring.verdict import CheckResult, Problem, Status
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
 __all__ = ["suite", "write_junit"]
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from course.catalog.models import CourseRef
 from course.grading.exports.cells import csv_bytes, number, replacing, safe_cell, write_bytes
-from course.grading.results import CourseRef
-from course.grading.verdict import CheckResult, Problem, finite
+from course.scoring.verdict import CheckResult, Problem, finite
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from course.grading.results import Effective, Results
+    from course.grading.results.effective import Effective, Results
 
-__all__ = ["CourseRef", "GradeLine", "OverrideLine", "grade_line", "safe_cell", "write_csv", "write_jsonl"]
+__all__ = ["GradeLine", "OverrideLine", "grade_line", "safe_cell", "write_csv", "write_jsonl"]
 
 _COLUMNS = (
     "student", "exercise", "score", "max_score", "passed", "state", "reason", "late_s", "isolation",

@@ -15,8 +15,8 @@ from course.grading.exports.selection import ExportOptions, Selection, Written, 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from course.grading.results import Results
-    from course.grading.roster import Person
+    from course.grading.results.effective import Results
+    from course.grading.results.roster import Person
 
 __all__ = ["write_canvas", "write_moodle"]
 

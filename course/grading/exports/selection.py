@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from course.grading.results import Effective, Results
-    from course.grading.roster import Person
+    from course.grading.results.effective import Effective, Results
+    from course.grading.results.roster import Person
 
 __all__ = ["ExportOptions", "Selection", "Written", "is_part", "select"]
 

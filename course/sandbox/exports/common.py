@@ -9,11 +9,11 @@ import math
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.sandbox.parts import layout
+from course.sandbox.scene.parts import layout
 
 if TYPE_CHECKING:
-    from course.sandbox.loading import Chosen
-    from course.sandbox.parts import Part
+    from course.sandbox.scene.loading import Chosen
+    from course.sandbox.scene.parts import Part
 
 __all__ = ["DEPTH", "checked_parts", "gravity_of", "moment_3d", "number", "surface_of"]
 

@@ -17,9 +17,9 @@ from course.errors import UsageError
 from course.sandbox.exports.common import DEPTH, checked_parts, gravity_of, moment_3d, number, surface_of
 
 if TYPE_CHECKING:
-    from course.sandbox.loading import Chosen
-    from course.sandbox.parts import Part
-    from course.sandbox.scene import Joint
+    from course.sandbox.scene.loading import Chosen
+    from course.sandbox.scene.model import Joint
+    from course.sandbox.scene.parts import Part
 
 __all__ = ["damping_ratio", "mjcf"]
 

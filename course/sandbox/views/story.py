@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from course.errors import UsageError
-from course.sandbox.describe import sentence
-from course.sandbox.loading import question, values_of, with_settings
-from course.sandbox.predicting import compare
-from course.sandbox.probes import Probes
+from course.sandbox.runs.describe import sentence
+from course.sandbox.runs.probes import Probes
+from course.sandbox.scene.loading import question, values_of, with_settings
+from course.sandbox.scene.predicting import compare
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from course.sandbox.events import Event
-    from course.sandbox.loading import Chosen
-    from course.sandbox.predicting import Comparison
-    from course.sandbox.world import World
+    from course.sandbox.scene.loading import Chosen
+    from course.sandbox.scene.predicting import Comparison
+    from course.sandbox.world.events import Event
+    from course.sandbox.world.world import World
 
 __all__ = ["Experiment", "Teller"]
 

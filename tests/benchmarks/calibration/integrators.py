@@ -12,8 +12,8 @@ import numpy as np
 import recorder
 
 from course.grading import kit
-from course.grading.marching import march_all_errors
 from course.physics.invariants import convergence_order
+from course.scoring.kit.marching import march_all_errors
 
 
 class SlopeRecorder(recorder.Recorder):

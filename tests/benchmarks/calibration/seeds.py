@@ -24,14 +24,15 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 from protection import descendants_cpu  # noqa: E402
 
-from course.authoring.variants import accepted_files, compose, solution_path  # noqa: E402
+from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
-from course.grading.session import GradingSession, Submission  # noqa: E402
-from course.grading.verdict import Status  # noqa: E402
+from course.scoring.session import GradingSession, Submission  # noqa: E402
+from course.scoring.terms import Terms  # noqa: E402
+from course.scoring.verdict import Status  # noqa: E402
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise
-    from course.grading.verdict import Verdict
+    from course.scoring.verdict import Verdict
 
 
 def grade_all(
@@ -47,7 +48,7 @@ def grade_all(
         sources[f"accepted/{path.name}"] = (compose(solution, path), accepted)
     wrong = 0
     # What is asked is whether the answer is right: a machine that does other work too must not cost a mark.
-    with GradingSession(exercise, catalog, scope="full", timeout=60.0) as session:
+    with GradingSession(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
         for name, (source, count) in sources.items():
             submission = Submission({exercise.module: source})
             only: list[str | None] = [None]

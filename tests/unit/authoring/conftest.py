@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.source import CheckSource, checks_in, parse
+from course.authoring.exercises.source import CheckSource, checks_in, parse
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.grading.verdict import CheckResult, Status, Verdict, Visibility
+from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

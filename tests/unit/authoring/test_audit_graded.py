@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.authoring.audit import audit
-from course.authoring.mutants import run_mutants
+from course.authoring.exercises.mutants import run_mutants
 from course.catalog.load import Catalog
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import pytest
 
 from course.authoring.audit import audit
 from course.catalog.load import Catalog
-from course.grading.verdict import Problem, Status, Verdict
+from course.scoring.verdict import Problem, Status, Verdict
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from course.cli.app import run
-from course.sandbox.loading import FOLDER
+from course.cli.frame.app import run
+from course.sandbox.scene.loading import FOLDER
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,7 +52,7 @@ def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
 ) -> None:
     text = (FOLDER / "head-on.toml").read_text("utf-8").replace("comes at {speed}", "comes at {sped}")
     (tmp_path / "head-on.toml").write_text(text, "utf-8")
-    monkeypatch.setattr("course.sandbox.loading.FOLDER", tmp_path)
+    monkeypatch.setattr("course.sandbox.scene.loading.FOLDER", tmp_path)
     monkeypatch.setattr("course.authoring.audit.FOLDER", tmp_path)
     code, body = answer(capsys, "author", "check", "head-on")
     (problem,) = body["problems"]

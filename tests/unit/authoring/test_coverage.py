@@ -10,8 +10,8 @@ import pytest
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.cli.app import run
-from course.cli.author_coverage import is_command
+from course.cli.author.coverage import is_command
+from course.cli.frame.app import run
 from course.errors import ContentError, NotFoundError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from course.authoring.lesson_cells import as_written, run_cells, run_lesson, update_outputs
+from course.authoring.lessons.cells import as_written, run_cells, run_lesson, update_outputs
 from course.errors import ContentError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.lesson_lint import Finding, findings
+from course.authoring.lessons.lint import Finding, findings
 from course.catalog.markdown import parse_lesson
 
 GOOD = """

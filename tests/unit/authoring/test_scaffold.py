@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.files import BLANK
-from course.authoring.scaffold import new_exercise, new_lesson, new_question
+from course.authoring.exercises.files import BLANK
+from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError
 
@@ -16,21 +16,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SOLVED = {
-    "exercises/tripling/exercise.toml": [
-        "Tripling",
-        "drop this line",
-        "Three times.",
-        "Three times a number",
-    ],
+    "exercises/tripling/exercise.toml": ["Tripling", "Three times.", "Three times a number"],
     "exercises/tripling/README.md": ["Tripling", "gives three times `x`.", "tripling(1.0) is 3.0."],
     "exercises/tripling/tripling.py": ["Tripling.", "Three times ``x``, float."],
     "exercises/tripling/hints.toml": ["What is once more than twice?", "Add three times.", "Return 3 * x."],
     "graders/tripling/checks.py": [
         "Three times two is six",
         "",
-        "",
         "round-off",
-        "tripling(x)",
         "The result is not three times the number.",
         "Add the number three times.",
         "DOUBLES",
@@ -39,7 +32,7 @@ SOLVED = {
     "solutions/tripling/README.md": ["Three times is twice and once more."],
     "solutions/tripling/mutants.toml": ["Three is two.", "DOUBLES"],
     "solutions/tripling/accepted/unusual.py": ["Adds.", "added"],
-    "solutions/tripling/mutants/wrong.py": ["Doubles.", "doubled"],
+    "solutions/tripling/mutants/tripling_wrong.py": ["Doubles.", "doubled"],
 }
 SOLVED["exercises/tripling/checks.py"] = SOLVED["graders/tripling/checks.py"]
 
@@ -50,7 +43,6 @@ CODE = {
     'raise NotImplementedError("doubled")': "return 2 * x",
     "expected = 1.0": "expected = 3.0",
     "expected = 2.0": "expected = 6.0",
-    "# drop\n": "",
     "  # \n": "\n",
 }
 
@@ -112,9 +104,48 @@ def test_a_name_of_several_words_becomes_a_module(mini: Path) -> None:
     assert Catalog().exercise("three-times-as-much").module == "three_times_as_much.py"
 
 
+def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini: Path) -> None:
+    functions = [
+        Function.parse("swing_period(length, gravity=9.81)", "gives the period of small swings, s."),
+        Function.parse("swings(t)", "gives how often it swings in t."),
+    ]
+    known = {"title": "Swinging", "summary": "Periods of pendulums.", "lesson": "twice-as-much"}
+    files = new_exercise(Catalog(), "swinging", functions, **known)
+    exercise = Catalog().read_exercise("swinging")
+    assert [task.id for task in exercise.task] == ["swing_period", "swings"]
+    texts = {str(path.relative_to(mini)): path.read_text() for path in files}
+    for name, text in texts.items():
+        if name.endswith(".py"):
+            compile(text, name, "exec")
+    stub = texts["exercises/swinging/swinging.py"]
+    assert stub == (
+        '"""Periods of pendulums."""\n\n\n'
+        'def swing_period(length, gravity=9.81):\n    """Gives the period of small swings, s."""\n'
+        "    raise NotImplementedError\n\n\n"
+        'def swings(t):\n    """Gives how often it swings in t."""\n    raise NotImplementedError\n'
+    )
+    assert 'case = {"length": 1.0, "gravity": 1.0}' in texts["exercises/swinging/checks.py"]
+    wrong = {f"solutions/swinging/mutants/{name}_wrong.py" for name in ("swing_period", "swings")}
+    assert wrong < set(texts)
+    assert 'lesson = "twice-as-much"' in texts["exercises/swinging/exercise.toml"]
+    assert "FILL IN" not in stub
+
+
+@pytest.mark.parametrize(
+    "text", ["", "swing", "swing(", "swing()", "swing(*a)", "swing(a); import os", "a(b):\n x"]
+)
+def test_what_is_no_signature_is_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="not a function"):
+        Function.parse(text)
+
+
 @pytest.mark.parametrize(
     "taken",
-    ["exercises/tripling/hints.toml", "solutions/tripling/mutants/wrong.py", "graders/tripling/checks.py"],
+    [
+        "exercises/tripling/hints.toml",
+        "solutions/tripling/mutants/tripling_wrong.py",
+        "graders/tripling/checks.py",
+    ],
 )
 def test_nothing_is_overwritten_and_nothing_half_written(mini: Path, taken: str) -> None:
     (mini / taken).parent.mkdir(parents=True)

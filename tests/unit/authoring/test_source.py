@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.source import checks_in, foreign_imports, quoted_numbers, signatures
+from course.authoring.exercises.source import checks_in, foreign_imports, quoted_numbers, signatures
 
 
 def test_signatures_are_compared_without_annotations() -> None:

@@ -30,7 +30,7 @@ class FakeSession:
     """Grades by reading: a function passes if its body says RIGHT; UNREADABLE makes a file ungradable."""
 
     def __init__(self, exercise):
-        from course.grading.verdict import CheckResult
+        from course.scoring.verdict import CheckResult
 
         self.exercise = exercise
         self.checks = [
@@ -53,7 +53,7 @@ class FakeSession:
         return None
 
     def grade(self, submission, only=None):
-        from course.grading.verdict import Problem, Verdict
+        from course.scoring.verdict import Problem, Verdict
 
         source = submission.files[self.exercise.module].decode()
         common = {"exercise": self.exercise.id, "scope": "public", "isolation": "L1"}
@@ -68,13 +68,14 @@ class FakeSession:
         score, most = sum(r.points for r in results), sum(r.max_points for r in results)
         passed = score >= self.exercise.pass_mark * most
         return Verdict(
-            state="graded", score=score, max_score=most, passed=passed, checks=tuple(results), **common
-        )
+            state="graded", score=score, max_score=most, passed=passed, checks=tuple(results),
+            warnings=submission.notes, **common,
+        )  # fmt: skip
 
     def _result(self, check, source):
         import msgspec
 
-        from course.grading.verdict import Status, Tolerance
+        from course.scoring.verdict import Status, Tolerance
 
         body = source.partition(f"def {check.task}(")[2].partition("\ndef ")[0]
         if "RIGHT" in body:
@@ -97,7 +98,8 @@ class FakeSession:
 @pytest.fixture
 def course(monkeypatch, tmp_path, capsys):
     """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err."""
-    from course.cli import app, checking
+    from course.cli.frame import app
+    from course.cli.work import checking
 
     monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
     monkeypatch.setenv("COLUMNS", "80")

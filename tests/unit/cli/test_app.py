@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from course.cli import registry
+from course.cli.frame import registry
 from course.errors import (
     ContentError,
     CourseError,
@@ -155,7 +155,7 @@ def test_a_typo_is_answered_with_the_nearest_command(course):
 @pytest.fixture
 def failing(course, monkeypatch):
     """Make ``course doctor`` end by raising something."""
-    from course.cli import doctor
+    from course.cli.work import doctor
 
     def arrange(error):
         def doctor_that_fails() -> int:
@@ -220,7 +220,7 @@ def test_ctrl_c_exits_130_and_says_that_nothing_is_lost(failing):
 
 
 def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
-    from course.cli import doctor
+    from course.cli.work import doctor
 
     def noisy() -> int:
         """Say what works on this machine."""
@@ -285,7 +285,7 @@ def test_the_shell_completes_commands_and_ids(typed, expected):
 
 
 def test_every_schema_in_the_code_is_named_after_a_command():
-    from course.cli import schemas
+    from course.cli.frame import replies as schemas
 
     tags = {
         kind.__struct_config__.tag

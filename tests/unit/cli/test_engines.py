@@ -222,7 +222,7 @@ def test_json_is_one_object_and_words_go_to_the_other_stream(bare):
 
 
 def test_the_reference_is_never_the_best_and_ties_all_are():
-    from course.cli.engines_screen import best_rows
+    from course.cli.engines.screen import best_rows
     from course.engines.results import Row
 
     def row(engine, value, origin="measured", setting="default"):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from course.grading.gradebook import FromDownload, Gradebook, SubmittedAt
+from course.grading.gradebook.book import FromDownload, Gradebook, SubmittedAt
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 
@@ -173,8 +173,8 @@ def test_an_autograder_needs_no_gradebook(course, tmp_path: Path) -> None:
 
 
 def test_a_regrading_is_told_change_by_change(course, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from course.grading import rerun
-    from course.grading.batch import Graded
+    from course.grading.running import rerun
+    from course.grading.running.batch import Graded
 
     now = {"ada": RIGHT, "bob": RIGHT, "cy": REFUSED, "dan": WRONG}
     monkeypatch.setattr(
@@ -209,7 +209,7 @@ def test_a_folder_that_cannot_be_written_is_said_and_can_still_be_read(course, o
     root = Path(__file__).resolve().parents[3]
     code = (
         "import sys\n"
-        "from course.cli.app import run\n"
+        "from course.cli.frame.app import run\n"
         "print(run(['grade', 'explain', sys.argv[1], 'ada', 'doubling', '--quiet']))\n"
         "print(run(['grade', 'override', sys.argv[1], 'ada', 'doubling', '--score', '1', '--reason', 'x']))\n"
         "print(run(['grade', 'export', sys.argv[1]]))\n"

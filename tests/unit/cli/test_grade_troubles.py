@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from course.grading.gradebook import Gradebook
-from course.grading.run import export_all, open_results
+from course.grading.gradebook.book import Gradebook
+from course.grading.running.run import export_all, open_results
 from tests.unit.grading.made import HALF, RIGHT, make_book
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(cour
 def test_the_gradebook_is_held_until_the_last_page_is_written(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from course.grading import run
+    from course.grading.running import run
 
     refused = []
 
@@ -128,7 +128,7 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from course.errors import MissingCapabilityError
-    from course.grading import run
+    from course.grading.running import run
 
     def write_pages(path: Path, *_: object) -> None:
         raise MissingCapabilityError(f"{path} cannot be written.", help="-o", code="cannot_write")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import zipfile
 from pathlib import Path
@@ -90,9 +91,7 @@ def test_what_cannot_be_used_is_refused(course, tmp_path, words, code, error):
 
 
 def test_without_its_extra_executed_says_what_to_install(course, monkeypatch):
-    from course.notebooks import extra
-
-    monkeypatch.setattr(extra, "find_spec", lambda name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     ran = course("notebook", "build", "--executed", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (4, "missing_extra")
     for requirement in ("jupyterlab>=4", "nbclient", "ipykernel", "anywidget"):
@@ -180,7 +179,7 @@ def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write):
 
 def test_submit_says_so_where_outputs_are_nested_too_deeply(course, workspace, monkeypatch):
     """Just below the depth at which the grading run's reader gives up, ours may have given up already."""
-    from course.cli import handing_in
+    from course.cli.work import chosen as handing_in
 
     def too_deep(_data):
         raise RecursionError
@@ -195,8 +194,8 @@ def test_submit_says_so_where_outputs_are_nested_too_deeply(course, workspace, m
 
 def test_a_zip_with_a_notebook_is_graded_like_the_module(course, workspace):
     from course.catalog.load import Catalog
-    from course.grading.downloads import Place, Student
-    from course.grading.intake import read_student
+    from course.grading.intake.downloads import Place, Student
+    from course.grading.intake.students import read_student
 
     course("notebook", "build", "doubling")
     write_into(workspace / "doubling" / "doubling.ipynb", GOOD, OTHER)

@@ -172,10 +172,10 @@ def test_a_report_on_a_notebook_names_its_cells(course, notebook):
 def test_a_watch_of_a_notebook_grades_each_save(course, notebook):
     import io
 
-    from course.cli import checking
-    from course.cli.console import Console, Settings
-    from course.cli.here import Here
-    from course.cli.watching import Watcher
+    from course.cli.frame.console import Console, Settings
+    from course.cli.frame.here import Here
+    from course.cli.work import checking
+    from course.cli.work.watching import Watcher
 
     here = Here.load()
     exercise = here.exercise("doubling")

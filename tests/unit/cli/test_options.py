@@ -6,7 +6,7 @@ import itertools
 
 import pytest
 
-from course.cli.options import hoist
+from course.cli.frame.options import hoist
 
 
 @pytest.mark.parametrize("position", range(4))

@@ -76,7 +76,7 @@ def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
         return "0.1" if name == "rich" else real(name)
 
     monkeypatch.setattr(importlib.metadata, "version", version)
-    monkeypatch.setattr("course.cli.doctor._requirements", lambda root: ["pymunk>=7.0", "rich>=14", "numpy"])
+    monkeypatch.setattr("course.extras._lines", lambda: ["pymunk>=7.0", "rich>=14", "numpy"])
     ran = course("doctor", "--json")
     assert ran.code == 4
     assert ran.json["fixes"][0]["command"] == "pip install 'pymunk>=7.0' 'rich>=14'"
@@ -84,7 +84,7 @@ def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
 
 def test_a_missing_extra_is_offered_and_is_no_failure(course, monkeypatch):
     wanted = ["numpy", "no-such-engine>=4; extra == 'engines'", "no-such-linter; extra == 'dev'"]
-    monkeypatch.setattr("course.cli.doctor._requirements", lambda root: wanted)
+    monkeypatch.setattr("course.extras._lines", lambda: wanted)
     ran = course("doctor", "--json")
     assert ran.code == 0
     assert [fix["command"] for fix in ran.json["fixes"]] == ["pip install 'no-such-engine>=4'"]

@@ -51,7 +51,7 @@ def types(monkeypatch):
 @pytest.fixture
 def travel(monkeypatch):
     """Move the clock by whole days."""
-    from course.cli import quiz as command
+    from course.cli.quiz import commands as command
     from course.progress import store
 
     def to(days):
@@ -155,7 +155,7 @@ def test_control_c_keeps_what_was_answered(quiz, bank, types, monkeypatch):
 
 
 def test_a_crash_between_the_last_answer_and_the_score_loses_nothing(quiz, bank, types, monkeypatch):
-    from course.cli import quiz as command
+    from course.cli.quiz import commands as command
 
     def fall(*_, **__):
         raise KeyboardInterrupt

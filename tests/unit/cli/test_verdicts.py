@@ -8,9 +8,9 @@ import msgspec
 import pytest
 
 from course.catalog.models import Exercise, Task
-from course.cli.console import Console, Settings
-from course.cli.verdicts import show_verdict
-from course.grading.verdict import CheckResult, Divergence, Status, Tolerance, Verdict
+from course.cli.frame.console import Console, Settings
+from course.cli.work.verdicts import show_verdict
+from course.scoring.verdict import CheckResult, Divergence, Status, Tolerance, Verdict
 
 EXERCISE = Exercise(
     format_version=1,

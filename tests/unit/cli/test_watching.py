@@ -9,10 +9,10 @@ import time
 
 import pytest
 
-from course.cli import checking
-from course.cli.console import Console, Settings
-from course.cli.here import Here
-from course.cli.watching import Watcher, saves
+from course.cli.frame.console import Console, Settings
+from course.cli.frame.here import Here
+from course.cli.work import checking
+from course.cli.work.watching import Watcher, saves
 
 
 @pytest.fixture
@@ -140,7 +140,7 @@ def test_saves_are_noticed_quickly(tmp_path, how):
 
 
 def test_ctrl_c_ends_a_watch_with_its_one_object(course, workspace, write, monkeypatch):
-    from course.cli import watching as module
+    from course.cli.work import watching as module
 
     write("wrong", "RIGHT")
 

@@ -9,13 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from course.engines import extras, reference
+from course import extras
+from course.engines import reference
 from course.engines import registry as module
-from course.engines.extras import Requirement, requirement_of
 from course.engines.machine import this_machine
 from course.engines.registry import ENGINES, availability, get
 from course.engines.scenarios import SCENARIOS
 from course.errors import NotFoundError
+from course.extras import PARTS, Requirement, requirement_of
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -34,7 +35,7 @@ def metadata(monkeypatch):
 
 def test_the_command_lists_the_requirement_itself(metadata):
     assert requirement_of("mujoco").command == "pip install 'mujoco>=4.0'"
-    assert requirement_of("panda3d") == Requirement("panda3d>=1.10.16")
+    assert requirement_of("panda3d") == Requirement("panda3d", ">=1.10.16", "engines")
     assert requirement_of("unheard-of").command == "pip install 'unheard-of'"
 
 
@@ -63,15 +64,6 @@ def test_every_engine_is_in_the_extra_that_it_names():
     for info in ENGINES.values():
         lines = project["optional-dependencies"][info.extra] if info.extra else project["dependencies"]
         assert any(re.match(rf"{info.package}\b", line) for line in lines), info.id
-
-
-def test_every_marker_is_understood():
-    for info in ENGINES.values():
-        wanted = requirement_of(info.package)
-        assert wanted.applies in (True, False)
-        assert "extra" not in wanted.marker
-    assert not Requirement("x", "python_version < '3.0'").applies
-    assert Requirement("x", "python_version >= '3.0'").applies
 
 
 def test_an_engine_has_an_adapter_of_its_name():
@@ -139,17 +131,23 @@ def test_a_checkout_file_that_cannot_be_read_leaves_the_bare_name(monkeypatch, m
 
 
 @pytest.mark.parametrize(
-    ("marker", "applies"),
+    ("line", "group", "applies"),
     [
-        ("", True),
-        ("extra == 'dart'", True),
-        ("(python_version < '3.0') and extra == 'bullet'", False),
-        ("python_version < '3.0'; extra == 'bullet'", False),
-        ("python_version >= '3.0' and extra == 'bullet'", True),
-        ("nonsense ~ 3", True),
+        ("x>=1", "", True),
+        ("x>=1; extra == 'dart'", "dart", True),
+        ("x>=1; (python_version < '3.0') and extra == 'bullet'", "bullet", False),
+        ("x>=1; python_version >= '3.0' and extra == 'bullet'", "bullet", True),
     ],
 )
-def test_the_doctor_offers_no_command_where_no_wheel_serves(marker, applies):
-    from course.cli.doctor import _applies
+def test_a_requirement_says_whether_this_machine_is_served(metadata, line, group, applies):
+    metadata[:] = [line]
+    assert requirement_of("x") == Requirement("x", ">=1", group, applies)
 
-    assert _applies(marker) is applies
+
+def test_every_extra_is_a_part_and_brings_what_the_part_needs():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    optional = project["optional-dependencies"]
+    assert set(PARTS) == set(optional) - {"all", "dev"}
+    for name, part in PARTS.items():
+        distributions = {package.rpartition("=")[2] for package in part.packages}
+        assert distributions == {re.match(r"[\w.-]+", line)[0].lower() for line in optional[name]}

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from course.grading import kit
-from course.grading.plugin import MARKERS
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.simulator import Simulator
 from course.physics.state import RigidBodyState
+from course.scoring.plugin import MARKERS
 
 ROOT = Path(__file__).parents[3]
 HERE = ROOT / "exercises" / "collisions"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.catalog.load import Catalog
-from course.grading.session import GradingSession
+from course.scoring.session import GradingSession
+from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,5 +38,5 @@ def solution() -> bytes:
 
 @pytest.fixture(scope="module")
 def session(catalog: Catalog, doubling: Exercise) -> Iterator[GradingSession]:
-    with GradingSession(doubling, catalog, scope="full", timeout=1.0) as opened:
+    with GradingSession(doubling, catalog, scope="full", terms=Terms(timeout=1.0)) as opened:
         yield opened

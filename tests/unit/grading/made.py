@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.grading.gradebook import Gradebook, GradedExercise, Key, Result
-from course.grading.session import Submission
-from course.grading.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
+from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Result
+from course.scoring.session import Submission
+from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable
     from pathlib import Path
 
-    from course.grading.grader import Config
+    from course.grading.running.grader import Config
 
 SECRET = 1234.5678
 

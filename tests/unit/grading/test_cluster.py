@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import pickle
 import pickletools
@@ -9,23 +10,24 @@ import shutil
 import signal
 import threading
 import time
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
 
-from course.cli.app import run as course
+from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
-from course.grading.batch import MAX_TRIES, BatchOptions, Graded
 from course.grading.cluster import connect, coordinator, worker
 from course.grading.cluster.coordinator import Lost, grade_on
 from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, decode_batch, encode
-from course.grading.grader import Answer, Job
-from course.grading.intake import Entry
-from course.grading.session import Submission, grader_version
-from course.grading.verdict import Problem, Verdict
+from course.grading.intake.students import Entry
+from course.grading.running.batch import MAX_TRIES, Graded
+from course.grading.running.grader import Answer, Job
+from course.scoring.session import Submission
+from course.scoring.terms import Terms
+from course.scoring.verdict import Problem, Verdict
+from course.scoring.version import grader_version
 from tests.unit.grading.made import stillborn
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.grading.cluster.coordinator import Outcome
-    from course.grading.session import GradingSession
+    from course.scoring.session import GradingSession
 
 ROOT = Path(__file__).resolve().parents[3]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -127,7 +129,7 @@ def entries_of(exercise: Exercise, count: int, special: dict[int, bytes] | None 
 
 
 def grade(workers: Any, entries: list[Entry], **more: Any) -> list[Graded]:
-    return list(grade_on(workers, iter(entries), BatchOptions(seed=5), lambda _: "v1", **more))
+    return list(grade_on(workers, iter(entries), Terms(seed=5), lambda _: "v1", **more))
 
 
 def is_poison(batch: Batch) -> bool:
@@ -223,7 +225,7 @@ def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise
             return perfect(job)
         return worker.version_mismatch("Other graders")
 
-    grading = grade_on(FakeWorkers(1, answer=answer), iter(entries), BatchOptions(), lambda _: "v1")
+    grading = grade_on(FakeWorkers(1, answer=answer), iter(entries), Terms(at_least="L2"), lambda _: "v1")
     assert next(grading).entry.student == "s000"
     with pytest.raises(CourseError, match="Worker on there: Other graders") as raised:
         next(grading)
@@ -457,24 +459,19 @@ def test_graders_on_one_machine_take_different_processors() -> None:
 def test_without_dask_the_command_that_installs_it_is_said(
     catalog: Catalog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connect.importlib.util, "find_spec", lambda _: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     with pytest.raises(MissingCapabilityError, match="distributed and cryptography") as raised:
         connect.local_cluster(2, catalog)
     assert "pip install 'distributed>=" in raised.value.help
 
 
-def test_the_extra_names_what_the_code_asks_for() -> None:
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-    assert sorted(connect._WANTED.values()) == sorted(extras["cluster"])
-
-
 def test_a_cluster_of_others_does_not_run_unprotected_submissions(
     catalog: Catalog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connect, "_needs_dask", lambda: None)
+    monkeypatch.setattr(connect, "require", lambda part: None)
     cluster = connect.remote_cluster("tls://nowhere.invalid:1", catalog)
     with cluster, pytest.raises(UsageError, match="whole cluster"):
-        next(cluster(iter(()), BatchOptions(at_least="L1")))
+        next(cluster(iter(()), Terms(at_least="L1")))
 
 
 @pytest.mark.parametrize(
@@ -499,5 +496,5 @@ def test_a_scheduler_that_is_not_there_is_said(catalog: Catalog, tmp_path: Path)
     pytest.importorskip("cryptography", reason="needs the extra `cluster`")
     cluster = connect.remote_cluster(str(tmp_path / "scheduler.json"), catalog)
     with cluster, pytest.raises(MissingCapabilityError, match="No Dask scheduler answers") as raised:
-        next(cluster(iter(()), BatchOptions()))
+        next(cluster(iter(()), Terms(at_least="L2")))
     assert raised.value.code == "no_scheduler"

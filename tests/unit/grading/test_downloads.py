@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.downloads import ClassList, class_list
-from course.grading.gradebook import FromDownload
-from course.grading.intake import read_student
+from course.grading.gradebook.book import FromDownload
+from course.grading.intake.downloads import ClassList, class_list
+from course.grading.intake.students import read_student
 from tests.unit.grading.test_intake import archive
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import msgspec
 import pytest
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook import (
+from course.grading.gradebook.book import (
     FromDownload,
     Gradebook,
     GradedExercise,
@@ -22,7 +22,7 @@ from course.grading.gradebook import (
     Result,
     SubmittedAt,
 )
-from course.grading.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -11,11 +11,11 @@ import pytest
 
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
-from course.grading.fingerprints import Parser
-from course.grading.gradebook import GradedExercise, Override, Result, SubmittedAt
-from course.grading.results import Results
-from course.grading.similar import Document, Pair, Similar
-from course.grading.similar_page import page as similar_page
+from course.grading.gradebook.book import GradedExercise, Override, Result, SubmittedAt
+from course.grading.results.effective import Results
+from course.grading.similar.compare import Document, Pair, Similar
+from course.grading.similar.fingerprints import Parser
+from course.grading.similar.page import page as similar_page
 from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, WRONG, digest, key, make_book
 from tests.unit.grading.test_html import quiz_verdict
 from tests.unit.grading.test_results import DUE, POLICY

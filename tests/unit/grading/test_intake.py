@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import NotFoundError
-from course.grading.downloads import Place, Student, class_list
-from course.grading.intake import MAX_FILE, Entry, read_class, read_student
+from course.grading.intake.downloads import Place, Student, class_list
+from course.grading.intake.students import MAX_FILE, Entry, read_class, read_student
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,8 +15,8 @@ from hypothesis.extra import numpy as hnp
 
 from course.grading import kit
 from course.grading.kit import CheckFailed, Diagnosis, Inspected, StudentFailure
-from course.grading.verdict import Divergence
 from course.physics import exact, systems
+from course.scoring.verdict import Divergence
 
 WORDS = {"message": "It is wrong.", "help": "Mend it."}
 TOLERANCE = {"source": "test", "quantity": "x"}

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course.grading.exports.lines import safe_cell, write_csv, write_jsonl
-from course.grading.results import Results
+from course.grading.results.effective import Results
 from tests.unit.grading.made import REFUSED, RIGHT, make_book
 
 if TYPE_CHECKING:

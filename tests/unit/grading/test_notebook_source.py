@@ -9,8 +9,8 @@ import pytest
 
 from course.catalog.models import Exercise, Task
 from course.errors import UngradableError
-from course.grading.notebook_cells import MAX_CODE, MAX_NOTEBOOK
-from course.grading.notebook_source import NotebookSource, notebook_source
+from course.handed_in.cells import MAX_CODE, MAX_NOTEBOOK
+from course.handed_in.notebook import NotebookSource, notebook_source
 
 EXERCISE = Exercise(
     format_version=1,

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from course.grading.numbers import format_input, format_pair, format_points, format_tolerance, format_value
-from course.grading.verdict import Tolerance
+from course.scoring.numbers import format_input, format_pair, format_points, format_tolerance, format_value
+from course.scoring.verdict import Tolerance
 
 
 @pytest.mark.parametrize(

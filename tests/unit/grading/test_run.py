@@ -8,19 +8,21 @@ import signal
 import subprocess
 import sys
 import zipfile
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from course.errors import InternalError, UsageError
-from course.grading import batch
-from course.grading.batch import MAX_TRIES, BatchOptions, Graded, grade_all
-from course.grading.gradebook import Gradebook
-from course.grading.intake import read_class
-from course.grading.override import override
-from course.grading.run import RunOptions, Summary, grade_class, open_results
-from course.grading.verdict import Verdict
+from course.grading.gradebook.book import Gradebook
+from course.grading.intake.students import read_class
+from course.grading.results.override import override
+from course.grading.running import batch
+from course.grading.running.batch import MAX_TRIES, Graded, grade_all
+from course.grading.running.run import RunOptions, Summary, grade_class, open_results
+from course.scoring.terms import Terms
+from course.scoring.verdict import Verdict
 from tests.unit.grading.made import stillborn
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.grading.intake import Entry
+    from course.grading.intake.students import Entry
 
 MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 ROOT = Path(__file__).resolve().parents[3]
@@ -64,9 +66,10 @@ def test_two_graders_give_what_one_gives(tmp_path: Path, catalog: Catalog, solut
     make_class(tmp_path / "class", solution, 12)
     seen: list[tuple[str, float]] = []
     for graders in (1, 2):
-        options = RunOptions(exercises=("doubling",), graders=graders, at_least="L1", seed=3)
+        options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
         out = tmp_path / f"out{graders}"
-        summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None)
+        grade = partial(grade_all, graders=graders)
+        summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=grade)
         assert (summary.exit_code, summary.states["graded"], summary.passed) == (0, 12, 8)
         seen.append(tuple(sorted(scores(out).items())))  # type: ignore[arg-type]
     assert seen[0] == seen[1]
@@ -95,10 +98,10 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
     make_class(tmp_path / "class", solution, 4)
-    first = RunOptions(exercises=("doubling",), at_least="L1", seed=5)
+    first = RunOptions(exercises=("doubling",), terms=Terms(), seed=5)
     grade_class(tmp_path / "class", tmp_path / "out", catalog, first, lambda *_: None)
     (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + WRONG)
-    again = RunOptions(exercises=("doubling",), at_least="L1", resume=True)
+    again = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
     graded: list[str] = []
     summary = grade_class(
         tmp_path / "class",
@@ -119,7 +122,7 @@ def test_a_grader_that_dies_costs_no_other_submission(
     make_class(tmp_path / "class", solution, 8)
     entries = read_class(tmp_path / "class", [doubling], required=True)
     found = {}
-    for number, graded in enumerate(grade_all(entries, BatchOptions(at_least="L1"))):
+    for number, graded in enumerate(grade_all(entries, Terms(at_least="L1"))):
         found[graded.entry.student] = graded.verdict
         if number == 2:
             for pid in _children(os.getpid()):
@@ -135,7 +138,7 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
     make_class(tmp_path / "class", solution, 2)
     monkeypatch.setattr(batch, "start_grader", stillborn(batch.start_grader, deaths))
     entries = read_class(tmp_path / "class", [doubling], required=True)
-    graded = grade_all(entries, BatchOptions(at_least="L1"))
+    graded = grade_all(entries, Terms(at_least="L1"))
     if deaths < MAX_TRIES:
         assert sorted((one.entry.student, one.verdict.state) for one in graded) == [
             ("student-000", "graded"), ("student-001", "graded"),
@@ -149,7 +152,9 @@ def _children(parent: int) -> list[int]:
     found = subprocess.run(
         ["ps", "-o", "pid=,args=", "--ppid", str(parent)], capture_output=True, text=True, check=False
     )
-    return [int(line.split()[0]) for line in found.stdout.splitlines() if "course.grading.grader" in line]
+    return [
+        int(line.split()[0]) for line in found.stdout.splitlines() if "course.grading.running.grader" in line
+    ]
 
 
 def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution: bytes) -> None:
@@ -212,10 +217,10 @@ def test_a_student_counts_as_done_when_graded_and_not_when_read(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
     make_class(tmp_path / "class", solution, 4)
-    options = RunOptions(exercises=("doubling",), at_least="L1")
+    options = RunOptions(exercises=("doubling",), terms=Terms())
     seen: list[int] = []
 
-    def all_at_once(entries: Iterable[Entry], more: BatchOptions) -> Iterator[Graded]:
+    def all_at_once(entries: Iterable[Entry], more: Terms) -> Iterator[Graded]:
         yield from right(list(entries), more)
 
     grade_class(
@@ -250,7 +255,7 @@ def test_a_second_run_on_one_folder_is_told_and_the_first_goes_on(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
     make_class(tmp_path / "class", solution, 1)
-    options = RunOptions(exercises=("doubling",), at_least="L1", resume=True)
+    options = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
     (tmp_path / "out").mkdir()
     with Gradebook(tmp_path / "out" / "gradebook.sqlite", create=True, writing=True) as first:
         with pytest.raises(UsageError, match="Another run is writing"):
@@ -276,7 +281,7 @@ def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
     }  # fmt: skip
 
 
-def right(entries: Iterable[Entry], _: BatchOptions) -> Iterator[Graded]:
+def right(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
     """Stands in for grader processes: everything that can be read is right, the rest is said."""
     for entry in entries:
         problem = entry.problem

@@ -12,18 +12,20 @@ import pytest
 
 from course.errors import ContentError, MissingCapabilityError
 from course.grading import kit
-from course.grading.session import GradingSession, Submission, grader_version
-from course.grading.values import plain
-from course.grading.verdict import Status, finite, for_student
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+from course.scoring.values import plain
+from course.scoring.verdict import Status, finite, for_student
+from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.grading.collected import Check
-    from course.grading.remote import RemoteSubmission
-    from course.grading.verdict import CheckResult, Verdict
+    from course.scoring.collected import Check
+    from course.scoring.remote import RemoteSubmission
+    from course.scoring.verdict import CheckResult, Verdict
 
 
 def grade(session: GradingSession, source: bytes | str) -> Verdict:
@@ -35,7 +37,7 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
     session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     checks = sum(check.task == "double" for check in session.checks)
-    monkeypatch.setattr("course.grading.remote.BUDGET_S", float(checks))  # each waits for a second
+    monkeypatch.setattr("course.scoring.remote.BUDGET_S", float(checks))  # each waits for a second
     verdict = grade(session, solution + b"\ndef double(x):\n    while True:\n        pass\n")
     assert {str(check.status) for check in results(verdict, "double")} <= {"timeout", "skipped"}
     assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
@@ -231,7 +233,7 @@ def test_the_same_seed_draws_the_same_inputs(catalog: Catalog, doubling: Exercis
     )
     seen = []
     for seed in (1, 1, 2):
-        with GradingSession(doubling, catalog, scope="full", seed=seed) as session:
+        with GradingSession(doubling, catalog, scope="full", terms=Terms(seed=seed)) as session:
             seen.append(next(c.input for c in session.grade(wrong).checks if c.id == "doublings_values"))
     assert seen[0] == seen[1] != seen[2]
 
@@ -276,7 +278,7 @@ def test_a_check_that_computes_with_infinite_numbers_is_no_fault_of_ours(
     def computing(*_: object) -> None:
         seen.append(np.array([np.inf]) - np.inf)  # numpy would warn, and a warning may be an error
 
-    monkeypatch.setattr("course.grading.collected._run_item", computing)
+    monkeypatch.setattr("course.scoring.collected._run_item", computing)
     grade(session, solution)
     assert np.isnan(seen).all()
 
@@ -292,8 +294,8 @@ def test_hidden_checks_need_a_checkout(catalog: Catalog, doubling: Exercise) -> 
 def test_a_check_without_its_marks_names_the_file_and_the_line(
     catalog: Catalog, doubling: Exercise, tmp_path: Path
 ) -> None:
-    from course.grading.collected import CollectedChecks
-    from course.grading.verdict import Visibility
+    from course.scoring.collected import CollectedChecks
+    from course.scoring.verdict import Visibility
 
     path = tmp_path / "checks.py"
     path.write_text('import pytest\n\n\ndef test_it(submission):\n    """It"""\n', "utf-8")
@@ -349,7 +351,7 @@ def test_at_home_a_check_that_breaks_says_that_nothing_tells_whose_fault_it_is(
     catalog: Catalog, doubling: Exercise, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(catalog, "content", replace(catalog.content, solutions=None, graders=None))
-    with GradingSession(doubling, catalog, timeout=1.0) as home:
+    with GradingSession(doubling, catalog, terms=Terms(timeout=1.0)) as home:
         monkeypatch.setattr(home._checks, "run", breaks_on_wrong_results)
         verdict = grade(home, solution + b"\ndef double(x):\n    return [x, None]\n")
     assert verdict.state == "graded"
@@ -403,7 +405,7 @@ def test_a_finding_holds_whole_numbers_of_any_size() -> None:
 def test_a_check_that_pytest_never_called_is_no_pass(
     session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("course.grading.collected._run_item", lambda _item: None)
+    monkeypatch.setattr("course.scoring.collected._run_item", lambda _item: None)
     assert grade(session, solution).state == "grader_error"
 
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from course.grading.fingerprints import RUN, WINDOW, Parser, fingerprints
-from course.grading.gradebook import Result
-from course.grading.results import Results
-from course.grading.session import Submission
-from course.grading.similar import compare
-from course.grading.similar_page import page
+from course.grading.gradebook.book import Result
+from course.grading.results.effective import Results
+from course.grading.similar.compare import compare
+from course.grading.similar.fingerprints import RUN, WINDOW, Parser, fingerprints
+from course.grading.similar.page import page
+from course.scoring.session import Submission
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book
 from tests.unit.grading.pages import Page, faults

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.cells import document
-from course.notebooks.exercises import exercise_cells
+from course.notebooks.building.cells import document
+from course.notebooks.building.exercises import exercise_cells
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise

@@ -16,12 +16,12 @@ import pytest
 
 from course.catalog import blocks as b
 from course.errors import NotFoundError
-from course.grading.notebook_source import notebook_source
+from course.handed_in.notebook import notebook_source
 from course.notebooks.build import Generated, generate
-from course.notebooks.layout import FOLDERS, WORKSPACE
-from course.notebooks.lowering import Lowering
+from course.notebooks.building.layout import FOLDERS, WORKSPACE
+from course.notebooks.building.lowering import Lowering
+from course.notebooks.building.stub import pieces
 from course.notebooks.quiz import SEED, marked
-from course.notebooks.stub import pieces
 from course.notebooks.widget_style import style
 from course.quizzing.bank import Bank
 

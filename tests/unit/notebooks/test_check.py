@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from course.cli import app
-from course.grading.notebook_source import notebook_source
+from course.cli.frame import app
+from course.handed_in.notebook import notebook_source
 from course.notebooks import magic
-from course.notebooks.exercises import exercise_notebook
+from course.notebooks.building.exercises import exercise_notebook
 from course.notebooks.typed import module_of
 from course.progress.history import fingerprint
 from course.progress.workspace import Workspace

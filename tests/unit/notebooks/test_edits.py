@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from course.grading.notebook_source import RECORD, notebook_source
-from course.grading.session import GradingSession, Submission
+from course.handed_in.notebook import RECORD, NotebookSource, notebook_source, opened
 from course.physics import systems
+from course.scoring.session import GradingSession, Submission
 from tests.unit.notebooks.edits import edited
 
 if TYPE_CHECKING:
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
 
 STEPS = ("explicit_euler_step", "semi_implicit_euler_step", "velocity_verlet_step", "rk4_step")
+
+
+def handed_in(module: NotebookSource, exercise: Exercise) -> Submission:
+    """A notebook as a grading run reads it back."""
+    return opened({exercise.module: module.source, RECORD: module.record()}, exercise)
 
 
 def behaviour(source: bytes) -> list[Any]:
@@ -62,9 +67,7 @@ def test_the_same_code_scores_the_same_as_a_file_and_as_a_notebook(
             swapped = solved.replace(b"h / 6 * (dq1", b"h / 5 * (dq1") if text == broken else solved
             for seed in (1, 2):
                 module = notebook_source(edited(swapped, seed), integrators)
-                as_notebook = session.grade(
-                    Submission({"integrators.py": module.source, RECORD: module.record()})
-                )
+                as_notebook = session.grade(handed_in(module, integrators))
                 assert as_notebook.score == as_file.score
                 assert [check.status for check in as_notebook.checks] == [
                     check.status for check in as_file.checks
@@ -80,12 +83,12 @@ def test_an_error_in_a_notebook_is_told_by_its_cell(
     assert raising != solved
     module = notebook_source(raising, integrators)
     with GradingSession(integrators, catalog) as session:
-        verdict = session.grade(Submission({"integrators.py": module.source, RECORD: module.record()}))
+        verdict = session.grade(handed_in(module, integrators))
         line = next(n for n, text in enumerate(module.source.decode().split("\n"), 1) if "nothing" in text)
         check = next(check for check in verdict.checks if check.task == "explicit_euler_step")
         assert f"in {module.place(line)} of your notebook" in check.message
         assert (check.traceback or "").startswith(f"{module.place(line)} in explicit_euler_step")
         syntax = notebook_source(solved.replace(b"return q + h * v, v", b"return q + * h, v"), integrators)
-        refused = session.grade(Submission({"integrators.py": syntax.source, RECORD: syntax.record()}))
+        refused = session.grade(handed_in(syntax, integrators))
     assert refused.error is not None
     assert refused.error.message.startswith("Cell ")

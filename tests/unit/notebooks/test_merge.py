@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from course.grading.notebook_source import notebook_source
-from course.notebooks.cells import Cell, code, document, markdown
-from course.notebooks.exercises import exercise_cells
-from course.notebooks.merge import CannotMergeError, is_untouched, merged
+from course.handed_in.notebook import notebook_source
+from course.notebooks.building.cells import Cell, code, document, markdown
+from course.notebooks.building.exercises import exercise_cells
+from course.notebooks.building.merge import CannotMergeError, is_untouched, merged
 
 if TYPE_CHECKING:
     from collections.abc import Callable

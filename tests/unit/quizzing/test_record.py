@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from course.authoring.quiz_audit import audit_quiz
 from course.errors import UngradableError
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256, score_record
-from course.grading.verdict import Status
 from course.progress import quiz as progress
 from course.progress.store import Store
 from course.quizzing.attempt import mark
 from course.quizzing.bank import MAX_SEED, Bank
+from course.scoring.verdict import Status
 
 if TYPE_CHECKING:
     from pathlib import Path

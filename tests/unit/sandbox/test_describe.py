@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from course.sandbox.describe import account, sentence, sentences
-from course.sandbox.events import Event, Receipt
-from course.sandbox.loading import choose
-from course.sandbox.running import run
+from course.sandbox.runs.describe import account, sentence, sentences
+from course.sandbox.runs.running import run
+from course.sandbox.scene.loading import choose
+from course.sandbox.world.events import Event, Receipt
 
 
 def contact(**more) -> Event:

@@ -10,9 +10,9 @@ import pytest
 from course.errors import UsageError
 from course.sandbox.exports.mjcf import damping_ratio, mjcf
 from course.sandbox.exports.sdf import VERSION, sdf
-from course.sandbox.loading import choose, scene_ids
-from course.sandbox.parts import layout
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose, scene_ids
+from course.sandbox.scene.parts import layout
+from course.sandbox.world.world import World
 
 EXPORTED = sorted(set(scene_ids()) - {"galton-board", "robot-boxes"})
 

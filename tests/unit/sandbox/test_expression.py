@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course.errors import UsageError
-from course.sandbox.expression import evaluate, names
+from course.sandbox.scene.expression import evaluate, names
 
 
 def test_formulas_have_the_value_that_arithmetic_gives_them() -> None:

@@ -8,10 +8,10 @@ import pytest
 from PIL import Image
 
 from course.errors import MissingCapabilityError, UsageError
-from course.sandbox import film as films
-from course.sandbox.film import Film
-from course.sandbox.loading import choose
-from course.sandbox.world import World
+from course.sandbox.runs import film as films
+from course.sandbox.runs.film import Film
+from course.sandbox.scene.loading import choose
+from course.sandbox.world.world import World
 
 
 def filmed(name: str, frames: int) -> tuple[Film, World]:

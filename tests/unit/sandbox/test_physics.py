@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from course.sandbox.describe import sentence
-from course.sandbox.loading import choose
-from course.sandbox.world import World
+from course.sandbox.runs.describe import sentence
+from course.sandbox.scene.loading import choose
+from course.sandbox.world.world import World
 
 
 def speeds(world: World) -> dict[str, float]:

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course.errors import CourseError, IntegrityError, NotFoundError, UsageError
-from course.sandbox.loading import choose
-from course.sandbox.recording import Recording, read, replay
-from course.sandbox.world import World
+from course.sandbox.runs.recording import Recording, read, replay
+from course.sandbox.scene.loading import choose
+from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,11 +9,11 @@ import pytest
 from textual.widgets import Input
 
 from course.errors import MissingCapabilityError
-from course.sandbox.loading import choose
-from course.sandbox.views import terminal
-from course.sandbox.views.terminal_app import SandboxApp
-from course.sandbox.views.terminal_asking import Ask, Told
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.terminal import view as terminal
+from course.sandbox.views.terminal.app import SandboxApp
+from course.sandbox.views.terminal.asking import Ask, Told
+from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable

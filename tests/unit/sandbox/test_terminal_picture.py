@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from course.sandbox.loading import choose
-from course.sandbox.views.terminal_camera import Camera
-from course.sandbox.views.terminal_picture import PAPER, Overlay, Picture, Spark, label_of
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.terminal.camera import Camera
+from course.sandbox.views.terminal.picture import PAPER, Overlay, Picture, Spark, label_of
+from course.sandbox.world.world import World
 
 SIZE = (52, 19)
 

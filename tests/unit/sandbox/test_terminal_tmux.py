@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from course.sandbox.loading import choose, scene_ids
-from course.sandbox.views.terminal_camera import Camera
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose, scene_ids
+from course.sandbox.views.terminal.camera import Camera
+from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,9 +28,9 @@ pytestmark = [
 ROOT = Path(__file__).resolve().parents[3]
 PLAY = """
 import sys
-from course.sandbox.loading import choose
-from course.sandbox.views.terminal import play
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.terminal.view import play
+from course.sandbox.world.world import World
 chosen = choose(sys.argv[1])
 world = World(chosen.scene, chosen.settings)
 if "--fail" in sys.argv:

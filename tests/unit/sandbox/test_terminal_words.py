@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.sandbox.loading import choose
-from course.sandbox.views.terminal_pace import Pacer, speed_in_words
-from course.sandbox.views.terminal_words import bars, clean, head, keys_line, panel, shown, wrapped
-from course.sandbox.world import World
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.terminal.pace import Pacer, speed_in_words
+from course.sandbox.views.terminal.words import bars, clean, head, keys_line, panel, shown, wrapped
+from course.sandbox.world.world import World
 
 
 def plain(line) -> str:

@@ -21,12 +21,13 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from course.errors import MissingCapabilityError, UsageError
-from course.sandbox.loading import choose
-from course.sandbox.views import web
-from course.sandbox.views.web_app import STATIC, Guard, make_app
-from course.sandbox.views.web_messages import FRAME_HEAD
-from course.sandbox.views.web_session import MAX_PAGES, Session
-from course.sandbox.world import World
+from course.extras import PARTS, require
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.web import view as web
+from course.sandbox.views.web.app import STATIC, Guard, make_app
+from course.sandbox.views.web.messages import FRAME_HEAD
+from course.sandbox.views.web.session import MAX_PAGES, Session
+from course.sandbox.world.world import World
 
 PORT, TOKEN = 8765, "a-token-of-some-length"
 BASE = f"http://127.0.0.1:{PORT}"
@@ -346,8 +347,8 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
     chosen = choose("head-on")
     with pytest.raises(MissingCapabilityError) as caught:
         web.play(World(chosen.scene), chosen.scene, say=print)
-    assert "starlette, uvicorn, websockets" in caught.value.message
-    for name in web.PACKAGES:
+    assert "starlette and uvicorn and websockets" in caught.value.message
+    for name in PARTS["web"].packages:
         assert f"'{name}" in caught.value.help
     assert "pip install" in caught.value.help
 
@@ -357,7 +358,7 @@ def test_the_requirements_are_those_of_the_courses_metadata(monkeypatch: pytest.
     monkeypatch.setattr("importlib.metadata.requires", lambda name: lines)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(MissingCapabilityError) as caught:
-        web.need()
+        require("web")
     assert caught.value.help.endswith("pip install 'starlette>=7.5' 'uvicorn<9,>=8' 'websockets'")
 
 

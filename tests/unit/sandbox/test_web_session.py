@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course.errors import MissingCapabilityError
-from course.sandbox.loading import choose
-from course.sandbox.running import run
-from course.sandbox.views.web_session import Page, Session
-from course.sandbox.world import World
+from course.sandbox.runs.running import run
+from course.sandbox.scene.loading import choose
+from course.sandbox.views.web.session import Page, Session
+from course.sandbox.world.world import World
 
 
 class Clock:

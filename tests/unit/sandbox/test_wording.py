@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import ContentError, UsageError
-from course.sandbox.expression import evaluate
-from course.sandbox.loading import FOLDER, choose, question, read_scene, scene_ids, values_of
-from course.sandbox.predicting import compare
-from course.sandbox.running import run
-from course.sandbox.settings import SETTINGS
+from course.sandbox.runs.running import run
+from course.sandbox.scene.expression import evaluate
+from course.sandbox.scene.loading import FOLDER, choose, question, read_scene, scene_ids, values_of
+from course.sandbox.scene.predicting import compare
+from course.sandbox.scene.settings import SETTINGS
+from course.sandbox.scene.wording import fill, used
 from course.sandbox.views.story import Experiment
-from course.sandbox.wording import fill, used
-from course.sandbox.world import World
+from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
     from pathlib import Path

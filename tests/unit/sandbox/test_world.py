@@ -14,9 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course.errors import UsageError
-from course.sandbox.loading import choose
-from course.sandbox.scene import Body, Material, Repeat, Scene
-from course.sandbox.world import MAX_BODIES, World
+from course.sandbox.scene.loading import choose
+from course.sandbox.scene.model import Body, Material, Repeat, Scene
+from course.sandbox.world.world import MAX_BODIES, World
 
 if TYPE_CHECKING:
     import pymunk

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from course.grading.quiz import EXERCISE_ID as QUIZ
-from course.grading.verdict import CheckResult, Status, Visibility
+from course.scoring.verdict import CheckResult, Status, Visibility
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from course.grading.records import GradedExercise
-    from course.grading.results import Effective
+    from course.grading.gradebook.records import GradedExercise
+    from course.grading.results.effective import Effective
 
 __all__ = ["CheckTally", "DiagnosisTally", "ExerciseTally", "Listed", "Tally", "TaskTally"]
 

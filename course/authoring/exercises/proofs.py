@@ -1,0 +1,265 @@
+"""What only grading can show: the stub fails, the solution and its variants pass, each mutant is caught.
+
+Every submission is graded with all checks, as in a grading run. A verdict that is not what it should be
+becomes a problem at the file, and where possible the line, that an author would open first.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from course.authoring.exercises.checks import public_numbers
+from course.authoring.exercises.mutants import judge, mutant_path
+from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
+from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path
+from course.catalog.reading import read_text
+from course.errors import ContentError
+from course.scoring.verdict import Status, Visibility
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from course.authoring.report import Findings
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise, Mutant
+    from course.scoring.verdict import CheckResult, Verdict
+
+__all__ = ["Proof", "Prover", "plan"]
+
+_INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
+#: Smaller whole numbers are words: "two arguments", "order 4".
+_TELLING = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """One submission to grade and what it must show.
+
+    Attributes:
+        role: "stub", "solution", "accepted" or "mutant".
+        path: the file it is about.
+        source: the submission.
+        mutant, entry_lines: the entry in mutants.toml and the lines of its keys.
+    """
+
+    role: str
+    path: Path
+    source: bytes
+    mutant: Mutant | None = None
+    entry_lines: dict[str, int] | None = None
+
+
+def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proof, ...]:
+    """The submissions that prove an exercise; a file that cannot be one is reported and left out."""
+    solution = solution_path(catalog, exercise)
+    proofs = [
+        Proof("stub", exercise.stub_path, read_text(exercise.stub_path).encode()),
+        Proof("solution", solution, read_text(solution).encode()),
+    ]
+    accepted = accepted_files(catalog, exercise)
+    if not accepted:
+        findings.add(
+            solution.parent / "accepted",
+            None,
+            "accepted",
+            "there is no accepted variant.",
+            "Add correct but unusual code: checks that refuse it are too narrow.",
+        )
+    for path in accepted:
+        _add(proofs, findings, "accepted", path, solution)
+    _plan_mutants(catalog, exercise, findings, proofs, solution)
+    return tuple(proofs)
+
+
+def _plan_mutants(
+    catalog: Catalog, exercise: Exercise, findings: Findings, proofs: list[Proof], solution: Path
+) -> None:
+    document = catalog.mutant_document(exercise)
+    mutants = document.value.mutant
+    for index, mutant in enumerate(mutants):
+        keys = ("file", "task", "check", "diagnosis")
+        lines = {key: document.lines.line(("mutant", index, key)) for key in keys}
+        path = mutant_path(catalog, exercise, mutant)
+        if path.is_file():
+            _add(proofs, findings, "mutant", path, solution, mutant, lines)
+        else:
+            findings.add(
+                document.path,
+                lines["file"],
+                "mutants",
+                f"{mutant.file} does not exist.",
+                f"Write {path.name}.",
+            )
+    listed = {mutant.file for mutant in mutants}
+    for path in mutant_files(catalog, exercise):
+        if path.name not in listed:
+            findings.add(path, None, "mutants", "mutants.toml does not list this file.", "Add a [[mutant]].")
+    for task in exercise.task:
+        if task.id not in {mutant.task for mutant in mutants}:
+            findings.add(
+                document.path,
+                None,
+                "mutants",
+                f"no mutant breaks task {task.id}, so nothing shows that its checks catch anything.",
+                "Add one for each mistake that students make.",
+            )
+
+
+def _add(
+    proofs: list[Proof],
+    findings: Findings,
+    role: str,
+    path: Path,
+    solution: Path,
+    mutant: Mutant | None = None,
+    lines: dict[str, int] | None = None,
+) -> None:
+    try:
+        proofs.append(Proof(role, path, compose(solution, path), mutant, lines))
+    except ContentError as error:
+        findings.add_error(error)
+
+
+class Prover:
+    """Reports what the gradings of one exercise's proofs do not bear out."""
+
+    def __init__(
+        self, exercise: Exercise, checks: tuple[CheckSource, ...], mutants_toml: Path, findings: Findings
+    ) -> None:
+        self.exercise = exercise
+        self._checks = {check.id: check for check in checks}
+        self._mutants_toml = mutants_toml
+        self._findings = findings
+        self._public = public_numbers(exercise)
+
+    def judge(self, proof: Proof, verdict: Verdict) -> None:
+        """Report what is wrong with the verdict on one proof."""
+        if self._is_our_fault(proof, verdict):
+            return
+        if proof.mutant is not None:
+            for fault in judge(proof.mutant, verdict):
+                line = (proof.entry_lines or {}).get(fault.key)
+                text = f"mutant {proof.mutant.file} {fault.message}"
+                self._findings.add(self._mutants_toml, line, "mutant", text, fault.fix)
+        elif verdict.state != "graded":
+            why = verdict.error.message if verdict.error else verdict.state
+            fix = verdict.error.help if verdict.error and verdict.error.help else "Correct the file."
+            self._findings.add(proof.path, None, proof.role, f"cannot be graded: {why}", fix)
+        elif proof.role == "stub":
+            self._judge_stub(proof, verdict)
+        else:
+            self._judge_correct(proof, verdict)
+        self._judge_words(verdict)
+
+    def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
+        """Report checks that broke instead of checking."""
+        if verdict.state == "grader_error" and verdict.error:
+            self._findings.add(
+                self.exercise.checks_path,
+                None,
+                "grader",
+                f"the checks break on {proof.path.name}: {verdict.error.message}",
+                verdict.error.help or "Correct the checks.",
+            )
+        for check in verdict.checks:
+            if check.status is Status.GRADER_ERROR:
+                self._findings.add(
+                    *self._place(check.id, self.exercise.checks_path),
+                    "grader",
+                    f"check {check.id} breaks on {proof.path.name}: {check.message}",
+                    "Correct the check; whatever a student returns must be a finding.",
+                )
+        return verdict.state == "grader_error"
+
+    def _judge_stub(self, proof: Proof, verdict: Verdict) -> None:
+        for check in verdict.checks:
+            if check.status is Status.PASS:
+                self._findings.add(
+                    *self._place(check.id, proof.path),
+                    "stub",
+                    f"the untouched stub passes check {check.id} of task {check.task}.",
+                    "Let the check fail on code that does nothing.",
+                )
+        for task in self.exercise.task:
+            if not any(c.task == task.id and c.status is not Status.PASS for c in verdict.checks):
+                self._findings.add(
+                    proof.path,
+                    None,
+                    "stub",
+                    f"no check of task {task.id} fails on the stub.",
+                    "Give the task a check that does.",
+                )
+
+    def _judge_correct(self, proof: Proof, verdict: Verdict) -> None:
+        """Full marks, and the checks that ran are the ones the files declare."""
+        for check in verdict.checks:
+            if check.status is not Status.PASS:
+                self._findings.add(
+                    proof.path,
+                    self._line_of(proof.path, check.task),
+                    proof.role,
+                    f"check {check.id} ends with {check.status}: {check.message or check.blocked_by}"
+                    f" (expected {check.expected}, got {check.actual}).",
+                    "Correct the code, or the check if the code is right.",
+                )
+        ran = {check.id for check in verdict.checks}
+        for check_id in sorted(ran ^ set(self._checks)):
+            self._findings.add(
+                *self._place(check_id, self.exercise.checks_path),
+                "check",
+                f"check {check_id} ran, but no plain function declares it."
+                if check_id in ran
+                else f"check {check_id} is declared, but did not run.",
+                "Write each check as one top-level function whose name starts with test_.",
+            )
+        if not verdict.checks or verdict.score < verdict.max_score or verdict.max_score <= 0:
+            message = f"scores {verdict.score:g} of {verdict.max_score:g} points."
+            self._findings.add(proof.path, None, proof.role, message, "It must score full marks.")
+
+    def _judge_words(self, verdict: Verdict) -> None:
+        """What a hidden check says holds no value that redaction is there to hide."""
+        for check in verdict.checks:
+            if check.visibility is Visibility.HIDDEN and check.status is Status.FAIL:
+                for number in _leaks(check, self._public):
+                    self._findings.add(
+                        *self._place(check.id, self.exercise.checks_path),
+                        "leak",
+                        f"hidden check {check.id} shows the number {number} in its words.",
+                        "Say it in words; put values into input, expected and actual, which are not shown.",
+                    )
+
+    def _place(self, check_id: str, otherwise: Path) -> tuple[Path, int | None]:
+        check = self._checks.get(check_id)
+        return (check.path, check.line) if check else (otherwise, None)
+
+    @staticmethod
+    def _line_of(path: Path, task: str) -> int | None:
+        """The line a task's function starts on in this file."""
+        found = signatures(parse(path)).get(task)
+        return found.line if found else None
+
+
+def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
+    """Numbers in a check's words that give something away: decimals no student has, and its own values."""
+    words = f"{check.message} {check.help}"
+    for match in DECIMAL.finditer(words):
+        if match[0] not in public:
+            yield match[0]
+    values = set(_numbers([check.input, check.expected, check.actual]))
+    for match in _INTEGER.finditer(words):
+        if abs(int(match[0])) >= _TELLING and float(match[0]) in values:
+            yield match[0]
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        yield float(value)
+    elif isinstance(value, dict):
+        for item in value.values():
+            yield from _numbers(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _numbers(item)

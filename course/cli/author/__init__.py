@@ -1,0 +1,1 @@
+"""``course author``: write lessons and exercises, and prove that they are right. Needs a checkout."""

@@ -1,0 +1,402 @@
+"""``course author``: write lessons and exercises, and prove that they are right. Needs a checkout."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.authoring import scaffold
+from course.authoring.audit import audit
+from course.authoring.exercises.kill_table import kill_table
+from course.authoring.exercises.mutants import run_mutants
+from course.authoring.exercises.variants import instructors
+from course.authoring.packing import write_pack
+from course.catalog.models import CourseRef
+from course.cli.author.coverage import counted, coverage, shown
+from course.cli.author.replies import (
+    AuthorCheck,
+    AuthorMutants,
+    AuthorNew,
+    AuthorPack,
+    AuthorProblem,
+    MutantRow,
+)
+from course.cli.frame import files
+from course.cli.frame.completion import exercise_ids, lesson_ids
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import load_catalog
+from course.cli.frame.meter import meter
+from course.errors import ContentError, UsageError
+from course.progress.workspace import write_atomically
+from course.sandbox.scene.loading import scene_ids
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.authoring.exercises.mutants import MutantOutcome
+    from course.authoring.report import AuditReport
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+__all__ = [
+    "app",
+    "build",
+    "check",
+    "coverage",
+    "mutants",
+    "new_exercise",
+    "new_lesson",
+    "new_question",
+    "new_scene",
+    "pack",
+]
+
+_HELP = {"help_option_names": ["-h", "--help"]}
+
+app = typer.Typer(
+    help="Write and check the course itself.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings=_HELP,
+)
+_new = typer.Typer(
+    help="Write the files of something new.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings=_HELP,
+)
+app.add_typer(_new, name="new", epilog="Example: course author new exercise pendulum-clock")
+
+
+def _any_id(incomplete: str) -> list[str]:
+    scenes = [name for name in scene_ids() if name.startswith(incomplete)]
+    return [*lesson_ids(incomplete), *exercise_ids(incomplete), *scenes]
+
+
+@_new.command("exercise", epilog="Example: course author new exercise pendulum-clock")
+def new_exercise(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+    function: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--function", metavar="'NAME(ARGUMENTS)'", help="A function that it asks for; as often as needed."
+        ),
+    ] = None,
+    title: Annotated[str, typer.Option("--title", metavar="WORDS", help="What people call it.")] = "",
+    summary: Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")] = "",
+    lesson: Annotated[
+        str,
+        typer.Option(
+            "--lesson",
+            metavar="ID",
+            help="To be read first; the last one if left out.",
+            autocompletion=lesson_ids,
+        ),
+    ] = "",
+) -> int:
+    """Write an exercise with blanks to fill in.
+
+    In a terminal it asks for what was not given: the functions, and a line about each. Every file has them
+    then, and only what nobody else can know is left blank. Nothing is overwritten. `course author check ID`
+    names each blank that is left.
+    """
+    console, catalog = current(), load_catalog()
+    asked = [scaffold.Function.parse(text) for text in function or ()]
+    if not asked and console.interactive:
+        title = title or console.ask("Title: ") or ""
+        summary = summary or console.ask("What it is about, in one line: ") or ""
+        asked = list(_ask_functions(console))
+    written = scaffold.new_exercise(catalog, name, asked, title=title, summary=summary, lesson=lesson)
+    return _report_new(catalog, "exercise", name, written)
+
+
+def _ask_functions(console: Console) -> Iterator[scaffold.Function]:
+    """Functions and what they give, until an empty line."""
+    console.line("Its functions, each as in the stub: swing_period(length, gravity). Enter ends the list.")
+    while signature := console.ask("Function: "):
+        try:
+            found = scaffold.Function.parse(signature)
+        except UsageError as error:
+            console.line(f"{error.message} {error.help}")
+            continue
+        gives = console.ask(f"What {found.name} gives, with units: ") or ""
+        yield scaffold.Function(found.signature, gives)
+
+
+@_new.command("lesson", epilog="Example: course author new lesson contact-forces")
+def new_lesson(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+) -> int:
+    """Write a lesson with blanks to fill in.
+
+    Nothing is overwritten. Put its id into syllabus.toml where it is to be read.
+    """
+
+    catalog = load_catalog()
+    return _report_new(catalog, "lesson", name, scaffold.new_lesson(catalog, name))
+
+
+@_new.command("question", epilog="Example: course author new question contact-forces")
+def new_question(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+) -> int:
+    """Write a quiz question with blanks to fill in.
+
+    Nothing is overwritten. It has four variants, each with one right option and three wrong ones.
+    """
+
+    catalog = load_catalog()
+    return _report_new(catalog, "question", name, scaffold.new_question(catalog, name))
+
+
+@_new.command("scene", epilog="Example: course author new scene bouncing-ball")
+def new_scene(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+) -> int:
+    """Write a sandbox scene that runs, with blanks to fill in.
+
+    Nothing is overwritten. Play it with `course sandbox play ID`.
+    """
+
+    catalog = load_catalog()
+    return _report_new(catalog, "scene", name, scaffold.new_scene(catalog, name))
+
+
+def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...]) -> int:
+    console = current()
+    written = tuple(shown(path, catalog) for path in files)
+    console.heading(f"Wrote {kind} {name}.")
+    for path in written:
+        console.line(path, indent=2)
+    if kind == "lesson":
+        console.note("Put its id into syllabus.toml, where it is to be read.")
+    then = "sandbox play" if kind == "scene" else "author check"
+    console.note(f"Fill in what is marked, then run: course {then} {name}")
+    console.emit(AuthorNew(kind=kind, id=name, files=written))
+    return 0
+
+
+@app.command(epilog="Example: course author check integrators")
+def check(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="ID",
+            help="A lesson, an exercise, a question or a scene; everything if left out.",
+            autocompletion=_any_id,
+        ),
+    ] = None,
+) -> int:
+    """Prove that the course is right.
+
+    Links lead somewhere, hints and titles are there, points add up, stubs fail, solutions and accepted
+    variants score full marks, and each mutant loses only its task's points, with the diagnosis it names.
+    Scenes hold together, and every formula in their texts has a value. Exit code 1 if something is wrong.
+    """
+
+    console, catalog = current(), load_catalog()
+    with meter(console) as on_progress:
+        report = audit(catalog, name, on_progress=on_progress)
+    _show_report(console, report)
+    _emit_report(console, catalog, report)
+    return 0 if report.ok else 1
+
+
+def _show_report(console: Console, report: AuditReport) -> None:
+    for problem in report.problems:
+        console.line((problem.where, "bold"))
+        console.line(problem.message, indent=2)
+        console.line((problem.fix, "dim"), indent=2)
+    looked = (
+        f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}, "
+        f"{counted(len(report.questions), 'question')}, {counted(len(report.scenes), 'scene')}, "
+        f"{counted(report.checks, 'check')}, "
+        f"{counted(report.graded, 'submission')} graded"
+    )
+    level = f" at {report.isolation}" if report.isolation else ""
+    if report.ok:
+        console.line(("All is well", "green"), f": {looked}{level} in {report.seconds:.1f} s.")
+    else:
+        found = counted(len(report.problems), "problem")
+        console.line((found, "red"), f" in {looked}{level} in {report.seconds:.1f} s.")
+
+
+def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
+    if not console.json:
+        return
+
+    try:
+        course = catalog.ref
+    except ContentError:
+        course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported below
+    console.emit(
+        AuthorCheck(
+            ok=report.ok,
+            exit_code=0 if report.ok else 1,
+            course=course,
+            lessons=report.lessons,
+            exercises=report.exercises,
+            questions=report.questions,
+            scenes=report.scenes,
+            checks=report.checks,
+            graded=report.graded,
+            isolation=report.isolation,
+            seconds=round(report.seconds, 3),
+            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in report.problems),
+        )
+    )
+
+
+@app.command(epilog="Example: course author build collisions")
+def build(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
+        ),
+    ] = None,
+) -> int:
+    """Compute what is shipped so that a diagnosis works at home, where there are no solutions.
+
+    Writes `hypotheses.json` into each exercise that has hypotheses: what every known wrong program answers to
+    the exercise's questions, as fingerprints. `course author check` refuses one that is out of date.
+    """
+    from course.authoring.exercises import build as desk
+    from course.authoring.exercises.variants import instructors
+    from course.cli.author.replies import AuthorBuild
+
+    console, catalog = current(), load_catalog()
+    instructors(catalog)
+    chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
+    written = [shown(path, catalog) for exercise in chosen if (path := desk.build(catalog, exercise))]
+    for file in written:
+        console.line(f"Wrote {file}")
+    if not written:
+        console.note("None of these exercises has hypotheses.")
+    console.emit(AuthorBuild(files=tuple(written)))
+    return 0
+
+
+@app.command(epilog="Example: course author mutants integrators")
+def mutants(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
+        ),
+    ] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option("--table", metavar="FILE", help="Write what is caught by what, as Markdown."),
+    ] = None,
+) -> int:
+    """Show what each wrong solution gets to read.
+
+    Every mutant is graded; the message, the advice and the diagnosis are those its author would see. Exit
+    code 1 if one is not caught as it says.
+    """
+
+    console, catalog = current(), load_catalog()
+    instructors(catalog)
+    if table is not None and name is not None:
+        raise UsageError("--table writes the page of all exercises.", help=f"Leave {name} out.")
+    chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
+    rows = []
+    for exercise in chosen:
+        with meter(console) as on_progress:
+            outcomes = run_mutants(catalog, exercise, on_progress=on_progress)
+        _show_mutants(console, exercise, outcomes)
+        rows += [_mutant_row(exercise, outcome) for outcome in outcomes]
+    ok = not any(row.faults for row in rows)
+    wrong = sum(bool(row.faults) for row in rows)
+    console.line(
+        f"{counted(len(rows), 'mutant')}: "
+        + ("each is caught as it says." if ok else f"{wrong} not caught as they should be.")
+    )
+    if table is not None and ok:
+        _write_table(console, catalog, table)
+    console.emit(AuthorMutants(ok=ok, exit_code=0 if ok else 1, mutants=tuple(rows)))
+    return 0 if ok else 1
+
+
+def _write_table(console: Console, catalog: Catalog, path: Path) -> None:
+    full = files.target(path, "--table", ("md",))
+    write_atomically(full, kill_table(catalog).encode())  # generated, and under version control: no copy
+    console.line(f"Wrote {full}")
+
+
+def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:
+    for outcome in outcomes:
+        mutant = outcome.mutant
+        console.heading(
+            f"{exercise.id}: {mutant.file}", f"breaks {mutant.task}, loses {outcome.lost:g} points"
+        )
+        console.item("believes", mutant.misconception)
+        console.item("caught by", f"{mutant.check} with {outcome.diagnosis}")
+        if outcome.message:
+            console.item("reads", outcome.message)
+        if outcome.help:
+            console.item("advice", outcome.help)
+        for fault in outcome.faults:
+            console.item("wrong", f"{fault.message} {fault.fix}", style="red")
+        console.blank()
+
+
+def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
+    return MutantRow(
+        exercise=exercise.id,
+        file=outcome.mutant.file,
+        task=outcome.mutant.task,
+        misconception=outcome.mutant.misconception,
+        check=outcome.mutant.check,
+        diagnosis=outcome.diagnosis,
+        caught_by=outcome.caught_by,
+        lost=outcome.lost,
+        message=outcome.message,
+        help=outcome.help,
+        faults=tuple(fault.message for fault in outcome.faults),
+    )
+
+
+@app.command(epilog="Example: course author pack --solutions integrators -o solutions.coursepack")
+def pack(
+    solutions: Annotated[
+        list[str],
+        typer.Option(
+            "--solutions", metavar="EXERCISE", help="Pack its solution.", autocompletion=exercise_ids
+        ),
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="What to write.")],
+    more: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[EXERCISE]...", help="More exercises.", autocompletion=exercise_ids),
+    ] = None,
+) -> int:
+    """Write the file that hands out solutions after the deadline.
+
+    It holds each exercise's model solution and the prose that goes with it; `course solution` opens it. The
+    same solutions give the same bytes. Nothing is overwritten.
+    """
+    import hashlib
+
+    console, catalog = current(), load_catalog()
+    packed = write_pack(catalog, [*solutions, *(more or [])], output)
+    digest = hashlib.sha256(output.read_bytes()).hexdigest()
+    console.line(f"Wrote {output}.")
+    for exercise_id, names in packed.items():
+        console.item(exercise_id, ", ".join(names))
+    console.note("A student puts it to use with `course solution`, after passing the exercise.")
+    console.emit(
+        AuthorPack(
+            course=catalog.ref,
+            output=str(output),
+            sha256=digest,
+            solutions=packed,
+        )
+    )
+    return 0
+
+
+app.command(epilog="Example: course author coverage --write")(coverage)

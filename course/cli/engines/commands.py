@@ -1,0 +1,224 @@
+"""``course engines``: which real engines this machine has, and the same scenarios through each of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.engines import files as engines_files
+from course.cli.engines.files import rows
+from course.cli.engines.replies import Engine, EngineList, EngineMachine, Engines, EngineScenario
+from course.cli.frame import files
+from course.cli.frame.completion import engine_ids, scenario_ids
+from course.cli.frame.console import current
+from course.cli.frame.meter import meter
+from course.engines.registry import ENGINES
+from course.errors import MissingCapabilityError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from course.cli.frame.console import Console
+    from course.cli.frame.replies import WrittenFile
+    from course.engines.results import Comparison, EngineState
+
+__all__ = ["app", "compare", "list_engines"]
+
+app = typer.Typer(
+    help="Compare real physics engines on this machine.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+#: The longest step and the shortest that scenarios make sense with, s.
+_LONGEST, _SHORTEST = 0.02, 1e-4
+
+
+@app.command("list", epilog="Example: course engines list")
+def list_engines() -> int:
+    """List the engines and the scenarios.
+
+    Each installed engine is started once, in a process of its own, to see whether it can. For what is missing
+    the command that installs it is shown.
+    """
+    from course.engines.compare import state_of
+    from course.engines.scenarios import SCENARIOS
+
+    console = current()
+    with console.working("Starting each engine"):
+        states = tuple(state_of(info, probe=True) for info in ENGINES.values())
+    console.heading("Engines")
+    for state in states:
+        version = f"{state.package} {state.version}" if state.version else "not installed"
+        facts = f"{state.name}; {version}; {state.licence}; {state.about}"
+        console.item(state.id, facts, width=8)
+        if not state.usable:
+            trouble = state.missing if not state.version and state.command else f"{state.missing}. "
+            console.line(f"{trouble}: {state.command}" if state.command else trouble.rstrip(), indent=12)
+    console.heading("Scenarios")
+    for scenario in SCENARIOS.values():
+        console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
+    console.note(("Next: course engines compare --quick", "bold"))
+    console.emit(EngineList(engines=tuple(map(_engine, states)), scenarios=_scenarios(SCENARIOS)))
+    return 0
+
+
+@app.command(epilog="Example: course engines compare --engine mujoco --engine ode --scenario bounce --quick")
+def compare(
+    engine: Annotated[
+        list[str] | None,
+        typer.Option("--engine", metavar="E", help="Only this one; repeatable.", autocompletion=engine_ids),
+    ] = None,
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--scenario", metavar="S", help="Only this one; repeatable.", autocompletion=scenario_ids
+        ),
+    ] = None,
+    dt: Annotated[
+        list[str] | None,
+        typer.Option("--dt", metavar="STEP", help="Step in s, as 0.005 or 1/240; repeatable."),
+    ] = None,
+    repeat: Annotated[
+        int, typer.Option("--repeat", min=1, max=100, help="Measure each so many times; show the spread.")
+    ] = 1,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer starts, steps and repetitions.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Measure again what is remembered.")] = False,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE", help="Write the figures: .png, .svg or .pdf.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", metavar="FILE", help="Write every number as a table.")
+    ] = None,
+) -> int:
+    """Run the same scenarios through every installed engine.
+
+    Each engine runs in a process of its own; one that crashes or hangs is a line that says so. What is not
+    installed is shown from a reference measurement, marked as such. Exit code 4 if nothing could be run.
+    """
+    from course.cli.engines import screen as engines_screen
+    from course.engines.compare import Request
+    from course.engines.compare import compare as run_comparison
+    from course.engines.findings import findings
+
+    console = current()
+    plot = files.target(plot, "--plot", files.FORMATS) if plot else None
+    csv = files.target(csv, "--csv", ("csv",)) if csv else None
+    request = Request(
+        tuple(engine or ()), tuple(scenario or ()), tuple(map(_step, dt or ())), repeat, quick, fresh
+    )
+    with meter(console) as progress:
+        comparison = run_comparison(request, progress)
+    said = findings(comparison.rows)
+    engines_screen.show(console, comparison, said)
+    plots, table = _write(console, comparison, plot, csv)
+    code = 0 if comparison.ran else MissingCapabilityError.exit_code
+    if code:
+        console.line(("No engine could be run on this machine.", "bold"))
+    console.emit(_reply(comparison, said, code, plots, table))
+    return code
+
+
+def _write(
+    console: Console, comparison: Comparison, plot: Path | None, csv: Path | None
+) -> tuple[tuple[WrittenFile, ...], WrittenFile | None]:
+    """Write the figures and the table that were asked for, and say where they are."""
+    plots: tuple[WrittenFile, ...] = ()
+    if plot:
+        with console.working("Drawing"):
+            pictures = engines_files.figures(comparison, plot)
+        plots = tuple(files.write(path, data, why="engines") for path, data in pictures)
+        if not plots:
+            console.line("No figure: steps need three values of --dt, speed needs boxes and stack.")
+    table = files.write(csv, engines_files.table(comparison), why="engines") if csv else None
+    for file in (*plots, *([table] if table else [])):
+        if file.backup:
+            console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
+        console.line(f"Wrote {file.path}")
+    return plots, table
+
+
+def _step(text: str) -> float:
+    """A step from 0.005 or 1/240, s."""
+    top, slash, bottom = text.partition("/")
+    try:
+        step = float(top) / (float(bottom) if slash else 1.0)
+    except (ValueError, ZeroDivisionError):
+        raise UsageError(
+            f"--dt {text}: this is no step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
+        ) from None
+    if not _SHORTEST <= step <= _LONGEST:
+        raise UsageError(
+            f"--dt {text}: the step is not between {_SHORTEST:g} and {_LONGEST:g} s.",
+            help="The scenarios last from half a second to ten seconds; 1/240 is usual.",
+            code="bad_step",
+        )
+    return step
+
+
+def _engine(state: EngineState) -> Engine:
+    return Engine(
+        id=state.id,
+        name=state.name,
+        package=state.package,
+        version=state.version,
+        extra=state.extra,
+        licence=state.licence,
+        about=state.about,
+        usable=state.usable,
+        missing=state.missing,
+        command=state.command,
+    )
+
+
+def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
+    from course.engines.scenarios import SCENARIOS
+
+    return tuple(
+        EngineScenario(
+            id=one.id,
+            title=one.title,
+            question=one.question,
+            quantity=one.quantity,
+            unit=one.unit,
+            truth=one.truth,
+            source=one.source,
+        )
+        for one in (SCENARIOS[name] for name in ids)
+    )
+
+
+def _reply(
+    comparison: Comparison,
+    said: Sequence[str],
+    code: int,
+    plots: tuple[WrittenFile, ...],
+    csv: WrittenFile | None,
+) -> Engines:
+    here, shipped = comparison.machine, comparison.reference
+    reference = None
+    if shipped is not None:
+        there = shipped.machine
+        reference = EngineMachine(
+            cpu=there.cpu,
+            system=there.system,
+            cores=there.cores,
+            python=there.python,
+            measured=shipped.measured,
+        )
+    return Engines(
+        ok=code == 0,
+        exit_code=code,
+        machine=EngineMachine(cpu=here.cpu, system=here.system, cores=here.cores, python=here.python),
+        reference=reference,
+        quick=comparison.quick,
+        engines=tuple(map(_engine, comparison.engines)),
+        scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
+        rows=rows(comparison),
+        findings=tuple(said),
+        plots=plots,
+        csv=csv,
+    )

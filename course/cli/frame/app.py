@@ -1,0 +1,194 @@
+"""The program: take the global options, run one command, say how it ended.
+
+This is the only place where an error becomes words and an exit code.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import sys
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from course.cli.frame.console import Console, install
+from course.cli.frame.options import Line, hoist
+from course.cli.frame.registry import COMMANDS, HOME, LazyGroup, build, find
+from course.errors import CourseError, NotFoundError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+__all__ = ["main", "run"]
+
+INTERRUPTED = 130
+OUR_FAULT = 70
+
+
+def main() -> NoReturn:
+    """The ``course`` command."""
+    if "_COURSE_COMPLETE" in os.environ:
+        _program(fancy=False).main(prog_name="course")
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command line and return its exit code; whatever happens, nothing is raised."""
+    line = hoist(arguments)
+    console = install(Console(line.settings))
+    schema = _schema(line)
+    try:
+        code = _dispatch(line, console)
+        if code == INTERRUPTED and not console.emitted:
+            raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        code = _say(console, schema, INTERRUPTED, "interrupted", "Interrupted; what was done is kept.")
+    except CourseError as error:
+        code = _say(console, schema, error.exit_code, error.code, error.message, error.help)
+    except Exception as error:  # noqa: BLE001 - the boundary: nothing passes it
+        code = (
+            _usage(console, schema, error)
+            if hasattr(error, "format_message")
+            else _crash(console, schema, error)
+        )
+    if console.json and not console.emitted:
+        _emit(console, schema, code)
+    console.flush()
+    return code
+
+
+def _dispatch(line: Line, console: Console) -> int:
+    if line.problem:
+        raise UsageError(line.problem, help="Try `course --help`.")
+    if line.version:
+        return _version(console)
+    if line.settings.directory is not None:
+        _enter(line.settings.directory)
+    program = _program(fancy=console.fancy)
+    if not console.json:
+        return _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
+    # Whatever a library prints by itself must not end up beside the one object.
+    stray = io.StringIO()
+    with contextlib.redirect_stdout(stray):
+        code = _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
+    if stray.getvalue() and not console.emitted and {"-h", "--help"} & set(line.rest):
+        from course.cli.frame.replies import Help
+
+        console.emit(Help(text=stray.getvalue()))
+    elif stray.getvalue():
+        console.raw(stray.getvalue())
+    return code
+
+
+def _program(*, fancy: bool) -> Any:
+    app = build(LazyGroup, fancy=fancy)
+    app.callback(epilog="Start with: course demo, then course init my-course.")(_root)
+    return typer.main.get_command(app)
+
+
+def _root(
+    ctx: typer.Context,
+    # Taken out of the line before it is parsed; declared so that --help and completion know them.
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,  # noqa: ARG001
+    plain: Annotated[  # noqa: ARG001
+        bool, typer.Option("--plain", help="No boxes, no colour, no motion; one fact a line.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the result.")] = False,  # noqa: ARG001
+    directory: Annotated[  # noqa: ARG001
+        str | None, typer.Option("-C", metavar="DIR", help="Work in this folder.")
+    ] = None,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,  # noqa: ARG001
+) -> int | None:
+    """Learn physics simulation for robotics: lessons, exercises and their checks.
+
+    Without a command: where you are and what is next. Everything works offline.
+    """
+    if ctx.invoked_subcommand is not None or ctx.resilient_parsing:
+        return None
+    home: Callable[[], int] = find(*HOME)
+    return home()
+
+
+def _schema(line: Line) -> str:
+    command = next((word for word in line.rest if not word.startswith("-")), None)
+    if command is None:
+        return "course.version/1" if line.version else "course.status/1"
+    return f"course.{command}/1" if command in COMMANDS else "course.error/1"
+
+
+def _version(console: Console) -> int:
+    from course import __version__
+
+    python = ".".join(map(str, sys.version_info[:3]))
+    console.line(f"course {__version__} (Python {python})")
+    if console.json:
+        from course.cli.frame.replies import Version
+
+        console.emit(Version(version=__version__, python=python))
+    return 0
+
+
+def _enter(directory: str) -> None:
+    try:
+        os.chdir(directory)
+    except OSError as error:
+        raise NotFoundError(
+            f"-C names {directory}, which cannot be entered ({error.strerror}).",
+            help="Name a folder that exists.",
+            code="directory_not_found",
+        ) from error
+
+
+def _code(result: Any) -> int:
+    return result if isinstance(result, int) else 0
+
+
+def _say(
+    console: Console,
+    schema: str,
+    exit_code: int,
+    code: str,
+    message: str,
+    help: str = "",  # noqa: A002
+) -> int:
+    """Report an ending that is no result."""
+    console.error(message, help)
+    if console.json and not console.emitted:
+        from course.cli.frame.replies import ErrorBody, ErrorReply
+
+        console.emit(
+            ErrorReply(
+                schema=schema, exit_code=exit_code, error=ErrorBody(code=code, message=message, help=help)
+            )
+        )
+    return exit_code
+
+
+def _emit(console: Console, schema: str, code: int) -> None:
+    """Keep the promise of one object for a command that has nothing to add to its exit code."""
+    from course.cli.frame.replies import Bare
+
+    console.emit(Bare(schema=schema, ok=code == 0, exit_code=code))
+
+
+def _usage(console: Console, schema: str, error: Any) -> int:
+    """A line that typer's parser refused. Known by its shape: the class moved between typer's versions."""
+    context = getattr(error, "ctx", None)
+    path = context.command_path if context is not None else "course"
+    if type(error).__name__.startswith("NoArgsIsHelp"):
+        if not console.json:
+            console.error(str(error.format_message()))
+        return _say(console, schema, UsageError.exit_code, "usage", f"`{path}` needs a command.")
+    message = str(error.format_message()).strip()
+    return _say(console, schema, UsageError.exit_code, "usage", message, f"See `{path} --help`.")
+
+
+def _crash(console: Console, schema: str, error: BaseException) -> int:
+    """Our fault: the details go to a file, one line to the screen."""
+    from course.cli.frame.crash import write_report
+
+    where = write_report(error)
+    message = f"A fault in the course, not in your work ({type(error).__name__}); the details are in {where}."
+    return _say(console, schema, OUR_FAULT, "internal", message)

@@ -1,0 +1,388 @@
+"""The only place that prints.
+
+Three shapes of output, decided once per run:
+
+- fancy: a terminal; wrapped to its width, coloured unless NO_COLOR says otherwise;
+- plain: a pipe, a log, ``--plain`` or TERM=dumb; one fact a line, no boxes, no colour, no motion;
+- json: one object on standard output, and every word meant for a person on standard error.
+
+Rich is imported only for the first. Commands call ``current()`` and never ``print``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import sys
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TextIO, cast
+
+from course.errors import InternalError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    import msgspec
+    from rich.console import Console as RichConsole
+    from rich.text import Text
+
+__all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
+
+#: Long lines of prose are hard to read however wide the window is.
+MAX_WIDTH = 100
+#: Work that takes less than this shows nothing while it runs. In s.
+PATIENCE = 0.5
+
+#: Colour repeats what a word already says; it never says anything alone.
+STATUS_STYLE = {
+    "pass": "green",
+    "fail": "red",
+    "error": "red",
+    "timeout": "red",
+    "memory": "red",
+    "crash": "red",
+    "skip": "yellow",
+    "ungradable": "red",
+    "grader_error": "magenta",
+}
+
+Piece = str | tuple[str, str]
+
+#: Control characters other than tab and newline.
+_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The global options, as they were given anywhere on the command line."""
+
+    json: bool = False
+    plain: bool = False
+    quiet: bool = False
+    directory: str | None = None
+
+
+class _Stream:
+    """A text stream whose reader may go away: ``course lessons | head -1`` is not an error."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._open = True
+
+    def write(self, text: str) -> int:
+        self._unless_gone(lambda: self._stream.write(text))
+        return len(text)
+
+    def write_bytes(self, data: bytes) -> None:
+        """Write UTF-8 bytes as they are, whatever encoding the stream has."""
+        binary = getattr(self._stream, "buffer", None)
+        if binary is None:
+            self.write(data.decode("utf-8"))
+            return
+        self.flush()
+        self._unless_gone(lambda: binary.write(data))
+        self._unless_gone(binary.flush)
+
+    def flush(self) -> None:
+        self._unless_gone(self._stream.flush)
+
+    def _unless_gone(self, action: Callable[[], Any]) -> None:
+        """Do something with the stream; once its reader is gone, nothing more is done with it."""
+        if not self._open:
+            return
+        try:
+            action()
+        except BrokenPipeError:
+            self._open = False
+            # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
+            with contextlib.suppress(OSError, ValueError):
+                null = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(null, self._stream.fileno())
+                os.close(null)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+class Console:
+    """Says things in the shape this run asks for.
+
+    Args:
+        settings: the global options.
+        stdout, stderr: where to; the process's own by default.
+        environ: the environment; the process's own by default.
+    """
+
+    def __init__(
+        self,
+        settings: Settings | None = None,
+        *,
+        stdout: TextIO | None = None,
+        stderr: TextIO | None = None,
+        environ: dict[str, str] | None = None,
+    ) -> None:
+        self.settings = settings or Settings()
+        self._environ = dict(os.environ) if environ is None else environ
+        for stream in (sys.stdout, sys.stderr):
+            # A console that cannot show a character shows a question mark, not a traceback.
+            if hasattr(stream, "reconfigure"):
+                stream.reconfigure(errors="replace")
+        self._out = _Stream(stdout or sys.stdout)
+        self._err = _Stream(stderr or sys.stderr)
+        self._human = self._err if self.settings.json else self._out
+        self.fancy = self._is_fancy()
+        self._rich: RichConsole | None = None
+        self.emitted = False
+
+    @property
+    def json(self) -> bool:
+        """True if the run answers with one JSON object."""
+        return self.settings.json
+
+    @property
+    def plain(self) -> bool:
+        """True if there are no boxes, no colour and no motion."""
+        return not self.fancy
+
+    @property
+    def quiet(self) -> bool:
+        """True if only the result and errors are wanted."""
+        return self.settings.quiet
+
+    @property
+    def interactive(self) -> bool:
+        """True if somebody is there to answer a question."""
+        return not self.json and sys.stdin is not None and sys.stdin.isatty()
+
+    @property
+    def width(self) -> int:
+        """Columns to write in."""
+        return self.rich().width if self.fancy else min(self.terminal_width, MAX_WIDTH)
+
+    @property
+    def terminal_width(self) -> int:
+        """Columns of the terminal, or what COLUMNS says."""
+        import shutil
+
+        return shutil.get_terminal_size().columns
+
+    def _is_fancy(self) -> bool:
+        if self.settings.json or self.settings.plain or self._environ.get("TERM") == "dumb":
+            return False
+        return bool(self._environ.get("FORCE_COLOR")) or self._human.isatty()
+
+    def rich(self) -> RichConsole:
+        """The Rich console behind a fancy run; in the other shapes one without colour or markup."""
+        if self._rich is None:
+            from rich.console import Console as RichConsole
+
+            self._rich = RichConsole(
+                file=cast("TextIO", self._human),
+                force_terminal=self.fancy,
+                no_color=True if self.plain or self._environ.get("NO_COLOR") else None,
+                width=max(20, min(self.terminal_width, MAX_WIDTH)),
+                markup=False,
+                emoji=False,
+                highlight=False,
+            )
+        return self._rich
+
+    # -- what a person reads -------------------------------------------------------------------------
+
+    def line(self, *pieces: Piece, indent: int = 0) -> None:
+        """One line of the answer: strings, or (string, style) pairs, joined as they are."""
+        if not self.fancy:
+            self._human.write(" " * indent + "".join(_bare(piece) for piece in pieces) + "\n")
+            return
+        from rich.padding import Padding
+
+        text = _text(pieces)
+        self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
+
+    def blank(self) -> None:
+        """An empty line, where there is layout to speak of."""
+        if not self.quiet:
+            self._human.write("\n")
+
+    def heading(self, text: str, aside: str = "") -> None:
+        """A line that names what follows it."""
+        pieces: list[Piece] = [(text, "bold")]
+        if aside:
+            pieces.append((f"  {aside}", "dim") if self.fancy else f": {aside}")
+        self.line(*pieces)
+
+    def item(self, label: str, *pieces: Piece, style: str = "", indent: int = 2, width: int = 0) -> None:
+        """A short label and a text beside it; in a terminal the text wraps under itself."""
+        if not self.fancy:
+            self._human.write(" " * indent + f"{label}: " + "".join(_bare(p) for p in pieces) + "\n")
+            return
+        from rich.padding import Padding
+        from rich.table import Table
+        from rich.text import Text
+
+        grid = Table.grid(padding=(0, 2, 0, 0))
+        grid.add_column(no_wrap=True, min_width=width or len(label))
+        grid.add_column(overflow="fold")
+        grid.add_row(Text(label, style=style), _text(pieces))
+        self.rich().print(Padding(grid, (0, 0, 0, indent)))
+
+    def table(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
+        """Rows under headings; plain output writes each row as one line of "heading: value" facts."""
+        if not self.fancy:
+            for row in rows:
+                facts = [
+                    f"{head}: {_bare(cell)}" for head, cell in zip(headers, row, strict=True) if _bare(cell)
+                ]
+                self._human.write("; ".join(facts) + "\n")
+            return
+        from rich import box
+        from rich.table import Table
+
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+        for index, head in enumerate(headers):
+            # The first column is an id that people copy: it folds rather than lose its end.
+            table.add_column(head, overflow="fold", no_wrap=index == 0 and self.width >= 60)
+        for row in rows:
+            table.add_row(*(_text((cell,)) for cell in row))
+        self.rich().print(table)
+
+    def block(self, text: str, language: str = "", indent: int = 0) -> None:
+        """Text shown exactly as it is: code, a diff, a traceback."""
+        text = _harmless(text)
+        if not self.fancy:
+            for row in text.splitlines():
+                self._human.write(" " * indent + row + "\n")
+            return
+        from rich.padding import Padding
+        from rich.syntax import Syntax
+        from rich.text import Text
+
+        shown = (
+            Syntax(text, language, theme="ansi_dark", background_color="default", word_wrap=True)
+            if language
+            else Text(text)
+        )
+        self.rich().print(Padding(shown, (0, 0, 0, indent)))
+
+    def note(self, *pieces: Piece, indent: int = 0) -> None:
+        """Advice and next steps; ``--quiet`` drops it."""
+        if not self.quiet:
+            self.line(*pieces, indent=indent)
+
+    def warn(self, text: str) -> None:
+        """Something the person should know that is no failure; on standard error."""
+        self._err.write(f"Note: {_harmless(text)}\n")
+
+    def error(self, message: str, help: str = "") -> None:  # noqa: A002
+        """What went wrong, and below it what to do; on standard error."""
+        self._out.flush()
+        self._err.write(f"{_harmless(message)}\n")
+        if help:
+            self._err.write(f"{_harmless(help)}\n")
+        self._err.flush()
+
+    def raw(self, text: str) -> None:
+        """Text that already has its layout (a help page)."""
+        self._human.write(text)
+
+    # -- what a script reads ---------------------------------------------------------------------------
+
+    def emit(self, body: msgspec.Struct) -> None:
+        """Write the one object of a ``--json`` run; does nothing in the other shapes."""
+        if not self.json:
+            return
+        if self.emitted:
+            raise InternalError("A command tried to print a second JSON object.")
+        from course.cli.frame.replies import encode
+
+        self.emitted = True
+        self._out.write_bytes(encode(body) + b"\n")
+
+    def emit_line(self, body: msgspec.Struct) -> None:
+        """Write one line of JSON Lines, for the two commands that answer with several."""
+        from course.cli.frame.replies import encode
+
+        self.emitted = True
+        self._out.write_bytes(encode(body) + b"\n")
+
+    # -- asking and waiting ------------------------------------------------------------------------------
+
+    def confirm(self, question: str) -> bool:
+        """Ask a yes-or-no question. Nobody there to answer means no."""
+        if not self.interactive:
+            return False
+        self._out.write(f"{question} [y/N] ")
+        self._out.flush()
+        return sys.stdin.readline().strip().lower() in {"y", "yes"}
+
+    def ask(self, question: str) -> str | None:
+        """What somebody types on one line, without the space around it; None at the end of the input."""
+        self._out.write(question)
+        self._out.flush()
+        answer = sys.stdin.readline()
+        return answer.strip() if answer else None
+
+    def go_on(self, where: str) -> bool:
+        """Wait for Enter; q, or the end of the input, means no."""
+        self._out.write(f"{where} Enter goes on, q stops: ")
+        self._out.flush()
+        answer = sys.stdin.readline()
+        return bool(answer) and answer.strip().lower() not in {"q", "quit"}
+
+    @contextlib.contextmanager
+    def working(self, what: str) -> Iterator[None]:
+        """Show that something runs, once it has taken half a second, on a terminal only."""
+        if not self.fancy or self.quiet or not self._human.isatty():
+            yield
+            return
+        status = self.rich().status(what, spinner="line")
+        timer = threading.Timer(PATIENCE, status.start)
+        timer.daemon = True
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
+            timer.join()
+            status.stop()
+
+    def flush(self) -> None:
+        """Hand everything over."""
+        self._out.flush()
+        self._err.flush()
+
+
+def _bare(piece: Piece) -> str:
+    return _harmless(piece if isinstance(piece, str) else piece[0])
+
+
+def _text(pieces: Sequence[Piece]) -> Text:
+    """Pieces as one Rich text."""
+    from rich.text import Text
+
+    text = Text()
+    for piece in pieces:
+        text.append(_bare(piece), None if isinstance(piece, str) else piece[1])
+    return text
+
+
+def _harmless(text: str) -> str:
+    """Text that cannot steer the terminal: what a student's code printed or raised is shown, not obeyed."""
+    return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text.replace("\r\n", "\n"))
+
+
+_installed: Console | None = None
+
+
+def install(console: Console) -> Console:
+    """Make ``console`` the one that ``current`` gives; one run of the program has one."""
+    global _installed  # noqa: PLW0603 - one process, one terminal
+    _installed = console
+    return console
+
+
+def current() -> Console:
+    """The console of this run."""
+    return _installed if _installed is not None else install(Console())

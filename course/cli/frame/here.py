@@ -1,0 +1,186 @@
+"""Where a command runs: which course, which workspace, which exercise.
+
+Everything a command needs to know before it starts; heavier imports wait until they are asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+    from course.catalog.models import CourseRef, Exercise
+    from course.progress.history import History
+    from course.progress.workspace import Workspace
+
+__all__ = ["MAX_FILE_BYTES", "Here", "cwd", "find_workspace", "load_catalog"]
+
+#: What the intake of a grading run accepts; more is refused here too. In bytes.
+MAX_FILE_BYTES = 1_000_000
+
+
+@dataclass
+class Here:
+    """A course and a workspace that belongs to it."""
+
+    catalog: Catalog
+    workspace: Workspace
+    warnings: list[str] = field(default_factory=list)
+
+    @classmethod
+    def load(cls) -> Here:
+        """The course in use and the workspace of the current folder.
+
+        Raises:
+            NotFoundError: the folder is not in a workspace.
+            MissingCapabilityError: the workspace is another course's.
+        """
+        from course.progress.workspace import Workspace
+
+        workspace = Workspace.find(cwd())
+        catalog = load_catalog()
+        if workspace.course_id != catalog.course_id:
+            raise MissingCapabilityError(
+                f"{workspace.root} is a workspace of the course {workspace.course_id!r}; "
+                f"this is {catalog.course_id!r}.",
+                help="Work in a workspace of this course, or install the other one.",
+                code="other_course",
+            )
+        return cls(catalog=catalog, workspace=workspace)
+
+    @cached_property
+    def course(self) -> CourseRef:
+        """Which course this is, for answers."""
+        return self.catalog.ref
+
+    def exercise(self, wanted: str | None) -> Exercise:
+        """The exercise a command is about: the one named, the one the folder is of, or the last worked on.
+
+        Raises:
+            NotFoundError: there is no such exercise, or none was started.
+        """
+        if wanted is not None:
+            # Completion of a folder name leaves a separator at its end.
+            return self.catalog.exercise(wanted.rstrip("/\\"))
+        known = self.catalog.exercise_ids()
+        for name in (self._folder_name(), self._last_worked_on(), *self._only_started()):
+            if name in known:
+                return self.catalog.exercise(str(name))
+        raise NotFoundError(
+            "No exercise has been started here.",
+            help=f"Start one: `course start {known[0]}`." if known else "This course has no exercises.",
+            code="nothing_started",
+        )
+
+    def started(self) -> tuple[Exercise, ...]:
+        """The exercises that have been started, in the order they are done."""
+        names = set(self.workspace.started())
+        return tuple(exercise for exercise in self.catalog.exercises() if exercise.id in names)
+
+    def source(self, exercise: Exercise) -> bytes:
+        """The student's file.
+
+        Raises:
+            UngradableError: there is none, or it cannot be read, or it is too large.
+        """
+        path = self.workspace.path(exercise.id, exercise.module)
+        shown = self.workspace.shown(path)
+        if not path.exists():
+            raise UngradableError(
+                f"There is no file {shown}.",
+                help=f"`course start {exercise.id}` puts one there.",
+                code="no_file",
+            )
+        try:
+            if not path.is_file():
+                raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
+            if path.stat().st_size > MAX_FILE_BYTES:
+                raise UngradableError(
+                    f"{shown} is larger than {MAX_FILE_BYTES:,} bytes.",
+                    help="Keep data out of the file; the exercise needs none.",
+                    code="too_large",
+                )
+            return path.read_bytes()
+        except OSError as error:
+            raise UngradableError(
+                f"{shown} cannot be read ({error.strerror or error}).",
+                help="Check its permissions.",
+                code="unreadable",
+            ) from error
+
+    def stub(self, exercise: Exercise) -> bytes:
+        """The module as it was handed out here, or as it would be now."""
+        given = self.workspace.given(exercise.id, exercise.module)
+        return exercise.stub_path.read_bytes() if given is None else given
+
+    def history(self, exercise: Exercise) -> History:
+        """What is recorded about an exercise.
+
+        Raises:
+            IntegrityError, MissingCapabilityError: the record cannot be read.
+        """
+        from course.progress.history import history_of
+
+        return history_of(self.workspace.store.events(subject=exercise.id))
+
+    def record(self, kind: str, subject: str, data: dict[str, object]) -> None:
+        """Note an event; where that fails, the command goes on and says so."""
+        try:
+            self.workspace.store.append(kind, subject, data)
+        except CourseError as error:
+            self.warnings.append(f"This was not recorded: {error.message} {error.help}")
+
+    def _folder_name(self) -> str | None:
+        """The first folder below the workspace on the way to the current one."""
+        try:
+            parts = cwd().relative_to(self.workspace.root).parts
+        except ValueError:
+            return None
+        return parts[0] if parts else None
+
+    def _last_worked_on(self) -> str | None:
+        """The exercise last started, checked by name or asked a hint for."""
+        try:
+            events = self.workspace.store.events()
+        except CourseError:
+            return None
+        kinds = {"start", "check", "hint"}
+        return next((e.subject for e in reversed(events) if e.kind in kinds and not e.data.get("all")), None)
+
+    def _only_started(self) -> tuple[str, ...]:
+        started = self.workspace.started()
+        return started if len(started) == 1 else ()
+
+
+def cwd() -> Path:
+    """The current folder.
+
+    Raises:
+        NotFoundError: it was removed.
+    """
+    try:
+        return Path.cwd()
+    except OSError:
+        raise NotFoundError(
+            "The current folder no longer exists.", help="Change to another one.", code="directory_not_found"
+        ) from None
+
+
+def load_catalog() -> Catalog:
+    """The course in use."""
+    from course.catalog.load import Catalog
+
+    return Catalog()
+
+
+def find_workspace() -> Here | None:
+    """The workspace of the current folder, or None outside of one."""
+    try:
+        return Here.load()
+    except NotFoundError:
+        return None

@@ -1,0 +1,75 @@
+"""The global options, which may stand anywhere on the line.
+
+Parsers of sub-commands know only their own options, so these are taken out of the arguments first. ``--``
+ends the search: what follows it is data.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from course.cli.frame.console import Settings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["Line", "hoist"]
+
+_FLAGS = {"--json": "json", "--plain": "plain", "--quiet": "quiet", "-q": "quiet", "--version": "version"}
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A command line taken apart.
+
+    Attributes:
+        settings: the global options.
+        rest: everything else, in order.
+        version: ``--version`` was given.
+        problem: what is wrong with the global options; empty if nothing is. It is reported later, by the
+            one place that reports, in the shape the other options ask for.
+    """
+
+    settings: Settings
+    rest: tuple[str, ...]
+    version: bool = False
+    problem: str = ""
+
+
+def hoist(arguments: Sequence[str]) -> Line:
+    """Take the global options out of ``arguments``."""
+    found: set[str] = set()
+    directory: str | None = None
+    rest: list[str] = []
+    problem = ""
+    position = 0
+    while position < len(arguments):
+        word = arguments[position]
+        position += 1
+        if word == "--":
+            rest += [word, *arguments[position:]]
+            break
+        if word in _FLAGS:
+            found.add(_FLAGS[word])
+        elif word == "-C":
+            if position == len(arguments):
+                problem = "-C needs the folder to work in."
+                break
+            directory = _below(directory, arguments[position])
+            position += 1
+        elif word.startswith("-C"):
+            directory = _below(directory, word.removeprefix("-C"))
+        else:
+            rest.append(word)
+    settings = Settings(
+        json="json" in found, plain="plain" in found, quiet="quiet" in found, directory=directory
+    )
+    return Line(settings=settings, rest=tuple(rest), version="version" in found, problem=problem)
+
+
+def _below(first: str | None, second: str) -> str:
+    """Two ``-C`` in a row add up, the second below the first."""
+    from pathlib import Path
+
+    return second if first is None else str(Path(first) / second)

@@ -1,0 +1,190 @@
+"""Which commands there are, and where each one lives.
+
+Declared as data so that ``course --help`` lists them without importing any: a module is imported when its
+command is run. The first line of a command's docstring is its summary here; a test compares them.
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from typing import Any, cast
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+__all__ = ["COMMANDS", "GLOBAL_OPTIONS", "HOME", "Entry", "LazyGroup", "build", "find"]
+
+GLOBAL_OPTIONS = "Every command also takes --json, --plain, --quiet (-q) and -C DIR."
+
+LEARN = "Learn"
+WORK = "Work on an exercise"
+KEEP = "Keep and hand in"
+TEACH = "Instructors"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One command.
+
+    Attributes:
+        module, name: where it is: a function, or ``app``, a group of commands.
+        panel: the heading it is listed under.
+        summary: one line for lists.
+        example: a line to copy.
+    """
+
+    module: str
+    name: str
+    panel: str
+    summary: str
+    example: str
+
+    @property
+    def is_group(self) -> bool:
+        return self.name == "app"
+
+
+COMMANDS: dict[str, Entry] = {
+    "demo": Entry(
+        "work.demo", "demo", LEARN, "See what checking looks like, without a workspace.", "course demo"
+    ),
+    "init": Entry("work.starting", "init", LEARN, "Make a workspace.", "course init my-course"),
+    "lessons": Entry("reading.commands", "lessons", LEARN, "List the lessons.", "course lessons"),
+    "lesson": Entry(
+        "reading.commands", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"
+    ),
+    "quiz": Entry(
+        "quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"
+    ),
+    "sim": Entry(
+        "sim.commands", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"
+    ),
+    "sandbox": Entry(
+        "sandbox.commands",
+        "app",
+        LEARN,
+        "Play with collisions, and see where the energy goes.",
+        "course sandbox play newtons-cradle",
+    ),
+    "engines": Entry(
+        "engines.commands",
+        "app",
+        LEARN,
+        "Compare real physics engines on this machine.",
+        "course engines compare --quick",
+    ),
+    "notebook": Entry(
+        "notebook.commands",
+        "app",
+        LEARN,
+        "Get lessons and exercises as Jupyter notebooks.",
+        "course notebook build integrators",
+    ),
+    "start": Entry(
+        "work.starting", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
+    ),
+    "check": Entry("work.checking", "check", WORK, "Run the public checks.", "course check integrators"),
+    "watch": Entry("work.watching", "watch", WORK, "Check again on every save.", "course watch integrators"),
+    "hint": Entry("work.hinting", "hint", WORK, "Show the next hint.", "course hint integrators"),
+    "diff": Entry(
+        "work.changing", "diff", WORK, "Show what changed since the stub.", "course diff integrators"
+    ),
+    "report": Entry(
+        "work.reporting",
+        "report",
+        WORK,
+        "Show what your code does, with figures.",
+        "course report sim-to-real",
+    ),
+    "solution": Entry(
+        "work.hinting",
+        "solution",
+        WORK,
+        "Show a released solution, after a pass.",
+        "course solution integrators",
+    ),
+    "reset": Entry(
+        "work.changing", "reset", KEEP, "Go back to the stub; a copy is kept.", "course reset integrators"
+    ),
+    "update": Entry(
+        "work.changing", "update", KEEP, "Bring newer course content in.", "course update --dry-run"
+    ),
+    "progress": Entry("work.overview", "progress", KEEP, "Show everything done so far.", "course progress"),
+    "submit": Entry(
+        "work.submitting", "submit", KEEP, "Write the file to hand in.", "course submit -o mine.zip"
+    ),
+    "doctor": Entry("work.doctor", "doctor", KEEP, "Say what works on this machine.", "course doctor"),
+    "grade": Entry(
+        "grade.commands", "app", TEACH, "Grade a class.", "course grade run submissions --out grades"
+    ),
+    "author": Entry(
+        "author.commands", "app", TEACH, "Write and check the course itself.", "course author check"
+    ),
+}
+
+
+#: What ``course`` alone does: a module and its function.
+HOME = "work.overview", "dashboard"
+
+
+class LazyGroup(TyperGroup):
+    """A group that knows its commands by name and loads the one that is run."""
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - the signature is typer's
+        """Names in the order they are listed."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002 - the signature is typer's
+        """A stand-in with the name and the summary, which is all that a list needs."""
+        entry = COMMANDS.get(cmd_name)
+        if entry is None:
+            return None
+        return TyperCommand(
+            name=cmd_name,
+            help=entry.summary,
+            rich_help_panel=entry.panel,
+            rich_markup_mode=self.rich_markup_mode,
+        )
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The real command, for the one that is run or completed."""
+        self.commands = cast("Any", dict.fromkeys(COMMANDS))  # only the names, for "did you mean"
+        name, command, rest = super().resolve_command(ctx, args)
+        if command is not None and name is not None:
+            command = _load(name, COMMANDS[name], self.rich_markup_mode)
+        return name, command, rest
+
+
+def build(group: type[TyperGroup], *, fancy: bool) -> typer.Typer:
+    """The empty program: its commands come from ``COMMANDS``."""
+    return typer.Typer(
+        name="course",
+        cls=group,
+        invoke_without_command=True,
+        rich_markup_mode="rich" if fancy else None,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+
+
+def find(module: str, name: str) -> Any:
+    """A function of a room, which is imported now."""
+    return getattr(importlib.import_module(f"course.cli.{module}"), name)
+
+
+def _load(name: str, entry: Entry, mode: Any) -> Any:
+    """Import a command and hand it to typer."""
+    target = find(entry.module, entry.name)
+    if entry.is_group:
+        target.info.name = name
+        target.rich_markup_mode = mode
+        return typer.main.get_group(target)
+    app = typer.Typer(
+        add_completion=False,
+        rich_markup_mode=mode,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.command(name, epilog=f"Example: {entry.example}\n\n{GLOBAL_OPTIONS}")(target)
+    return typer.main.get_command(app)

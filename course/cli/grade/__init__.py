@@ -1,0 +1,1 @@
+"""``course grade``: what an instructor does with a class. Needs a checkout."""

@@ -1,0 +1,321 @@
+"""``course grade rerun``, ``override``, ``late`` and ``similar``: what comes after a run."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame.completion import exercise_ids
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import load_catalog
+from course.cli.grade.running import levels, score_of
+from course.errors import UsageError
+from course.grading.exports.cells import write_bytes
+from course.grading.exports.lines import grade_line, utc
+from course.grading.results import override as overriding
+from course.grading.results.effective import Results
+from course.grading.results.late import in_days, read_policy, unknown_names
+from course.grading.results.roster import read_roster
+from course.grading.results.times import read_times
+from course.grading.similar.page import page
+from course.scoring.numbers import format_points
+
+if TYPE_CHECKING:
+    from course.cli.grade.replies import LateOne
+    from course.grading.results.effective import Effective
+    from course.grading.running.rerun import Change, Regraded
+
+__all__ = ["late", "override", "rerun", "similar"]
+
+Out = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")]
+
+
+def rerun(
+    out: Out,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show what would change; change nothing.")
+    ] = False,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Also what these very graders scored before.")
+    ] = False,
+    jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
+    timeout: Annotated[
+        float | None,
+        typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="As in the run if left out."),
+    ] = None,
+    isolation: Annotated[
+        str, typer.Option("--isolation", metavar="auto|strict|process", help="As for `course grade run`.")
+    ] = "auto",
+) -> int:
+    """Grade again, with the graders as they are now.
+
+    Regrades what other graders scored, and what a fault of ours left without a score. Shows who changes, by
+    how much and by which check. The submissions are in the gradebook; old results stay beside the new, and
+    overrides go on counting.
+    """
+    from course.cli.grade.replies import GradeRerun
+    from course.grading.running.batch import grade_all
+    from course.grading.running.rerun import RerunOptions
+    from course.grading.running.rerun import rerun as regrade
+    from course.grading.running.run import open_results
+
+    console = current()
+    level, at_least = levels(isolation)
+    options = RerunOptions(dry_run, everything, level, at_least, timeout)
+    catalog = load_catalog()
+    with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
+        done = regrade(results, catalog, options, grade=partial(grade_all, graders=jobs))
+    code = 70 if done.faults else 0
+    if console.json:
+        console.emit(
+            GradeRerun(
+                ok=not code,
+                exit_code=code,
+                dry_run=dry_run,
+                regraded=done.regraded,
+                up_to_date=done.up_to_date,
+                kept=done.kept,
+                grader_error=done.faults,
+                changes=done.changes,
+            )
+        )
+    else:
+        _show_rerun(console, done, dry_run=dry_run)
+    return code
+
+
+def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
+    for change in done.changes:
+        _show_change(console, change)
+    would = "would change" if dry_run else "changed"
+    console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
+    if done.up_to_date:
+        console.note(f"{done.up_to_date} were graded by these very graders; --all grades them too.")
+    if done.kept:
+        console.note(f"{done.kept} had nothing that could be graded, and stay as they are.")
+    if done.faults:
+        console.line(f"{done.faults} hit a fault of the grader and are marked for regrading.")
+    if dry_run and done.changes:
+        console.note("Nothing was changed. Without --dry-run it is, and the old results are kept.")
+
+
+def _show_change(console: Console, change: Change) -> None:
+    scores = f"{_points(change.raw_before)} -> {_points(change.raw_after)}"
+    if change.state_before != change.state_after:
+        scores += f", {change.state_before} -> {change.state_after}"
+    if change.overridden:
+        scores += f"; the override stands at {_points(change.score_after)}"
+    elif (change.score_before, change.score_after) != (change.raw_before, change.raw_after):
+        scores += f"; counting {_points(change.score_before)} -> {_points(change.score_after)}"
+    console.item(f"{change.student} {change.exercise}", scores)
+    for check in change.checks:
+        delta = f", {check.points_after - check.points_before:+g} points"
+        console.item(
+            check.id, f"{check.before or 'no such check'} -> {check.after or 'gone'}{delta}", indent=4
+        )
+
+
+def _points(score: float | None) -> str:
+    return "no score" if score is None else format_points(score)
+
+
+def override(
+    out: Out,
+    student: Annotated[str, typer.Argument(metavar="STUDENT")],
+    exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
+    score: Annotated[
+        float | None, typer.Option("--score", metavar="X", help="Points that are to count.")
+    ] = None,
+    reason: Annotated[
+        str, typer.Option("--reason", metavar="TEXT", help="Shown wherever the score is.")
+    ] = "",
+    lift: Annotated[bool, typer.Option("--lift", help="Let what the checks gave count again.")] = False,
+) -> int:
+    """Set a score by hand, with a reason.
+
+    It counts in place of the graders' score in every export and report, whatever is graded later, and no late
+    penalty touches it.
+    """
+    from course.grading.running.run import open_results
+
+    if (score is None) != lift:
+        raise UsageError(
+            "Give either --score and --reason, or --lift.", help="See `course grade override -h`."
+        )
+    console = current()
+    with open_results(out, writing=True) as results:
+        if score is None:
+            now = overriding.lift(results, student, exercise, reason)
+        else:
+            now = overriding.override(results, student, exercise, score, reason)
+        course = results.course
+    if console.json and now is not None:
+        console.emit(grade_line(now, course))
+    if now is None:
+        console.line(f"{student} {exercise}: nothing was handed in, and no score counts.")
+    else:
+        counts = f"{_points(now.score)} of {format_points(now.max_score)} counts"
+        console.line((f"{student} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
+    return 0
+
+
+def late(
+    out: Out,
+    policy: Annotated[
+        Path | None, typer.Option("--policy", metavar="FILE", help="Late policy (TOML) to put in force.")
+    ] = None,
+    times: Annotated[
+        Path | None,
+        typer.Option("--times", metavar="FILE", help="CSV: student, exercise, submitted_at (ISO 8601)."),
+    ] = None,
+    roster: Annotated[
+        Path | None, typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days.")
+    ] = None,
+    clear: Annotated[bool, typer.Option("--clear", help="Put no policy in force.")] = False,
+) -> int:
+    """Say what lateness costs, and who is late.
+
+    The policy is kept in the gradebook and applied anew at every export; the scores of the checks never
+    change. Without options it shows what is in force.
+    """
+    from course.cli.grade.replies import GradeLate
+    from course.grading.running.run import open_results
+
+    if policy is not None and clear:
+        raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
+    console = current()
+    text = read_policy(policy)[1] if policy else None
+    people = read_roster(roster) if roster else None
+    known = read_times(times) if times else []
+    changes = bool(policy or people or known or clear)
+    with open_results(out, writing=changes) as opened:
+        if text is not None or clear:
+            opened.book.set_meta(late_policy=text)
+        if people is not None:
+            opened.book.set_meta(roster=people.dump())
+        if known:
+            opened.book.add_times(known, replace=True)
+        results = Results(opened.book)
+        found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
+        unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
+        names = {f"student {name}" for name in _everybody(results)}
+        graded = {item.id: item for item in results.exercises()}
+        unknown = sorted({f"student {item.student}" for item in known} - names)
+        unknown += sorted({f"exercise {item.exercise}" for item in known if item.exercise not in graded})
+        if results.policy is not None:
+            unknown += unknown_names(results.policy, graded, _everybody(results))
+    if console.json:
+        console.emit(
+            GradeLate(
+                policy=results.policy is not None,
+                late=tuple(found),
+                time_unknown=unknown_time,
+                unknown_names=tuple(unknown),
+            )
+        )
+    else:
+        _show_late(console, results, found, unknown_time, unknown)
+    return 0
+
+
+def _everybody(results: Results) -> set[str]:
+    """Every name a student of this gradebook goes by."""
+    names = set(results.students())
+    people = (results.person(name) for name in results.students())
+    return names | {person.student for person in people if person is not None}
+
+
+def _late_one(item: Effective) -> LateOne:
+    from course.cli.grade.replies import LateOne
+
+    return LateOne(
+        student=item.student,
+        exercise=item.exercise,
+        late=item.late,
+        penalty=item.penalty,
+        submitted_at=utc(item.submitted_at) or None,
+        witness=item.witness,
+        flagged_late=item.flagged_late,
+    )
+
+
+def _show_late(
+    console: Console, results: Results, found: list[LateOne], unknown_time: int, unknown: list[str]
+) -> None:
+    if results.policy is None:
+        console.line("No late policy is in force; add one with --policy FILE.")
+    for item in found:
+        if item.late is None:
+            words = "late, says the download, and not by how much; give its time with --times"
+        else:
+            cost = f"{format_points(item.penalty)} points" if item.penalty else "no penalty"
+            words = f"{in_days(item.late)} late, {cost} ({item.submitted_at}, by {item.witness})"
+        console.item(f"{item.student} {item.exercise}", words)
+    if results.policy is not None:
+        console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
+        if unknown_time:
+            console.note(f"{unknown_time} have no time anybody trusted gives; they count as in time.")
+    for name in unknown:
+        console.warn(f"The gradebook has no {name}.")
+
+
+def similar(
+    out: Out,
+    exercise: Annotated[
+        list[str] | None,
+        typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
+    ] = None,
+    # Right solutions that were written differently share 0.39 at most (those of this course, by weight); a
+    # copy whose names were changed shares 1.
+    share: Annotated[
+        float, typer.Option("--share", min=0.0, max=1.0, help="Show pairs with at least this much in common.")
+    ] = 0.6,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Page; OUT/similar.html if left out."),
+    ] = None,
+) -> int:
+    """Find submissions that are alike.
+
+    Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
+    layout do not count, and neither does the stub. Likeness is a reason to talk with students, not a finding.
+    """
+    from course.cli.grade.replies import GradeSimilar, SimilarPair
+    from course.grading.running.run import open_results
+    from course.grading.similar.compare import compare
+
+    console = current()
+    catalog = load_catalog()
+    with open_results(out) as results, console.working("Comparing"):
+        found = compare(results, catalog, tuple(exercise or ()), at_least=share)
+    target = output or out / "similar.html"
+    write_bytes(target, page(found).encode("utf-8"))
+    if console.json:
+        pairs = tuple(
+            SimilarPair(
+                exercise=pair.exercise, first=pair.first.label, second=pair.second.label,
+                share=round(pair.share, 4), lines=pair.lines,
+            )
+            for pair in found.pairs
+        )  # fmt: skip
+        console.emit(
+            GradeSimilar(
+                compared=found.compared, pairs=pairs, unreadable=tuple(found.unreadable), page=str(target)
+            )
+        )
+        return 0
+    for pair in found.pairs[:20]:
+        both = f"{pair.first.label} and {pair.second.label}"
+        console.item(f"{pair.share:.0%}", f"{both}, {pair.exercise}, {pair.lines} lines alike", width=5)
+    if len(found.pairs) > 20:
+        console.line(f"and {len(found.pairs) - 20} more", indent=2)
+    console.line((f"{len(found.pairs)} pairs among {found.compared} submissions.", "bold"))
+    if found.left_out:
+        console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
+    if found.unreadable:
+        console.note(f"{len(found.unreadable)} could not be read as Python and were not compared.")
+    console.note(f"Side by side: {target}")
+    return 0

@@ -1,0 +1,35 @@
+"""``course grade``: what an instructor does with a class. Needs a checkout."""
+
+from __future__ import annotations
+
+import typer
+
+from course.cli.grade.changing import late, override, rerun, similar
+from course.cli.grade.export import export
+from course.cli.grade.running import explain, run
+
+__all__ = ["app"]
+
+app = typer.Typer(
+    help="Grade a class.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.callback()
+def _group() -> None:
+    """Grade a class: hidden checks, protected workers, one gradebook."""
+
+
+for _command, _example in (
+    (run, "run submissions --exercise integrators --out grades -j 2"),
+    (explain, "explain grades ada integrators"),
+    (rerun, "rerun grades --dry-run"),
+    (override, "override grades ada integrators --score 80 --reason 'oral exam'"),
+    (late, "late grades --policy late.toml"),
+    (similar, "similar grades"),
+    (export, "export grades --format canvas --roster class.csv --assignment integrators=4711"),
+):
+    app.command(_command.__name__, epilog=f"Example: course grade {_example}")(_command)

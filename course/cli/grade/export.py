@@ -1,0 +1,191 @@
+"""``course grade export``: a gradebook in the form another program reads."""
+
+from __future__ import annotations
+
+from pathlib import Path  # noqa: TC003 - typer reads the annotations
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame.completion import exercise_ids
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import cwd, load_catalog
+from course.errors import CourseError, UsageError
+from course.grading.exports.autograder import write_autograder
+from course.grading.exports.formats import AUTOGRADER
+from course.grading.exports.formats import export as write
+from course.grading.exports.lines import grade_line
+from course.grading.exports.selection import ExportOptions, select
+from course.grading.results.effective import Results
+from course.grading.results.roster import read_roster
+from course.scoring.numbers import LARGEST_SEED
+
+if TYPE_CHECKING:
+    from course.grading.exports.selection import Written
+
+__all__ = ["export"]
+
+_SHOWN = 20
+
+
+def export(
+    out: Annotated[
+        Path | None,
+        typer.Argument(metavar="OUT", help="Folder of a grading run; an autograder needs none."),
+    ] = None,
+    format: Annotated[  # noqa: A002 - the option's name
+        str,
+        typer.Option(
+            "--format", metavar="csv|jsonl|junit|gradescope|gradescope-autograder|canvas|moodle|html"
+        ),
+    ] = "csv",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="PATH", help="Where; in OUT if left out.")
+    ] = None,
+    roster: Annotated[
+        Path | None,
+        typer.Option("--roster", metavar="FILE", help="Class list (CSV); remembered for later exports."),
+    ] = None,
+    assignment: Annotated[
+        list[str] | None,
+        typer.Option("--assignment", metavar="EXERCISE=ID", help="The assignment on the platform."),
+    ] = None,
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Leave out students the roster has not.")
+    ] = False,
+    exercise: Annotated[
+        list[str] | None,
+        typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option("--seed", min=0, max=LARGEST_SEED, help="Of an autograder without OUT.")
+    ] = None,
+    timeout: Annotated[
+        float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="Of an autograder, per check.")
+    ] = 10.0,
+) -> int:
+    """Write the grades in the form another program reads.
+
+    Overrides and the late policy are applied anew each time. Students the roster has not are listed and stop
+    the export, unless --partial leaves them out.
+    """
+
+    console = current()
+    written: Written | None
+    if format == AUTOGRADER:
+        written = _autograder(out, output, tuple(exercise or ()), seed, timeout)
+    elif out is None:
+        raise UsageError(
+            "This format needs OUT.", help="Name the folder that `course grade run --out` wrote."
+        )
+    else:
+        written = _from_gradebook(
+            console, out, format, output, roster, tuple(assignment or ()), partial, tuple(exercise or ())
+        )
+    if written is not None:
+        _show(console, format, written)
+    return 0
+
+
+def _from_gradebook(
+    console: Console,
+    out: Path,
+    name: str,
+    output: Path | None,
+    roster: Path | None,
+    assignments: tuple[str, ...],
+    partial: bool,
+    exercises: tuple[str, ...],
+) -> Written | None:
+    """Write it; None if it was printed."""
+    from course.grading.running.run import open_results
+
+    people = read_roster(roster) if roster else None
+    options = ExportOptions(exercises, _assignments(assignments), partial)
+    with open_results(out) as opened:
+        results = Results(opened.book, people) if people else opened
+        if console.json and name == "jsonl" and output is None:
+            _print_lines(console, results, options)
+            return None
+        written = write(results, name, out, output, options)
+        is_new = people is not None and opened.book.meta().get("roster") != people.dump()
+    if people is not None and is_new:
+        try:
+            # Its extensions count: what lies beside the gradebook is written anew.
+            with open_results(out, writing=True) as opened:
+                opened.book.set_meta(roster=people.dump())
+        except CourseError as error:  # the export itself is complete
+            console.warn(f"The roster was not remembered: {error.message}")
+    return written
+
+
+def _print_lines(console: Console, results: Results, options: ExportOptions) -> None:
+    """With --json, JSON Lines are the answer itself."""
+    selection = select(results, options)
+    for effective in selection.each():
+        console.emit_line(grade_line(effective, results.course))
+    for student in selection.written.unmatched:
+        console.warn(f"Left out, not in the roster: {student}")
+
+
+def _assignments(given: tuple[str, ...]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for text in given:
+        name, equals, number = text.partition("=")
+        if not (name and equals and number) or name in found:
+            raise UsageError(
+                f"--assignment is {text!r}.", help="It takes EXERCISE=ID, once for each exercise."
+            )
+        found[name] = number
+    return found
+
+
+def _autograder(
+    out: Path | None, output: Path | None, exercises: tuple[str, ...], seed: int | None, timeout: float
+) -> Written:
+    import secrets
+
+    from course.grading.running.run import open_results
+
+    catalog = load_catalog()
+    chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()
+    if out is not None and seed is None:
+        with open_results(out) as results:
+            seed = results.seed
+            noted = {item.id for item in results.exercises()}
+        if not exercises:
+            chosen = tuple(item for item in chosen if item.id in noted)
+    drawn = secrets.randbits(31) if seed is None else seed
+    target = output or (out or cwd()) / "gradescope-autograder.zip"
+    return write_autograder(target, catalog, chosen, seed=drawn, timeout=timeout, asked=bool(exercises))
+
+
+def _show(console: Console, name: str, written: Written) -> None:
+    if console.json:
+        from course.cli.grade.replies import GradeExport
+
+        console.emit(
+            GradeExport(
+                format=name,
+                paths=tuple(map(str, written.paths)),
+                rows=written.rows,
+                unmatched=tuple(written.unmatched),
+                without_grade=tuple(written.without_grade),
+                notes=tuple(written.notes),
+            )
+        )
+        return
+    for path in written.paths:
+        console.line((f"Wrote {path}.", "bold"))
+    for label, listed in (
+        ("Left out, not in the roster", written.unmatched),
+        ("Without a score, a fault of the grader; run `course grade rerun`", written.without_grade),
+    ):
+        if listed:
+            console.line(f"{label}: {len(listed)}")
+        for entry in listed[:_SHOWN]:
+            console.line(entry, indent=2)
+        if len(listed) > _SHOWN:
+            console.line(f"and {len(listed) - _SHOWN} more", indent=2)
+    for note in written.notes:
+        console.note(note)

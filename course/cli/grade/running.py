@@ -1,0 +1,316 @@
+"""``course grade run`` and ``course grade explain``: a class graded, and one result with its history."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from functools import partial
+from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from course import extras
+from course.cli.frame.completion import exercise_ids
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import load_catalog
+from course.cli.work.verdicts import show_everything
+from course.errors import NotFoundError, UsageError
+from course.grading.exports.lines import grade_line
+from course.grading.results.late import in_days
+from course.scoring.numbers import LARGEST_SEED, format_points
+from course.scoring.terms import Terms
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import CourseRef
+    from course.grading.gradebook.book import Result
+    from course.grading.results.effective import Effective
+    from course.grading.running.run import GradeAll, RunOptions, Summary
+
+__all__ = ["explain", "levels", "run", "score_of"]
+
+_MOST_TROUBLED = 20
+
+
+def run(
+    submissions: Annotated[Path, typer.Argument(metavar="SUBMISSIONS", help="One folder per student.")],
+    out: Annotated[Path, typer.Option("--out", metavar="OUT", help="Folder for the results; must be new.")],
+    exercise: Annotated[
+        list[str] | None,
+        typer.Option("--exercise", metavar="ID", help="Grade these only.", autocompletion=exercise_ids),
+    ] = None,
+    jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
+    timeout: Annotated[
+        float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="Wall seconds per check.")
+    ] = 10.0,
+    resume: Annotated[bool, typer.Option("--resume", help="Finish the run that is in OUT.")] = False,
+    only: Annotated[list[str] | None, typer.Option("--only", metavar="STUDENT")] = None,
+    isolation: Annotated[
+        str,
+        typer.Option(
+            "--isolation",
+            metavar="auto|strict|process",
+            help="auto: the best level, L2 at least. strict: L3. process: L1, no protection of files.",
+        ),
+    ] = "auto",
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", min=0, max=LARGEST_SEED, help="Draw hidden inputs as an earlier run did."),
+    ] = None,
+    layout: Annotated[
+        str,
+        typer.Option(
+            "--layout",
+            metavar="auto|folders|canvas|moodle|gradescope",
+            help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
+        ),
+    ] = "auto",
+    local_cluster: Annotated[
+        int | None,
+        typer.Option("--local-cluster", metavar="N", min=1, max=256, help="On N Dask workers started here."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="On the Dask cluster whose scheduler is there."),
+    ] = None,
+) -> int:
+    """Grade a folder of submissions.
+
+    One folder per student, or what Canvas, Moodle or Gradescope gave for download, unpacked. The exit code is
+    0 when every submission was graded, whatever the scores; 6 when some could not be, and then each is listed
+    with its reason.
+    """
+    from course.grading.running.run import RunOptions, grade_class
+
+    console = current()
+    _only_one_way(jobs, local_cluster, scheduler)
+    level, at_least = levels(isolation)
+    terms = Terms(level, at_least, timeout)
+    options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout)
+    catalog = load_catalog()
+    with (
+        _graders(catalog, jobs, local_cluster, scheduler) as grade,
+        _progress(console, catalog.ref) as report,
+    ):
+        summary = grade_class(submissions, out, catalog, options, report, grade=grade)
+    _show_summary(console, summary, out, options)
+    return summary.exit_code
+
+
+def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
+    if local_cluster is not None and scheduler is not None:
+        raise UsageError(
+            "--local-cluster and --scheduler are two clusters.", help="Name one of them.", code="two_clusters"
+        )
+    if jobs > 1 and (local_cluster is not None or scheduler is not None):
+        raise UsageError(
+            "-j is for a run without a cluster.",
+            help="--local-cluster N says how many; a cluster elsewhere grades on all the workers it has.",
+            code="jobs_and_cluster",
+        )
+
+
+def _graders(
+    catalog: Catalog, jobs: int, local_cluster: int | None, scheduler: str | None
+) -> AbstractContextManager[GradeAll]:
+    """Who grades: processes of this machine, or a cluster."""
+    from course.grading.running.batch import grade_all
+
+    if local_cluster is None and scheduler is None:
+        return nullcontext(partial(grade_all, graders=jobs))
+    cluster: AbstractContextManager[GradeAll] = (
+        extras.load("cluster").local_cluster(local_cluster or 1, catalog)
+        if scheduler is None
+        else extras.load("cluster").remote_cluster(scheduler, catalog)
+    )
+    return cluster
+
+
+def explain(
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")],
+    student: Annotated[str, typer.Argument(metavar="STUDENT")],
+    exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
+) -> int:
+    """Show everything about one result, expected values included: for the instructor, not the student."""
+    from course.grading.running.run import open_results
+
+    catalog = load_catalog()
+    with open_results(out) as results:
+        found = next(results.all(student, exercise), None)
+        history = results.book.history(student, exercise)
+    if found is None:
+        raise NotFoundError(
+            f"The gradebook has no result of {student!r} for {exercise!r}.",
+            help=f"grades.csv in {out} lists all.",
+            code="result_not_found",
+        )
+    console = current()
+    if console.json:
+        console.emit(grade_line(found, results.course))
+    else:
+        _show_result(console, catalog, found, history)
+    return 0
+
+
+def levels(isolation: str) -> tuple[str | None, str]:
+    """The level to insist on, if any, and the weakest one to accept."""
+    choices = {"auto": (None, "L2"), "strict": ("L3", "L3"), "process": ("L1", "L1")}
+    if isolation not in choices:
+        raise UsageError(f"--isolation is {isolation!r}.", help="It takes auto, strict or process.")
+    return choices[isolation]
+
+
+class _progress:  # noqa: N801 - used as a function
+    """Shows results as they come: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``."""
+
+    def __init__(self, console: Console, course: CourseRef) -> None:
+        self._console = console
+        self._course = course
+        self._bar: Any = None
+
+    def __enter__(self) -> Callable[[Effective, int, int], None]:
+        console = self._console
+        if console.json:
+            return self._json
+        if console.quiet:
+            return lambda *_: None
+        if not console.fancy:
+            return self._line
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(None),
+            MofNCompleteColumn(),
+            TimeRemainingColumn(),
+        )
+        self._bar = Progress(*columns, console=console.rich(), transient=True)
+        self._task = self._bar.add_task("Grading", total=None)
+        self._bar.start()
+        return self._advance
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def _advance(self, _result: Effective, done: int, total: int) -> None:
+        self._bar.update(self._task, completed=done, total=total)
+
+    def _line(self, result: Effective, done: int, total: int) -> None:
+        verdict = result.verdict
+        ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
+        self._console.line(f"{done}/{total} {result.student} {result.exercise} {verdict.state} {ending}")
+
+    def _json(self, result: Effective, _done: int, _total: int) -> None:
+        self._console.emit_line(grade_line(result, self._course))
+
+
+def _show_summary(console: Console, summary: Summary, out: Path, options: RunOptions) -> None:
+    if console.json:
+        from course.cli.grade.replies import GradeSummary
+
+        console.emit_line(
+            GradeSummary(
+                ok=summary.exit_code == 0,
+                exit_code=summary.exit_code,
+                graded=summary.states["graded"],
+                ungradable=summary.states["ungradable"],
+                grader_error=summary.states["grader_error"],
+                passed=summary.passed,
+                not_submitted=summary.not_submitted,
+                already_graded=summary.already,
+                isolation=dict(summary.levels),
+                seed=summary.seed,
+                elapsed_s=round(summary.elapsed_s, 3),
+                out=str(out),
+                troubled=tuple(summary.troubled),
+                unrecognised=tuple(summary.unrecognised),
+                unjudged=tuple(_unjudged(summary)),
+            )
+        )
+        return
+    graded = summary.states["graded"]
+    console.line((f"{graded} graded, {summary.passed} of them pass. {summary.elapsed_s:.1f} s.", "bold"))
+    for state, words in (
+        ("ungradable", "could not be graded"),
+        ("grader_error", "hit a fault of the grader and are marked for regrading"),
+    ):
+        rows = [row for row in summary.troubled if row.state == state]
+        if rows:
+            console.line((f"{len(rows)} {words}:", "bold"))
+        for row in rows[:_MOST_TROUBLED]:
+            console.item(f"{row.student} {row.exercise}", f"{row.code}: {row.message}")
+        if len(rows) > _MOST_TROUBLED:
+            console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+    if summary.unrecognised:
+        console.line((f"{len(summary.unrecognised)} could not be told whose they are:", "bold"))
+    for sentence in summary.unrecognised[:_MOST_TROUBLED]:
+        console.line(sentence, indent=2)
+    if len(summary.unrecognised) > _MOST_TROUBLED:
+        console.line(f"and {len(summary.unrecognised) - _MOST_TROUBLED} more.", indent=2)
+    _show_unjudged(console, list(_unjudged(summary)))
+    if summary.already:
+        console.note(f"{summary.already} had been graded before.")
+    levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))
+    if levels:
+        console.note(f"Protection: {levels}.")
+    if options.terms.at_least == "L1":
+        console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
+    files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
+    console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
+
+
+def _show_unjudged(console: Console, sentences: list[str]) -> None:
+    if sentences:
+        console.line(("Checks whose own code broke on a submission (its result stands):", "bold"))
+    for sentence in sentences[:_MOST_TROUBLED]:
+        console.line(sentence, indent=2)
+
+
+def _unjudged(summary: Summary) -> Iterator[str]:
+    for (exercise, check, where), count in summary.unjudged.most_common():
+        yield f"{exercise} {check}, {count} of the results: {where}"
+
+
+def _show_result(console: Console, catalog: Catalog, found: Effective, history: list[Result]) -> None:
+    verdict, result = found.verdict, found.result
+    passed = "passed" if found.passed else "not passed"
+    score = "none" if found.score is None else format_points(found.score)
+    console.heading(f"{found.student}, {found.exercise}", verdict.state)
+    console.item("score", f"{score} of {format_points(found.max_score)}, {passed}", width=10)
+    if found.override is not None:
+        at = found.override.at
+        console.item(
+            "override", f"{found.override.reason} (set {at}; the checks gave {score_of(found)})", width=10
+        )
+    if found.late is not None:
+        cost = (
+            f"{format_points(found.penalty)} points off {score_of(found)}" if found.penalty else "no penalty"
+        )
+        console.item("late", f"{in_days(found.late)}, {cost}", width=10)
+    if result.number:
+        level = f" at {verdict.isolation}" if verdict.isolation else ""
+        console.item("graded", f"{result.graded_at}{level}, seed {result.key.seed}", width=10)
+        console.item("submission", result.key.submission_sha256, width=10)
+    for older in history:
+        if older.number != result.number:
+            was = f"{format_points(older.verdict.score)}, {older.verdict.state}"
+            console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
+    if verdict.error is not None:
+        console.item("reason", f"{verdict.error.code}: {verdict.error.message}", width=10)
+        console.item("advice", verdict.error.help, width=10)
+    console.blank()
+    known = catalog.exercise_ids()
+    if verdict.checks and verdict.exercise in known:
+        show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
+    else:
+        for check in verdict.checks:
+            console.item(check.status.value, check.title, width=10)
+
+
+def score_of(found: Effective) -> str:
+    """What the checks gave, in words."""
+    return "no score" if found.raw_score is None else format_points(found.raw_score)

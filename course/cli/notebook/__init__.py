@@ -1,0 +1,1 @@
+"""``course notebook``: the course in Jupyter."""

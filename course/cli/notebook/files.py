@@ -1,0 +1,45 @@
+"""Notebooks on disk. Nothing somebody wrote is overwritten, and whatever is replaced is kept as a copy."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from course.cli.frame.files import write
+from course.cli.notebook.replies import NotebookFile
+from course.handed_in.cells import read_notebook
+from course.notebooks.building.merge import CannotMergeError, is_untouched, merged
+from course.progress.workspace import write_atomically
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.notebooks.build import Generated
+
+__all__ = ["put"]
+
+
+def put(folder: Path, notebook: Generated) -> NotebookFile:
+    """Write a notebook, or bring the one that is there up to date.
+
+    Raises:
+        UsageError: what is there cannot be read, or no copy of it can be kept.
+        MissingCapabilityError: the folder cannot be written.
+    """
+
+    path = folder / notebook.path
+    said = partial(NotebookFile, kind=notebook.kind, id=notebook.id, path=str(path))
+    if not path.exists():
+        write_atomically(path, notebook.data)
+        return said(action="written")
+    old = read_notebook(path)
+    try:
+        data = merged(old, notebook.data)
+    except CannotMergeError as problem:
+        beside = path.with_name(f"{path.stem}.new{path.suffix}")
+        written = write(beside, notebook.data, why="notebook")
+        return said(action="beside", new=str(beside), reason=str(problem), backup=written.backup)
+    if data == old:
+        return said(action="current")
+    action = "replaced" if is_untouched(old) else "merged"
+    return said(action=action, backup=write(path, data, why="notebook").backup)

@@ -1,0 +1,1 @@
+"""``course quiz``: five questions, an explanation for every option, and what was missed comes back."""

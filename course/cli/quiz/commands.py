@@ -1,0 +1,314 @@
+"""``course quiz``: five questions, an explanation for every option, and what was missed comes back."""
+
+from __future__ import annotations
+
+from datetime import date, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+
+from course.cli.frame.console import Console, current
+from course.cli.frame.replies import NextStep
+from course.cli.quiz import screen
+from course.cli.quiz.desk import Desk, agrees, answer, open_or_new, printed_seed, start
+from course.cli.quiz.replies import Quiz, QuizHistoryReply, QuizReview
+from course.errors import UsageError
+from course.progress import quiz
+from course.quizzing.answers import read_answers
+from course.quizzing.attempt import check_seed, mark, mark_sentence, needed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.progress.quiz import Attempt
+    from course.quizzing.attempt import Marked
+    from course.quizzing.bank import Posed
+    from course.quizzing.review import Due
+
+__all__ = ["app", "history", "review", "take"]
+
+INTERRUPTED = 130
+
+_HELP = {"help_option_names": ["-h", "--help"]}
+
+app = typer.Typer(
+    help="Answer the quiz, and review what was missed.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings=_HELP,
+)
+
+AnswersOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Answers from a TOML or JSON file; nothing is asked."),
+]
+SeedOption = Annotated[
+    int | None, typer.Option(metavar="N", help="Which variants, numbers and order; drawn if left out.")
+]
+QuestionsOption = Annotated[
+    bool, typer.Option("--questions", help="Print the questions and a file to fill in; nothing is asked.")
+]
+
+
+def today() -> date:
+    """The day it is for the student."""
+    return datetime.now().astimezone().date()
+
+
+@app.command(epilog="Example: course quiz take --answers answers.toml --seed 42")
+def take(answers: AnswersOption = None, seed: SeedOption = None, questions: QuestionsOption = False) -> int:
+    """Answer the questions; exit code 0 if passed, 1 below the mark.
+
+    An attempt that was interrupted goes on where it was. Without a terminal: print the questions with
+    --questions, put the answers into a file, and hand it over with --answers. Afterwards every option of
+    what was missed is explained.
+    """
+
+    console = current()
+    _check_options(console, answers, seed, questions, "take")
+    desk = Desk.load()
+    if answers is not None:
+        return _take_file(console, desk, answers, seed)
+    if questions:
+        seed = printed_seed(console, desk, seed)
+        posed = desk.bank.pose(seed)
+        screen.show_mark(console, len(posed))
+        return screen.hand_out(console, desk.here, posed, seed, "take")
+    attempt, resumed = open_or_new(console, desk, seed)
+    posed = desk.bank.pose(attempt.seed)
+    screen.show_mark(console, len(posed))
+    screen.show_keys(console)
+    if resumed:
+        console.line(f"Going on with the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
+    if not _ask_all(console, desk, attempt, posed):
+        console.line("The attempt waits for you: `course quiz take` goes on with it.")
+        return INTERRUPTED
+    return _finish(console, desk, attempt, posed, resumed=resumed)
+
+
+def _check_options(
+    console: Console, answers: Path | None, seed: int | None, questions: bool, command: str
+) -> None:
+    if seed is not None:
+        check_seed(seed)
+    if answers is not None and questions:
+        raise UsageError(
+            "--questions prints what is asked and --answers answers it; give one of them.",
+            help=f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE.",
+        )
+    if answers is None and not questions and command == "take":
+        _need_terminal(console, command)
+
+
+def _need_terminal(console: Console, command: str) -> None:
+    if console.interactive:
+        return
+    raise UsageError(
+        f"`course quiz {command}` asks its questions on a terminal, and there is none here"
+        f"{' with --json' if console.json else ''}: use --answers FILE.",
+        help=f"`course quiz {command} --questions` prints the questions and a file to fill in; then "
+        f"`course quiz {command} --answers FILE`.",
+        code="no_terminal",
+    )
+
+
+def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed]) -> bool:
+    """Ask what is not answered yet; False if the student stops."""
+    for number, question in enumerate(posed, start=1):
+        if question.question in attempt.answers:
+            continue
+        chosen = screen.ask(console, question, number, len(posed))
+        if chosen is None:
+            return False
+        answer(desk, attempt, question.question, chosen.id)
+    return True
+
+
+def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> int:
+    """An attempt whose answers are all in a file."""
+    file = read_answers(path)
+    open_one = desk.history.open
+    if seed is None:
+        seed = file.seed
+    if seed is None and open_one is not None:
+        seed = open_one.seed
+    if seed is None:
+        _no_seed(path, "take")
+    posed = desk.bank.pose(check_seed(seed))
+    answers = file.choose(posed, desk.bank, seed)
+    screen.show_mark(console, len(posed))
+    attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
+    resumed = attempt is not None and bool(attempt.answers)
+    attempt = attempt or start(desk, seed)
+    for name, option in answers.items():
+        if name not in attempt.answers:
+            answer(desk, attempt, name, option)
+    return _finish(console, desk, attempt, posed, resumed=resumed)
+
+
+def _no_seed(path: Path, command: str) -> NoReturn:
+    raise UsageError(
+        f"{path} does not say which questions its answers are for.",
+        help=f"Add a line `seed = N`, as `course quiz {command} --questions` prints it, or give --seed N.",
+        code="seed_missing",
+    )
+
+
+def _finish(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed], *, resumed: bool) -> int:
+    """Score, record, show."""
+    result = mark(posed, attempt.answers)
+    right = {marked.posed.question: marked.right for marked in result.marked}
+    desk.here.record(quiz.DONE, "", quiz.done_data(attempt.id, right, passed=result.passed))
+    due = desk.reviews()
+    step = _step(result.missed, due, passed=result.passed)
+    screen.show_result(console, result)
+    screen.show_due(console, due, today())
+    console.note(f"Next: {step}")
+    for warning in desk.here.warnings:
+        console.warn(warning)
+    console.emit(
+        Quiz(
+            ok=result.passed,
+            exit_code=0 if result.passed else 1,
+            course=desk.here.course,
+            seed=attempt.seed,
+            resumed=resumed,
+            score=result.score,
+            max_score=result.total,
+            needed=needed(result.total),
+            passed=result.passed,
+            mark=mark_sentence(result.total),
+            questions=tuple(screen.question_reply(marked) for marked in result.marked),
+            review=screen.due_reply(due),
+            next=NextStep(step),
+            warnings=tuple(desk.here.warnings),
+        )
+    )
+    return 0 if result.passed else 1
+
+
+def _step(missed: Sequence[Marked], due: Sequence[Due], *, passed: bool) -> str:
+    """The command to run next."""
+    if passed:
+        return "course quiz review" if due else "course"
+    lesson = next((marked.posed.lesson for marked in missed if marked.posed.lesson), "")
+    return f"course lesson {lesson}" if lesson else "course quiz take"
+
+
+@app.command(epilog="Example: course quiz review")
+def review(answers: AnswersOption = None, seed: SeedOption = None, questions: QuestionsOption = False) -> int:
+    """Bring back what was missed, in new words and numbers.
+
+    A missed question is due every two days until it was right three times in a row. Exit code 1 if
+    something was missed again; 0 if not, or if nothing is due. A review changes no score.
+    """
+
+    console = current()
+    _check_options(console, answers, seed, questions, "review")
+    desk = Desk.load()
+    ids = [entry.question for entry in desk.reviews() if entry.on <= today()]
+    if not ids:
+        return _end_review(console, desk, None, [])
+    if answers is None and not questions:
+        _need_terminal(console, "review")
+    if answers is not None:
+        return _review_file(console, desk, answers, seed, ids)
+    seed = desk.new_seed() if seed is None else seed
+    posed = desk.bank.pose(seed, only=ids)
+    if questions:
+        return screen.hand_out(console, desk.here, posed, seed, "review")
+    screen.show_keys(console)
+    marked: list[Marked] = []
+    for number, question in enumerate(posed, start=1):
+        one = screen.ask(console, question, number, len(posed))
+        if one is None:
+            console.line("What is left stays due: `course quiz review` goes on with it.")
+            return INTERRUPTED
+        marked.append(_reviewed(desk, question, one.id, seed))
+        screen.show_marked(console, marked[-1], number)
+    return _end_review(console, desk, seed, marked)
+
+
+def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
+    file = read_answers(path)
+    if seed is None:
+        seed = file.seed
+    if seed is None:
+        _no_seed(path, "review")
+    posed = desk.bank.pose(check_seed(seed), only=ids)
+    options = file.choose(posed, desk.bank, seed)
+    marked = [_reviewed(desk, question, options[question.question], seed) for question in posed]
+    for number, one in enumerate(marked, start=1):
+        screen.show_marked(console, one, number)
+    return _end_review(console, desk, seed, marked)
+
+
+def _reviewed(desk: Desk, posed: Posed, option: str, seed: int) -> Marked:
+    """Mark and record one answer of a review."""
+    (marked,) = mark([posed], {posed.question: option}).marked
+    desk.here.record(quiz.REVIEW, posed.question, quiz.review_data(seed, option, right=marked.right))
+    return marked
+
+
+def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[Marked]) -> int:
+    due = desk.reviews()
+    missed = [one for one in marked if not one.right]
+    if marked:
+        console.line((f"{len(marked) - len(missed)} of {len(marked)} right.", "bold"))
+    elif not due:
+        console.line(
+            "Nothing is under review: what an attempt misses comes here."
+            if desk.history.finished
+            else "Nothing is under review yet: take the quiz first."
+        )
+    elif not marked:
+        console.line("Nothing is due today.")
+    screen.show_due(console, due, today())
+    best = desk.history.best
+    step = "course" if best is not None and best.passed else "course quiz take"
+    console.note(f"Next: {step}")
+    for warning in desk.here.warnings:
+        console.warn(warning)
+    console.emit(
+        QuizReview(
+            ok=not missed,
+            exit_code=1 if missed else 0,
+            course=desk.here.course,
+            seed=seed,
+            questions=tuple(screen.question_reply(one) for one in marked),
+            review=screen.due_reply(due),
+            next_due=due[0].on.isoformat() if due else None,
+            next=NextStep(step),
+            warnings=tuple(desk.here.warnings),
+        )
+    )
+    return 1 if missed else 0
+
+
+@app.command(epilog="Example: course quiz history --json")
+def history() -> int:
+    """Show every attempt, with dates and scores, and what is under review."""
+    console, desk = current(), Desk.load()
+    attempts = screen.attempt_replies(desk.history)
+    due = desk.reviews()
+    best = desk.history.best
+    passed = best is not None and best.passed
+    screen.show_mark(console, len(desk.bank.ids))
+    screen.show_attempts(console, attempts, best)
+    screen.show_due(console, due, today())
+    ready = bool(due) and due[0].on <= today()
+    step = "course quiz review" if ready else "course" if passed else "course quiz take"
+    console.note(f"Next: {step}")
+    console.emit(
+        QuizHistoryReply(
+            course=desk.here.course,
+            mark=mark_sentence(len(desk.bank.ids)),
+            attempts=attempts,
+            best=best.score if best else None,
+            passed=passed,
+            review=screen.due_reply(due),
+            next=NextStep(step),
+        )
+    )
+    return 0

@@ -1,0 +1,111 @@
+"""A student's side of the quiz: the questions, the record, and the attempt that is under way."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from course.cli.frame.here import Here
+from course.errors import CourseError
+from course.progress import quiz
+from course.progress.quiz import quiz_history
+from course.quizzing.attempt import fresh_seed
+from course.quizzing.bank import Bank
+from course.quizzing.review import schedule
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.cli.frame.console import Console
+    from course.progress.quiz import Attempt, QuizHistory
+    from course.quizzing.review import Due
+
+__all__ = ["Desk", "agrees", "answer", "open_or_new", "start"]
+
+
+@dataclass
+class Desk:
+    """A student's side of the quiz."""
+
+    here: Here
+    bank: Bank
+    history: QuizHistory
+
+    @classmethod
+    def load(cls) -> Desk:
+        """Raises what finding the workspace, reading the questions and reading the record raise."""
+        here = Here.load()
+        return cls(here, Bank.of(here.catalog), quiz_history(here.workspace.store.events()))
+
+    def new_seed(self) -> int:
+        """A seed that asks nothing the way it was last asked."""
+        return fresh_seed(self.bank, self.history.last_seeds())
+
+    def reviews(self) -> tuple[Due, ...]:
+        """The questions under review, from the record as it is now."""
+        try:
+            self.history = quiz_history(self.here.workspace.store.events())
+        except CourseError as error:
+            self.here.warnings.append(f"{error.message} {error.help}")
+        return schedule(self.history.outcomes(), self.bank.ids)
+
+
+def open_or_new(console: Console, desk: Desk, seed: int | None) -> tuple[Attempt, bool]:
+    """The attempt to go on with, or a new one; and whether it was begun before."""
+    open_one = desk.history.open
+    if open_one is not None and seed in (None, open_one.seed):
+        if fits(desk.bank, open_one):
+            return open_one, bool(open_one.answers)
+        console.line("The questions have changed since you left your last attempt, so a new one begins.")
+    elif open_one is not None and open_one.answers:
+        left = f"{len(open_one.answers)} of {len(open_one.questions)} answered"
+        console.line(f"This is another attempt; the one you left (seed {open_one.seed}, {left}) ends here.")
+    return start(desk, desk.new_seed() if seed is None else seed), False
+
+
+def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
+    """Which questions to print: they are the same until they are answered.
+
+    An attempt in which something was answered goes on waiting, whatever is printed.
+    """
+    open_one = desk.history.open
+    if seed is not None and open_one is not None and open_one.answers:
+        return seed
+    return open_or_new(console, desk, seed)[0].seed
+
+
+def fits(bank: Bank, attempt: Attempt) -> bool:
+    """Whether the questions still are the ones the attempt was begun with."""
+    if attempt.questions != bank.ids:
+        return False
+    posed = {question.question: question for question in bank.pose(attempt.seed)}
+    return all(
+        name in posed and posed[name].choice(option) is not None for name, option in attempt.answers.items()
+    )
+
+
+def start(desk: Desk, seed: int) -> Attempt:
+    """Record the beginning of an attempt."""
+    attempt = quiz.Attempt(
+        id=secrets.token_hex(8),
+        seed=seed,
+        version=desk.here.catalog.version,
+        questions=desk.bank.ids,
+        started=datetime.now(UTC),
+    )
+    desk.here.record(quiz.START, "", quiz.start_data(attempt.id, seed, attempt.version, attempt.questions))
+    return attempt
+
+
+def answer(desk: Desk, attempt: Attempt, question: str, option: str) -> None:
+    """Record one answer at once, so that nothing is lost however the program ends."""
+    attempt.answers[question] = option
+    desk.here.record(quiz.ANSWER, question, quiz.answer_data(attempt.id, option))
+
+
+def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:
+    """Whether a file completes an open attempt rather than contradicts it."""
+    same = attempt.seed == seed and fits(bank, attempt)
+    return same and all(answers[name] == option for name, option in attempt.answers.items())

@@ -1,0 +1,259 @@
+"""How the quiz looks: questions, explanations, dates, and the same as parts of an answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.cli.frame.replies import NextStep
+from course.cli.quiz.replies import (
+    QuizAsked,
+    QuizAttempt,
+    QuizDue,
+    QuizOption,
+    QuizPlace,
+    QuizQuestion,
+    QuizQuestions,
+)
+from course.cli.work.overview import day
+from course.quizzing.attempt import mark_sentence, needed
+from course.quizzing.bank import LETTERS
+from course.quizzing.review import GAP_DAYS, ROUNDS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from datetime import date
+
+    from course.cli.frame.console import Console
+    from course.cli.frame.here import Here
+    from course.progress.quiz import Attempt, QuizHistory
+    from course.quizzing.attempt import Marked, Result
+    from course.quizzing.bank import Choice, Posed
+    from course.quizzing.review import Due
+
+__all__ = [
+    "ask",
+    "attempt_replies",
+    "due_reply",
+    "hand_out",
+    "question_reply",
+    "show_attempts",
+    "show_due",
+    "show_keys",
+    "show_mark",
+    "show_marked",
+    "show_result",
+]
+
+_PROMPT = "Your answer: "
+_KEYS = f"Type {LETTERS[0]} to {LETTERS[-1]} or 1 to {len(LETTERS)}, then Enter; q stops."
+#: So wide is the longest label beside an option: "Your answer".
+_LABEL = 11
+
+
+def show_mark(console: Console, total: int) -> None:
+    """The pass mark, before anything is asked."""
+    console.line((f"{mark_sentence(total)}.", "bold"))
+
+
+def show_keys(console: Console) -> None:
+    """Which keys answer."""
+    console.note(_KEYS)
+
+
+def ask(console: Console, posed: Posed, number: int, total: int) -> Choice | None:
+    """Ask one question; None if the student stops or the input ends."""
+    console.blank()
+    _show_question(console, posed, number, total)
+    while True:
+        typed = console.ask(_PROMPT)
+        if typed is None:
+            console.blank()
+            return None
+        if typed.lower() in {"q", "quit"}:
+            return None
+        choice = posed.choice(typed)
+        if choice is not None:
+            return choice
+        console.line(_KEYS)
+
+
+def _show_question(console: Console, posed: Posed, number: int, total: int) -> None:
+    console.heading(f"Question {number} of {total}", posed.title)
+    _show_prompt(console, posed)
+    for choice in posed.choices:
+        console.item(choice.letter, choice.text, style="bold")
+
+
+def _show_prompt(console: Console, posed: Posed, indent: int = 0) -> None:
+    for paragraph in posed.prompt.split("\n\n"):
+        console.line(paragraph, indent=indent)
+
+
+def show_result(console: Console, result: Result) -> None:
+    """The score, then each question: every option of what was missed, the right one of the rest."""
+    _show_score(console, result)
+    for number, marked in enumerate(result.marked, start=1):
+        show_marked(console, marked, number)
+    if console.fancy:
+        # By now the score has scrolled out of the window.
+        _show_score(console, result)
+
+
+def _show_score(console: Console, result: Result) -> None:
+    verdict = ("passed", "green") if result.passed else ("not passed", "red")
+    console.blank()
+    console.line(
+        (f"{result.score} of {result.total} right, {needed(result.total)} needed: ", "bold"), verdict
+    )
+
+
+def show_marked(console: Console, marked: Marked, number: int) -> None:
+    """One answered question and why its options are right or wrong."""
+    posed, chosen = marked.posed, marked.chosen
+    console.blank()
+    outcome = ("right", "green") if marked.right else ("missed", "red")
+    console.line((f"{number}. {posed.title}: ", "bold"), outcome)
+    if not marked.right:
+        _show_prompt(console, posed, indent=2)
+        _show_choice(console, "Your answer", chosen, "red")
+    _show_choice(console, "Right", posed.key, "green")
+    if not marked.right:
+        for choice in posed.choices:
+            if choice is not chosen and not choice.right:
+                _show_choice(console, "Also wrong", choice, "yellow")
+        console.line((f"Source: {posed.source}", "dim"), indent=2)
+        if posed.lesson:
+            console.line((f"Read again: course lesson {posed.lesson}", "dim"), indent=2)
+
+
+def _show_choice(console: Console, label: str, choice: Choice, style: str) -> None:
+    console.item(label, f"{choice.letter}. {choice.text}", style=style, width=_LABEL)
+    console.line(choice.explanation, indent=4)
+    if choice.belief:
+        console.line(f'The belief behind it: "{choice.belief}"', indent=4)
+
+
+def show_due(console: Console, due: Sequence[Due], today: date) -> None:
+    """When each question under review is due."""
+    if not due:
+        return
+    console.blank()
+    console.heading("Under review", f"until right {ROUNDS} times in a row, {GAP_DAYS} days or more apart")
+    for entry in due:
+        rounds = f"right {entry.rounds} of {ROUNDS} times"
+        console.line(f"{entry.question}: {_when(entry.on, today)}; {rounds}", indent=2)
+
+
+def _when(day: date, today: date) -> str:
+    days = (day - today).days
+    if days <= 0:
+        return "due now"
+    return f"due {day.isoformat()} ({'tomorrow' if days == 1 else f'in {days} days'})"
+
+
+def show_attempts(console: Console, attempts: Sequence[QuizAttempt], best: Attempt | None) -> None:
+    """Every attempt as a row."""
+    if not attempts:
+        console.line("No attempt yet.")
+        return
+    rows = []
+    for attempt in attempts:
+        score = "" if attempt.score is None else f"{attempt.score} of {attempt.max_score}"
+        said = f"{attempt.answered} of {attempt.max_score} answered, {attempt.state}"
+        if attempt.state == "finished":
+            said = "passed" if attempt.passed else "not passed"
+            said += "" if attempt.counts else "; same seed as before, does not count"
+        rows.append((day(attempt.finished_at or attempt.started_at), score, said, str(attempt.seed)))
+    console.table(("When", "Score", "Result", "Seed"), rows)
+    if best is not None:
+        console.line(f"Best: {best.score} of {best.total}; the best attempt counts.")
+
+
+def hand_out(console: Console, here: Here, posed: Sequence[Posed], seed: int, command: str) -> int:
+    """Print questions, and below them the file to fill in."""
+    step = f"course quiz {command} --answers answers.toml"
+    template = _template(posed, seed)
+    for number, question in enumerate(posed, start=1):
+        console.blank()
+        _show_question(console, question, number, len(posed))
+    console.blank()
+    console.heading("Answers", "save this as answers.toml, with a letter in each pair of quotes")
+    console.block(template)
+    console.note(f"Then: {step}")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(
+        QuizQuestions(
+            course=here.course,
+            seed=seed,
+            mark=mark_sentence(len(posed)) if command == "take" else "",
+            questions=tuple(_asked(question) for question in posed),
+            template=template,
+            next=NextStep(step),
+            warnings=tuple(here.warnings),
+        )
+    )
+    return 0
+
+
+def _template(posed: Sequence[Posed], seed: int) -> str:
+    lines = ["format_version = 1", f"seed = {seed}", "", "[answers]"]
+    return "\n".join([*lines, *(f'{question.question} = ""' for question in posed)]) + "\n"
+
+
+def _asked(posed: Posed) -> QuizAsked:
+    places = tuple(QuizPlace(choice.letter, choice.id, choice.text) for choice in posed.choices)
+    return QuizAsked(posed.question, posed.title, posed.prompt, places)
+
+
+def question_reply(marked: Marked) -> QuizQuestion:
+    """An answered question as a script reads it."""
+    posed = marked.posed
+    return QuizQuestion(
+        id=posed.question,
+        title=posed.title,
+        variant=posed.variant,
+        prompt=posed.prompt,
+        answer=marked.chosen.id,
+        right=marked.right,
+        options=tuple(
+            QuizOption(
+                letter=choice.letter,
+                id=choice.id,
+                text=choice.text,
+                right=choice.right,
+                chosen=choice is marked.chosen,
+                explanation=choice.explanation,
+                misconception=choice.misconception or None,
+                belief=choice.belief or None,
+            )
+            for choice in posed.choices
+        ),
+        source=posed.source,
+        lesson=posed.lesson or None,
+    )
+
+
+def due_reply(due: Sequence[Due]) -> tuple[QuizDue, ...]:
+    """What is under review, as a script reads it."""
+    return tuple(QuizDue(entry.question, entry.on.isoformat(), entry.rounds) for entry in due)
+
+
+def attempt_replies(history: QuizHistory) -> tuple[QuizAttempt, ...]:
+    """Attempts as a script reads them; one that was left without an answer is not worth a line."""
+    shown = [a for a in history.attempts if a.finished or a.answers or a is history.open]
+    return tuple(
+        QuizAttempt(
+            seed=attempt.seed,
+            state="finished" if attempt.finished else "open" if attempt is history.open else "left",
+            started_at=attempt.started.isoformat(),
+            finished_at=attempt.finished.isoformat() if attempt.finished else None,
+            version=attempt.version,
+            answered=len(attempt.answers),
+            score=attempt.score if attempt.finished else None,
+            max_score=attempt.total,
+            passed=attempt.passed,
+            counts=attempt in history.counting,
+        )
+        for attempt in shown
+    )

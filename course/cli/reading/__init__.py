@@ -1,0 +1,1 @@
+"""``course lessons`` and ``course lesson``: what there is to read, and reading it."""

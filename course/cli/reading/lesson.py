@@ -1,0 +1,141 @@
+"""A lesson on a terminal: for eyes, or line by line for a screen reader.
+
+``render_lesson`` prints a whole lesson, ``lesson_pages`` and ``Reader.show`` let a caller go page by page. A
+page ends where a section ends, and after each prediction: the figure that answers it must not be in sight.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.catalog import blocks as b
+from course.catalog.markdown import read_blocks
+from course.cli.reading.fancy import FancyPrinter
+from course.cli.reading.plain import PlainPrinter
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Lesson
+
+__all__ = ["Page", "Reader", "lesson_pages", "render_lesson"]
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """One screenful of reading: a section, or a section up to a prediction.
+
+    Attributes:
+        section: the heading it stands under; empty before the first.
+        blocks: what it shows, the heading included where the section starts here.
+        first: the lesson's title, summary and objectives come before it.
+    """
+
+    section: str
+    blocks: tuple[b.Block, ...]
+    first: bool = False
+
+
+def lesson_pages(lesson: Lesson) -> tuple[Page, ...]:
+    """The pages of a lesson, in reading order.
+
+    Raises:
+        ContentError: the lesson cannot be read or parsed.
+    """
+    return _paginate(read_blocks(Path(lesson.path)))
+
+
+def render_lesson(
+    catalog: Catalog,
+    lesson: Lesson,
+    console: Console,
+    *,
+    plain: bool = False,
+    figures_dir: Path | None = None,
+    width: int | None = None,
+) -> tuple[Path, ...]:
+    """Print a whole lesson.
+
+    Args:
+        catalog: names what the lesson links to.
+        lesson: which one.
+        console: where to.
+        plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
+        figures_dir: folder to write the figures to as PNG; None writes none.
+        width: columns to use; the console's own if left out.
+
+    Returns:
+        The pictures that were written.
+
+    Raises:
+        ContentError: the lesson cannot be read or parsed.
+        UsageError: the folder for figures cannot be written to.
+    """
+    reader = Reader(catalog, lesson, console, plain=plain, figures_dir=figures_dir, width=width)
+    for page in reader.pages:
+        reader.show(page)
+    return reader.pictures
+
+
+class Reader:
+    """A lesson being read on one console; the arguments are those of ``render_lesson``.
+
+    Attributes:
+        pages: all of its pages, in order; their number is a place to come back to.
+    """
+
+    def __init__(
+        self,
+        catalog: Catalog,
+        lesson: Lesson,
+        console: Console,
+        *,
+        plain: bool = False,
+        figures_dir: Path | None = None,
+        width: int | None = None,
+    ) -> None:
+        self._lesson = lesson
+        self.pages = lesson_pages(lesson)
+        everything = [block for page in self.pages for block in b.walk_blocks(page.blocks)]
+        numbers = [block.id for block in everything if isinstance(block, b.Figure)]
+        # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
+        if plain or not console.encoding.lower().startswith("utf"):
+            self._printer: FancyPrinter | PlainPrinter = PlainPrinter(
+                catalog, lesson, console, numbers, figures_dir
+            )
+        else:
+            self._printer = FancyPrinter(
+                catalog, lesson, console, numbers, figures_dir, width or console.width, os.environ
+            )
+
+    @property
+    def pictures(self) -> tuple[Path, ...]:
+        """The pictures written so far."""
+        return tuple(self._printer.pictures)
+
+    def show(self, page: Page) -> None:
+        """Print one page."""
+        if page.first:
+            self._printer.head()
+        self._printer.blocks(page.blocks)
+
+
+def _paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:
+    pages: list[Page] = []
+    section, current = "", []  # type: str, list[b.Block]
+    for index, block in enumerate(blocks):
+        if isinstance(block, b.Heading) and block.level == 2:
+            if current:
+                pages.append(Page(section, tuple(current), first=not pages))
+            section, current = b.plain_text(block.inlines), []
+        current.append(block)
+        if isinstance(block, b.Prediction) and index + 1 < len(blocks):
+            pages.append(Page(section, tuple(current), first=not pages))
+            current = []
+    if current:
+        pages.append(Page(section, tuple(current), first=not pages))
+    return tuple(pages)

@@ -1,0 +1,272 @@
+"""``course sandbox``: scenes to play with, to run unseen, to film, to replay and to export."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame.completion import scene_ids
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import cwd
+from course.cli.sandbox import files as sandbox_files
+from course.cli.sandbox import play as sandbox_play
+from course.cli.sandbox.replies import (
+    SandboxEntry,
+    SandboxExport,
+    SandboxList,
+    SandboxParameter,
+    SandboxReplay,
+    SandboxVersion,
+)
+from course.errors import NotFoundError, UsageError
+from course.sandbox.exports.mjcf import mjcf
+from course.sandbox.exports.sdf import sdf
+from course.sandbox.scene.loading import choose, question, scenes, unchanged
+from course.sandbox.scene.settings import SETTINGS
+
+if TYPE_CHECKING:
+    from course.sandbox.scene.model import Scene
+
+__all__ = ["app", "export", "list_scenes", "play", "replay"]
+
+app = typer.Typer(
+    help="Play with collisions, and see where the energy goes.",
+    invoke_without_command=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+_SCENE = typer.Argument(
+    metavar="SCENE", help="A scene, or a file of your own that ends in .toml.", autocompletion=scene_ids
+)
+_SET = typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter; as often as needed.")
+
+
+@app.callback(epilog="Example: course sandbox play newtons-cradle")
+def menu(
+    ctx: typer.Context,
+    list_: Annotated[bool, typer.Option("--list", help="List the scenes; the same as `list`.")] = False,
+) -> int | None:
+    """Play with collisions, and see where the energy goes.
+
+    Without a command: a menu in a terminal, the list of scenes anywhere else.
+    """
+    if ctx.invoked_subcommand is not None:
+        if list_:
+            raise UsageError("--list stands alone.", help="Try `course sandbox --list`.")
+        return None
+    console = current()
+    scenes = _list(console, None)
+    if list_ or not console.interactive or not console.fancy:
+        return 0
+    answer = console.ask("Which one? A number or a name, Enter for none: ")
+    if not answer:
+        return 0
+    if answer.isdigit() and 1 <= int(answer) <= len(scenes):
+        answer = scenes[int(answer) - 1].id
+
+    return play(answer)
+
+
+@app.command("list", epilog="Example: course sandbox list newtons-cradle")
+def list_scenes(
+    scene: Annotated[str | None, _SCENE] = None,
+) -> int:
+    """List the scenes, or one of them with all its parameters.
+
+    Each asks for a number: guess it before you run the scene, then see.
+    """
+    _list(current(), scene)
+    return 0
+
+
+@app.command(epilog="Example: course sandbox play restitution-row --guess 3.5 --describe")
+def play(
+    scene: Annotated[str, _SCENE],
+    settings: Annotated[list[str] | None, _SET] = None,
+    web: Annotated[bool, typer.Option("--web", help="In a browser, on this machine only.")] = False,
+    headless: Annotated[bool, typer.Option("--headless", help="Unseen, as fast as it goes.")] = False,
+    describe: Annotated[bool, typer.Option("--describe", help="Tell the run in sentences.")] = False,
+    guess: Annotated[
+        float | None, typer.Option("--guess", metavar="NUMBER", help="Your answer to the scene's question.")
+    ] = None,
+    duration: Annotated[
+        float | None,
+        typer.Option("--duration", metavar="S", help="Simulated seconds; the scene's own if left out."),
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", metavar="FILE", help="Write where everything was, as a table.")
+    ] = None,
+    every: Annotated[
+        float, typer.Option("--every", metavar="S", help="Seconds between the samples of --csv.")
+    ] = 0.05,
+    gif: Annotated[Path | None, typer.Option("--gif", metavar="FILE", help="Write a film.")] = None,
+    mp4: Annotated[
+        Path | None, typer.Option("--mp4", metavar="FILE", help="Write a film; needs ffmpeg.")
+    ] = None,
+    png: Annotated[Path | None, typer.Option("--png", metavar="FILE", help="Write one picture.")] = None,
+    at: Annotated[
+        float | None, typer.Option("--at", metavar="S", help="When the picture is taken; else at the end.")
+    ] = None,
+    record: Annotated[
+        Path | None, typer.Option("--record", metavar="FILE", help="Write a recording to replay.")
+    ] = None,
+    port: Annotated[int, typer.Option("--port", help="For --web; 0 takes a free one.")] = 0,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="For --web: only say the address.")
+    ] = False,
+) -> int:
+    """Play a scene, or run it unseen.
+
+    In a terminal the scene opens to be played with. With --headless, --describe, --json, a file to write, or
+    anywhere but in a terminal, it runs to its end, and theory, guess and simulation are set side by side.
+    """
+    return sandbox_play.play(current(), sandbox_play.PlayOptions(**locals()))  # a field for each option
+
+
+@app.command(epilog="Example: course sandbox replay run.jsonl")
+def replay(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A recording.")],
+) -> int:
+    """Run a recording again, and say where it first differs.
+
+    Exit code 1 if it does.
+    """
+    from course.sandbox.runs import recording
+
+    console = current()
+    recorded = recording.read(cwd() / file.expanduser())
+    with console.working("Replaying"):
+        difference = recording.replay(recorded)
+    for name, (then, here) in difference.versions.items():
+        console.line(f"Recorded with {name} {then}; here it is {here}.")
+    if difference.same:
+        console.line(f"The same, bit by bit: {recorded.ticks} steps, {difference.checked} states compared.")
+    else:
+        console.line(
+            f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "
+            f"up to step {difference.good_until} it was the same."
+        )
+        if not difference.versions:
+            console.note("All versions are the same: the file was changed, or this is a fault of the course.")
+    versions = tuple(
+        SandboxVersion(name=name, recorded=then, here=here)
+        for name, (then, here) in difference.versions.items()
+    )
+    code = 0 if difference.same else 1
+    console.emit(
+        SandboxReplay(
+            ok=code == 0,
+            exit_code=code,
+            scene=recorded.head.scene.id,
+            same=difference.same,
+            steps=recorded.ticks,
+            checked=difference.checked,
+            good_until=difference.good_until,
+            first_difference=difference.tick,
+            t=difference.t,
+            versions=versions,
+        )
+    )
+    return code
+
+
+@app.command(epilog="Example: course sandbox export unequal-masses --format mjcf -o world.xml")
+def export(
+    scene: Annotated[str, _SCENE],
+    format_: Annotated[str, typer.Option("--format", help="sdf (Gazebo) or mjcf (MuJoCo).")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; else to the screen.")
+    ] = None,
+    settings: Annotated[list[str] | None, _SET] = None,
+) -> int:
+    """Write a scene as a world for Gazebo or MuJoCo."""
+    writers = {"sdf": sdf, "mjcf": mjcf}
+    if format_ not in writers:
+        raise UsageError(f"There is no format {format_[:20]!r}.", help="Formats: sdf, mjcf.")
+    console = current()
+    target = sandbox_files.target(output, "-o", ("sdf", "world", "xml")) if output else None
+    chosen = sandbox_files.chosen(scene, settings or ())
+    data = writers[format_](chosen)
+    written = None
+    if target is None:
+        if not console.json:
+            console.raw(data.decode())
+    else:
+        written = sandbox_files.write(console, target, data, format_)
+    text = "" if written else data.decode()
+    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, text=text))
+    return 0
+
+
+def _list(console: Console, name: str | None) -> tuple[Scene, ...]:
+    found = scenes() if name is None else (choose(name).scene,)
+    if not found:
+        raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
+    for place, scene in enumerate(found, 1):
+        _describe(console, scene, place, whole=name is not None)
+    example = name or found[0].id
+    console.note(
+        ("Next: " + (f"course sandbox play {example}" if name else f"course sandbox list {example}"), "bold")
+    )
+    console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
+    return found
+
+
+def _describe(console: Console, scene: Scene, place: int, *, whole: bool) -> None:
+    if not whole:
+        console.item(f"{place:2d}", f"{scene.id}: {scene.teaches}", width=3)
+        return
+    console.heading(scene.id, scene.title)
+    console.line(" ".join(scene.note.split()))
+    entry = _entry(scene)
+    if entry.question:
+        console.item("guess", entry.question, width=5)
+    for parameter in entry.parameters:
+        default = "each body's own" if parameter.default is None else f"{parameter.default:g}"
+        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+        span = f"{parameter.low:g} to {parameter.high:g}"
+        console.item(
+            "set",
+            f"{parameter.name}={default}{unit} ({span}): {parameter.meaning}",
+            width=5,
+        )
+    console.item("after", scene.after, width=5)
+
+
+def _entry(scene: Scene) -> SandboxEntry:
+    import math
+
+    wheels = next((body.wheels for body in scene.body if body.wheels), None)
+    own = {
+        "gravity": math.hypot(*scene.gravity),
+        "step": scene.step,
+        "iterations": float(scene.iterations),
+        "left": wheels.left if wheels else None,
+        "right": wheels.right if wheels else None,
+    }
+    parameters = [
+        SandboxParameter(
+            name=p.name, unit=p.unit, meaning=p.meaning, low=p.low, high=p.high, default=p.default
+        )
+        for p in scene.parameter
+    ]
+    parameters += [
+        SandboxParameter(
+            name=s.name, unit=s.unit, meaning=s.meaning, low=s.low, high=s.high, default=own.get(s.name)
+        )
+        for s in SETTINGS.values()
+        if wheels or s.name not in {"left", "right"}
+    ]
+    return SandboxEntry(
+        id=scene.id,
+        title=scene.title,
+        teaches=scene.teaches,
+        question=question(unchanged(scene)),
+        note=" ".join(scene.note.split()),
+        after=scene.after,
+        duration=scene.duration,
+        parameters=tuple(parameters),
+    )

@@ -1,0 +1,1 @@
+"""``course sim``: simulations, and their numbers beside theory's."""

@@ -1,0 +1,206 @@
+"""``course diff``, ``course reset`` and ``course update``: the stub, and newer versions of it.
+
+Whatever is replaced is copied to ``.course/backups`` first, and the copy's path is printed.
+"""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame.arguments import ExerciseName, OneExercise  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here
+from course.cli.frame.replies import Backup, Change, Diff, NextStep, Reset, Update
+from course.cli.work.checking import say_which
+from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.starting import HANDED_OUT
+from course.errors import UsageError
+from course.progress.workspace import same_text, write_atomically
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.catalog.models import Exercise
+
+__all__ = ["diff", "reset", "update"]
+
+
+def diff(exercise: ExerciseName = None) -> int:
+    """Show what changed since the stub.
+
+    A unified diff: lines you removed begin with -, lines you added with +. Of a notebook it shows the code
+    that is graded.
+    """
+
+    console, here = current(), Here.load()
+    work = chosen_work(here, *asked_for(here, exercise))
+    say_which(console, here, work)
+    name = work.path
+    before, after = _lines(work.stub), _lines(work.source)
+    rows = list(difflib.unified_diff(before, after, f"stub/{name}", name, lineterm=""))
+    added = sum(row.startswith("+") for row in rows[2:])
+    removed = sum(row.startswith("-") for row in rows[2:])
+    if rows:
+        _show_diff(console, rows)
+        console.note(f"{added} lines added, {removed} removed.")
+    else:
+        console.line(f"{name} is as it was handed out.")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(
+        Diff(
+            exercise=work.exercise.id,
+            path=str(here.workspace.path(work.exercise.id, work.name)),
+            changed=bool(rows),
+            added=added,
+            removed=removed,
+            diff="".join(f"{row}\n" for row in rows),
+        )
+    )
+    return 0
+
+
+def reset(
+    exercise: OneExercise,
+    yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False,
+) -> int:
+    """Go back to the stub; a copy is kept.
+
+    Asks first on a terminal; anywhere else it needs --yes. The copy's path is printed.
+    """
+
+    console, here = current(), Here.load()
+    chosen = here.exercise(exercise)
+    path = here.workspace.path(chosen.id, chosen.module)
+    stub = chosen.stub_path.read_bytes()
+    shown = here.workspace.shown(path)
+    step = f"course check {chosen.id}"
+    there = path.is_file()
+    if there and path.read_bytes() == stub:
+        console.line(f"{shown} is the stub already; nothing was changed.")
+        console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
+        return 0
+    if there and not yes and not _agreed(console, shown):
+        console.line("Nothing was changed.")
+        console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
+        return 0
+    backups = []
+    if there:
+        copy = here.workspace.backup(path, "reset")
+        console.line(f"Your version is kept at {here.workspace.shown(copy)}.")
+        backups.append(Backup(path=str(path), backup=str(copy)))
+    write_atomically(path, stub)
+    here.workspace.remember(chosen.id, chosen.module, stub)
+    here.record("reset", chosen.id, {"backups": [item.backup for item in backups]})
+    console.line(f"{shown} is the stub again.")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
+    return 0
+
+
+def update(
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be done.")] = False,
+) -> int:
+    """Bring newer course content in.
+
+    For what you started: a file you never edited is replaced (a copy is kept); beside one that you edited
+    the newer one is put as NAME.new, and yours stays.
+    """
+
+    console, here = current(), Here.load()
+    old, new = here.workspace.version, here.catalog.version
+    changes = tuple(_updates(here, dry_run=dry_run))
+    for change in changes:
+        console.line(_sentence(here, change, dry_run=dry_run))
+    if not any(change.action in {"replace", "beside"} for change in changes):
+        console.line("Everything here is as new as the course that is installed.")
+    elif dry_run:
+        console.note("Nothing was changed. To do it: course update")
+    if not dry_run:
+        if old != new:
+            here.workspace.with_version(new)
+            console.line(f"The workspace is at version {new} now (it was {old}).")
+        here.record("update", "", {"from": old, "to": new, "changes": [[c.path, c.action] for c in changes]})
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(Update(dry_run=dry_run, from_version=old, to_version=new, changes=changes))
+    return 0
+
+
+def _agreed(console: Console, shown: str) -> bool:
+    if not console.interactive:
+        raise UsageError(
+            f"This would replace {shown}, and nobody is here to be asked.",
+            help="Add --yes; a copy of the file is kept.",
+            code="needs_yes",
+        )
+    return console.confirm(f"Replace {shown} with the stub? A copy of yours is kept.")
+
+
+def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
+    for exercise in here.started():
+        for name in (*HANDED_OUT, exercise.module):
+            source = Path(exercise.folder) / name
+            if source.is_file():
+                yield _update_file(here, exercise, name, source.read_bytes(), dry_run=dry_run)
+
+
+def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
+    """Bring one file up to date, or say what that would mean."""
+    workspace = here.workspace
+    path = workspace.path(exercise.id, name)
+    given = workspace.given(exercise.id, name)
+    if not path.is_file():
+        return Change(path=str(path), action="missing")
+    mine = path.read_bytes()
+    if same_text(mine, new):
+        if not dry_run and given != new:
+            workspace.remember(exercise.id, name, new)
+        return Change(path=str(path), action="current")
+    if given is not None and same_text(given, new):
+        return Change(path=str(path), action="current")  # edited by the student, and nothing newer to offer
+    if not workspace.is_edited(exercise.id, name, mine):
+        backup = None
+        if not dry_run:
+            backup = str(workspace.backup(path, "update"))
+            write_atomically(path, new)
+            workspace.remember(exercise.id, name, new)
+        return Change(path=str(path), action="replace", backup=backup)
+    beside = path.with_name(f"{name}.new")
+    backup = None
+    if not dry_run:
+        if beside.is_file() and beside.read_bytes() != new:
+            backup = str(workspace.backup(beside, "update"))
+        write_atomically(beside, new)
+        workspace.remember(exercise.id, name, new)
+    return Change(path=str(path), action="beside", new=str(beside), backup=backup)
+
+
+def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:
+    name = here.workspace.shown(Path(change.path))
+    kept = f" The old one is kept at {here.workspace.shown(Path(change.backup))}." if change.backup else ""
+    if change.action == "replace":
+        verb = "would be replaced" if dry_run else "was replaced"
+        return f"{name}: {verb} by the newer one; you had not edited it.{kept}"
+    if change.action == "beside":
+        verb = "would be put" if dry_run else "is"
+        beside = here.workspace.shown(Path(change.new or ""))
+        return f"{name}: you edited it, so it stays; the newer one {verb} beside it as {beside}.{kept}"
+    if change.action == "missing":
+        return f"{name}: not there, and left so; `course start` would put it back."
+    return f"{name}: up to date."
+
+
+def _lines(data: bytes) -> list[str]:
+    return data.decode("utf-8-sig", "replace").splitlines()
+
+
+def _show_diff(console: Console, rows: list[str]) -> None:
+    styles = {"+": "green", "-": "red", "@": "cyan"}
+    for row in rows:
+        console.line((row, styles.get(row[:1], "")))

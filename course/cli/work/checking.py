@@ -1,0 +1,222 @@
+"""``course check``: the public checks, run through the very session that a grading run uses."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here
+from course.cli.frame.replies import Check, CheckAll, ErrorBody, ErrorReply, NextStep
+from course.cli.work.advice import next_step
+from course.cli.work.chosen import asked_for, chosen_work, worked_on
+from course.cli.work.verdicts import show_verdict
+from course.errors import CourseError, NotFoundError, UngradableError, UsageError
+from course.progress.history import check_data
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+    from course.catalog.models import CourseRef, Exercise
+    from course.cli.work.chosen import Work
+    from course.scoring.session import GradingSession, Submission
+    from course.scoring.verdict import Verdict
+
+__all__ = [
+    "check",
+    "grade_once",
+    "open_session",
+    "record_verdict",
+    "reply_to",
+    "say_which",
+    "unlike_verdict",
+]
+
+FAILED = 1
+
+
+def check(
+    exercise: ExerciseName = None,
+    everything: Annotated[bool, typer.Option("--all", help="Check every exercise you have started.")] = False,
+    only: Annotated[str | None, typer.Option(metavar="CHECK", help="Run one check, by its id.")] = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Show tracebacks and what your code printed.")
+    ] = False,
+) -> int:
+    """Run the public checks.
+
+    As often as you like. Exit code 0 if every check passes, 1 if one does not, 3 if there was nothing that
+    could be checked. Reads your notebook where you worked in that instead of the .py.
+    """
+
+    console, here = current(), Here.load()
+    if everything:
+        if exercise is not None or only is not None:
+            raise UsageError("--all takes neither an exercise nor --only.", help="Leave one of them out.")
+        return _check_all(console, here, verbose=verbose)
+    chosen = chosen_work(here, *asked_for(here, exercise))
+    reply = _check_one(console, here, chosen, only=only, verbose=verbose)
+    if reply.next is not None:
+        console.note(f"Next: {reply.next.command}")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(reply)
+    return reply.exit_code
+
+
+def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
+    """A grading session over the public checks of an exercise; a context manager."""
+    from course.scoring.session import GradingSession
+
+    return GradingSession(exercise, catalog, scope="public")
+
+
+def say_which(console: Console, here: Here, work: Work) -> None:
+    """Which file was read, where there is a choice; what else there is becomes a warning."""
+    if work.notebook is not None or work.notes:
+        console.note(f"Reading {work.path}.")
+    here.warnings.extend(work.notes)
+
+
+def grade_once(session: GradingSession, submission: Submission, only: str | None = None) -> Verdict:
+    """The verdict of an open session on one submission.
+
+    Args:
+        only: run this check and what it requires, and nothing else.
+
+    Raises:
+        NotFoundError: there is no check ``only``.
+    """
+    if only is not None:
+        _must_exist(only, [check.id for check in session.checks], session.exercise)
+    return session.grade(submission, only=only)
+
+
+def unlike_verdict(verdict: Verdict) -> CourseError | None:
+    """The error to report in place of a verdict that has no checks to show; None if it has."""
+    if verdict.state == "graded":
+        return None
+    problem = verdict.error
+    message = problem.message if problem else "The file could not be checked."
+    code = problem.code if problem else verdict.state
+    fix = problem.help if problem else ""
+    if verdict.state == "ungradable":
+        return UngradableError(message, help=fix, code=code)
+    return CourseError(message, help=fix or "This is a fault of the course, not of your work.", code=code)
+
+
+def record_verdict(
+    here: Here,
+    exercise: Exercise,
+    source: bytes,
+    verdict: Verdict,
+    seconds: float,
+    *,
+    only: str | None = None,
+    one_of_many: bool = False,
+) -> None:
+    """Add the verdict to the record of progress.
+
+    Args:
+        seconds: how long it took.
+        only: the one check that was asked for.
+        one_of_many: every exercise was checked, so that this one is not what the student turned to.
+    """
+
+    version = here.catalog.version
+    data = check_data(verdict, source, seconds, version, only=only or "", one_of_many=one_of_many)
+    here.record("check", exercise.id, data)
+
+
+def reply_to(course: CourseRef, verdict: Verdict, step: str = "") -> Check:
+    """The answer that ``--json`` prints for a verdict."""
+    return Check(
+        ok=verdict.all_pass,
+        exit_code=0 if verdict.all_pass else FAILED,
+        course=course,
+        exercise=verdict.exercise,
+        scope=verdict.scope,
+        score=verdict.score,
+        max_score=verdict.max_score,
+        passed=verdict.passed,
+        checks=verdict.checks,
+        next=NextStep(step) if step else None,
+        warnings=verdict.warnings,
+    )
+
+
+def _check_one(
+    console: Console,
+    here: Here,
+    work: Work,
+    *,
+    only: str | None = None,
+    one_of_many: bool = False,
+    verbose: bool = False,
+) -> Check:
+    """Check, record, show; raises what keeps it from being checked."""
+    exercise, source = work.exercise, work.source
+    say_which(console, here, work)
+    with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
+        begin = time.perf_counter()
+        with open_session(exercise, here.catalog) as session:
+            verdict = grade_once(session, work.submission, only)
+        seconds = time.perf_counter() - begin
+    record_verdict(here, exercise, source, verdict, seconds, only=only, one_of_many=one_of_many)
+    problem = unlike_verdict(verdict)
+    if problem is not None:
+        raise problem
+    show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None)
+    step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""
+    return reply_to(here.course, verdict, step or f"course check {exercise.id}")
+
+
+def _check_all(console: Console, here: Here, *, verbose: bool) -> int:
+    started = worked_on(here)
+    if not started:
+        raise NotFoundError(
+            "No exercise has been started here.",
+            help="`course start EXERCISE` starts one.",
+            code="nothing_started",
+        )
+    results: list[Check | ErrorReply] = []
+    for exercise in started:
+        console.heading(exercise.id)
+        try:
+            work = chosen_work(here, exercise)
+            results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose))
+        except CourseError as error:
+            console.error(error.message, error.help)
+            body = ErrorBody(code=error.code, message=error.message, help=error.help)
+            results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
+    worst = max(result.exit_code for result in results)
+    complete = sum(result.ok for result in results)
+    console.line((f"{complete} of {len(results)} exercises pass every public check.", "bold"))
+    for warning in dict.fromkeys(here.warnings):
+        console.warn(warning)
+    console.emit(CheckAll(ok=worst == 0, exit_code=worst, results=tuple(results)))
+    return worst
+
+
+def _must_exist(wanted: str, known: list[str], exercise: Exercise) -> None:
+    if wanted in known:
+        return
+    import difflib
+
+    close = difflib.get_close_matches(wanted, known, n=3)
+    raise NotFoundError(
+        f"{exercise.id} has no public check called {wanted!r}.",
+        help=f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join(known)}.",
+        code="check_not_found",
+    )
+
+
+def _estimate(here: Here, exercise: Exercise) -> str:
+    """How long it took last time, once that is long enough to wonder."""
+    try:
+        last = here.history(exercise).last
+    except CourseError:
+        return ""
+    return f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""

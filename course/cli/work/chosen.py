@@ -1,0 +1,257 @@
+"""Which file of an exercise counts: the module, or the notebook that was worked in instead.
+
+One rule for handing in and for everything before it (check, watch, diff, report): the module, unless it is
+not there, or still the stub and the notebook was worked in. So what a check reads is what is handed in.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.cli.frame.here import MAX_FILE_BYTES, cwd
+from course.cli.frame.replies import FileReply
+from course.errors import CourseError, NotFoundError, UngradableError
+from course.handed_in.cells import read_notebook
+from course.notebooks.building.cells import dumped
+from course.notebooks.building.merge import is_untouched
+from course.progress.history import fingerprint
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.catalog.models import Exercise
+    from course.cli.frame.here import Here
+    from course.handed_in.notebook import NotebookSource
+    from course.scoring.session import Submission
+
+__all__ = ["Work", "asked_for", "chosen_work", "work_of", "worked_on"]
+
+NOTEBOOK = ".ipynb"
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a student has of one exercise.
+
+    Attributes:
+        name: of the file.
+        data: its content as it is.
+        source: the module that is graded.
+        stub: the module as it was handed out, as this kind of file holds it.
+        notebook: where its lines stand; None if the file is the module itself.
+        notes: what else there is of this exercise and does not count, a sentence each.
+    """
+
+    exercise: Exercise
+    name: str
+    data: bytes
+    source: bytes
+    stub: bytes
+    notebook: NotebookSource | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> str:
+        """Where it lies in the workspace, and in the archive that is handed in."""
+        return f"{self.exercise.id}/{self.name}"
+
+    @property
+    def submission(self) -> Submission:
+        """What is graded of it."""
+        if self.notebook is not None:
+            return self.notebook.submission(self.exercise)
+        from course.scoring.session import Submission
+
+        return Submission({self.exercise.module: self.source})
+
+
+def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
+    """The exercise that a command is about, and its file if a path was given ("springs/springs.ipynb").
+
+    Raises:
+        NotFoundError: there is no such exercise or file.
+    """
+
+    if wanted is None or Path(wanted).suffix not in (".py", NOTEBOOK):
+        return here.exercise(wanted), None
+    path = (cwd() / Path(wanted).expanduser()).resolve()
+    for exercise in here.catalog.exercises():
+        for name in (exercise.module, _notebook_name(exercise)):
+            if path == here.workspace.path(exercise.id, name).resolve():
+                return exercise, name
+    raise NotFoundError(
+        f"{wanted} is not where a file of an exercise lies in this workspace.",
+        help="Name the exercise; a notebook that lies elsewhere is checked by `course notebook check FILE`.",
+        code="exercise_not_found",
+    )
+
+
+def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Work:
+    """The file of an exercise that counts, or the one that was named.
+
+    Raises:
+        UngradableError: there is none, or it cannot be read, or holds nothing that could be graded.
+    """
+    notebook_there = here.workspace.path(exercise.id, _notebook_name(exercise)).exists()
+    if named == _notebook_name(exercise):
+        return _notebook(here, exercise)
+    if named is not None or not notebook_there:
+        return _module(here, exercise)
+    if not here.workspace.path(exercise.id, exercise.module).exists():
+        return _notebook(here, exercise)
+    module = _module(here, exercise)
+    if not _is_edited(here, module):
+        notebook = _notebook(here, exercise)
+        return notebook if _is_edited(here, notebook) else module
+    return _beside_notebook(here, module)
+
+
+def worked_on(here: Here) -> tuple[Exercise, ...]:
+    """The exercises that were started, or whose notebook was worked in."""
+    started = {exercise.id for exercise in here.started()}
+    return tuple(
+        exercise
+        for exercise in here.catalog.exercises()
+        if exercise.id in started or _handed_in_notebook(here, exercise)[0] is not None
+    )
+
+
+def work_of(here: Here) -> tuple[list[Work], list[FileReply]]:
+    """What goes in, and what does not and why."""
+    chosen: list[Work] = []
+    left_out: list[FileReply] = []
+    for exercise in here.catalog.exercises():
+        module = _handed_in_module(here, exercise)
+        notebook, why_not = _handed_in_notebook(here, exercise)
+        if isinstance(module, Work):
+            chosen.append(module)
+            why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
+        elif notebook is not None:
+            chosen.append(notebook)
+        elif module == _STUB or (module == _MISSING and exercise.id in here.workspace.started()):
+            left_out += _reply(exercise, exercise.module, module)
+        if why_not:
+            left_out += _reply(exercise, _notebook_name(exercise), why_not)
+    return chosen, left_out
+
+
+_STUB, _MISSING = "still the stub", "not there"
+
+
+def _reply(exercise: Exercise, name: str, why: str) -> Iterator[FileReply]:
+    yield FileReply(path=f"{exercise.id}/{name}", action=why)
+
+
+def _notebook_name(exercise: Exercise) -> str:
+    return Path(exercise.module).with_suffix(NOTEBOOK).name
+
+
+# -- the two kinds of files ----------------------------------------------------------------------------------
+
+
+def _module(here: Here, exercise: Exercise) -> Work:
+    """The module as it lies in the workspace."""
+    source = here.source(exercise)
+    return Work(exercise, exercise.module, source, source, here.stub(exercise))
+
+
+def _notebook(here: Here, exercise: Exercise) -> Work:
+    """The notebook as it lies in the workspace.
+
+    Raises:
+        UngradableError: it is not there, or no notebook, or has none of the exercise's functions.
+        UsageError: it cannot be read.
+    """
+    from course.handed_in.notebook import notebook_source
+    from course.notebooks.building.exercises import exercise_notebook
+
+    name = _notebook_name(exercise)
+    path = here.workspace.path(exercise.id, name)
+    if not path.exists():
+        raise UngradableError(
+            f"There is no file {here.workspace.shown(path)}.",
+            help=f"`course notebook build {exercise.id}` puts one there.",
+            code="no_file",
+        )
+    data = read_notebook(path)
+    module = notebook_source(data, exercise, name)
+    if len(module.source) > MAX_FILE_BYTES:
+        raise UngradableError(
+            f"The functions of {name} are larger than {MAX_FILE_BYTES:,} bytes.",
+            help="Keep data out of them; the exercise needs none.",
+            code="too_large",
+        )
+    given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
+    return Work(exercise, name, data, module.source, given.source, module)
+
+
+def _is_edited(here: Here, work: Work) -> bool:
+    """Whether somebody wrote in a file since it was handed out."""
+    if work.notebook is None:
+        return here.workspace.is_edited(work.exercise.id, work.name, work.data)
+
+    return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
+
+
+def _beside_notebook(here: Here, module: Work) -> Work:
+    """A module that was worked in, with a word about the notebook beside it if that holds something else."""
+    from dataclasses import replace
+
+    try:
+        notebook = _notebook(here, module.exercise)
+    except CourseError:
+        return module  # `submit` says what is wrong with it
+    if not _is_edited(here, notebook) or fingerprint(notebook.source) == fingerprint(module.source):
+        return module
+    note = (
+        f"{notebook.path} was worked in too and holds other code; {module.path} is what counts and was read. "
+        f"To have the notebook checked: course check {notebook.path}"
+    )
+    return replace(module, notes=(note,))
+
+
+# -- as they are handed in -----------------------------------------------------------------------------------
+
+
+def _handed_in_module(here: Here, exercise: Exercise) -> Work | str:
+    """The module as it is handed in, or why it is not."""
+    if not here.workspace.path(exercise.id, exercise.module).exists():
+        return _MISSING
+    module = _module(here, exercise)
+    return module if _is_edited(here, module) else _STUB
+
+
+def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[Work | None, str]:
+    """The notebook as it is handed in; or None and why not, "" where there is none."""
+    from dataclasses import replace
+
+    if not here.workspace.path(exercise.id, _notebook_name(exercise)).exists():
+        return None, ""
+    try:
+        notebook = _notebook(here, exercise)
+    except CourseError as problem:
+        return None, problem.message.rstrip(".")
+    if not _is_edited(here, notebook):
+        return None, _STUB
+    try:
+        small = _without_outputs(notebook.data)
+    except (ValueError, RecursionError):
+        return None, "its outputs cannot be read; clear them in Jupyter and save it again"
+    if len(small) > MAX_FILE_BYTES:
+        return None, f"larger than {MAX_FILE_BYTES:,} bytes without its outputs, which no grading run takes"
+    return replace(notebook, data=small), ""
+
+
+def _without_outputs(data: bytes) -> bytes:
+    """A notebook as it was before it was run: outputs are large, and nobody grades them."""
+    notebook = json.loads(data.decode("utf-8-sig"))
+    sheets = [notebook, *notebook.get("worksheets", [])]
+    for cell in (cell for sheet in sheets for cell in sheet.get("cells", [])):
+        cell.pop("attachments", None)
+        if cell.get("cell_type") == "code":
+            cell["outputs"] = []
+            cell["execution_count"] = None
+    return dumped(notebook)

@@ -1,0 +1,236 @@
+"""``course hint`` and ``course solution``: help, as much as has been worked for.
+
+Hints come one at a time, and each needs an attempt since the last one: a check that failed on code that had
+changed. How many are left is never shown, because people who can count them down click through them.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame import replies as schemas
+from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here
+from course.cli.frame.replies import Solution
+from course.cli.work.chosen import asked_for, chosen_work
+from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError
+from course.progress.history import fingerprint
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.catalog.models import Exercise
+    from course.progress.history import History
+
+__all__ = ["hint", "solution"]
+
+PACKS = "*.coursepack"
+
+
+def hint(
+    exercise: ExerciseName = None,
+    task: Annotated[
+        str | None, typer.Option(metavar="FUNCTION", help="About this function, not the first that fails.")
+    ] = None,
+) -> int:
+    """Show the next hint.
+
+    One is due after a check that failed on changed code; comments and layout do not count as a change.
+    Until then the last hint is shown again.
+    """
+
+    console, here = current(), Here.load()
+    chosen, named = asked_for(here, exercise)
+    reply = _next_hint(here, chosen, task, named)
+    if reply.task is not None and not console.quiet:
+        console.heading(chosen.task_titled(reply.task), reply.task)
+    if reply.hint is not None:
+        console.line(reply.hint)
+    if reply.message:
+        console.line(reply.message)
+    console.note(f"Next: {reply.next.command}")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(reply)
+    return 0
+
+
+def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> schemas.Hint:
+    """Decide what to show, and record it if it is new.
+
+    Args:
+        named: the file that was named, to be called by its name.
+    """
+
+    history = here.history(exercise)
+    again = f"course check {exercise.id}"
+    task = _task(exercise, history, wanted)
+    last = history.last
+    if last is None:
+        return _no_hint(
+            exercise, "not_checked", "Hints follow a check that failed. Check your work first.", again
+        )
+    if last.state != "graded":
+        message = "Your file could not be run at the last check; what that check said is the hint for now."
+        return _no_hint(exercise, "ungradable", message, again)
+    if task is None:
+        which = f"Every public check of {wanted} passes" if wanted else "Every public check passes"
+        step = again if wanted else "course submit"
+        return _no_hint(exercise, "passing", f"{which}: there is nothing to hint at.", step)
+    hints = here.catalog.hints(exercise).of(task)
+    shown = history.hints_for(task)
+    if not history.hint_is_due(fingerprint(here.stub(exercise))):
+        shown_last = hints[min(shown, len(hints)) - 1] if shown and hints else None
+        return _not_due(exercise, task, shown_last, named or _file_name(here, exercise))
+    if shown >= len(hints):
+        message = (
+            f"Every hint for this function has been given; you have worked for all of them. "
+            f"Read the lesson again with this function beside it: course lesson {exercise.lesson}. "
+            "A solution can be shown after a pass, where one was released."
+        )
+        return _no_hint(exercise, "exhausted", message, f"course lesson {exercise.lesson}", task)
+    here.record("hint", exercise.id, {"task": task, "index": shown, "fingerprint": last.fingerprint})
+    return _hint(exercise, given=True, task=task, hint=hints[shown], step=again)
+
+
+def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:
+    """The task to hint at: the one asked for if it fails, or the first that does."""
+    failing = history.failing_tasks()
+    known = [task.id for task in exercise.task]
+    if wanted is not None and wanted not in known:
+        raise NotFoundError(
+            f"{exercise.id} has no function called {wanted!r}.",
+            help=f"It has: {', '.join(known)}.",
+            code="task_not_found",
+        )
+    candidates = known if wanted is None else [wanted]
+    return next((task for task in candidates if task in failing), None)
+
+
+def _file_name(here: Here, exercise: Exercise) -> str:
+    """The file that the student works in, as far as it can be told."""
+    try:
+        return chosen_work(here, exercise).name
+    except CourseError:
+        return exercise.module
+
+
+def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> schemas.Hint:
+    if last is None:
+        message = (
+            f"The first hint follows an attempt. Write something in {file}, however rough, "
+            "and check it; then ask again."
+        )
+    else:
+        message = (
+            "You have had that one already. The next one follows a check that fails on changed code in "
+            f"{file}."
+        )
+    return _hint(
+        exercise,
+        reason="unchanged",
+        task=task,
+        hint=last,
+        message=message,
+        step=f"course check {exercise.id}",
+    )
+
+
+def _no_hint(
+    exercise: Exercise, reason: str, message: str, step: str, task: str | None = None
+) -> schemas.Hint:
+    return _hint(exercise, reason=reason, task=task, message=message, step=step)
+
+
+def _hint(
+    exercise: Exercise,
+    *,
+    step: str,
+    given: bool = False,
+    reason: str = "",
+    task: str | None = None,
+    hint: str | None = None,
+    message: str = "",
+) -> schemas.Hint:
+    return schemas.Hint(
+        exercise=exercise.id,
+        given=given,
+        reason=reason,
+        task=task,
+        hint=hint,
+        message=message,
+        next=schemas.NextStep(step),
+    )
+
+
+def solution(exercise: ExerciseName = None) -> int:
+    """Show a released solution, after a pass.
+
+    Once a check of yours has reached the pass mark, this shows the solution if your instructor has handed
+    one out: put the .coursepack file into the workspace.
+    """
+
+    console, here = current(), Here.load()
+    chosen = here.exercise(exercise)
+    if here.history(chosen).first_pass is None:
+        raise NotFoundError(
+            f"No check of {chosen.id} has reached the pass mark yet, and a solution read before that "
+            "teaches little.",
+            help=f"Go on with `course check {chosen.id}` and `course hint {chosen.id}`.",
+            code="not_passed",
+        )
+    source, files = _released(here, chosen)
+    _show_files(console, source, files)
+    here.record("solution", chosen.id, {"source": source})
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(Solution(exercise=chosen.id, source=source, files=dict(files)))
+    return 0
+
+
+def _released(here: Here, exercise: Exercise) -> tuple[str, Mapping[str, str]]:
+    """Where a solution is, and its files.
+
+    Raises:
+        NotFoundError: none was released to this machine.
+        IntegrityError: the pack that might hold it is damaged.
+    """
+    problem: IntegrityError | MissingCapabilityError | None = None
+    for path in sorted(here.workspace.root.glob(PACKS)):
+        from course.catalog.pack import read_pack
+
+        try:
+            pack = read_pack(path)
+        except (IntegrityError, MissingCapabilityError) as error:
+            problem = error
+            continue
+        if exercise.id in pack.solutions and pack.course_id == here.catalog.course_id:
+            return str(path), _texts(pack.solutions[exercise.id])
+    folder = here.catalog.content.solutions
+    if folder is not None and (folder / exercise.id / exercise.module).is_file():
+        names = (exercise.module, "README.md")
+        found = [folder / exercise.id / name for name in names]
+        return str(folder / exercise.id), _texts({p.name: p.read_bytes() for p in found if p.is_file()})
+    if problem is not None:
+        raise problem
+    raise NotFoundError(
+        f"No solution of {exercise.id} has been released to this machine.",
+        help=f"Your instructor hands one out as a .coursepack file; put it into {here.workspace.root}.",
+        code="no_solution",
+    )
+
+
+def _texts(files: Mapping[str, bytes]) -> dict[str, str]:
+    return {name: data.decode("utf-8", "replace") for name, data in sorted(files.items())}
+
+
+def _show_files(console: Console, source: str, files: Mapping[str, str]) -> None:
+    console.note(f"From {source}")
+    for name, text in files.items():
+        if not console.quiet:
+            console.heading(name)
+        console.block(text, language="python" if Path(name).suffix == ".py" else "")

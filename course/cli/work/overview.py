@@ -1,0 +1,253 @@
+"""``course`` and ``course progress``: where am I, what is next, what is done."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here, find_workspace, load_catalog
+from course.cli.frame.replies import ExerciseState, LessonState, NextStep, Progress, QuizState, Status
+from course.cli.work.advice import next_in_course
+from course.errors import CourseError
+from course.progress.quiz import quiz_history
+from course.scoring.numbers import format_points
+
+if TYPE_CHECKING:
+    from course.catalog.models import Exercise, Lesson
+    from course.progress.history import History
+
+__all__ = ["dashboard", "day", "exercise_state", "lesson_states", "progress"]
+
+#: States of an exercise, as a person reads them.
+WORDS = {
+    "new": "not started",
+    "started": "started, not checked yet",
+    "broken": "could not be run at the last check",
+    "failing": "in work",
+    "passed": "passed",
+    "complete": "every public check passes",
+}
+
+
+def dashboard() -> int:
+    """Say where the student is and what is next."""
+    here = find_workspace()
+    return _outside(current()) if here is None else _inside(current(), here)
+
+
+def progress() -> int:
+    """Show everything done so far.
+
+    Lessons read, exercises checked, with dates and scores.
+    """
+
+    console, here = current(), Here.load()
+    exercises = tuple(exercise_state(here, exercise) for exercise in here.catalog.exercises())
+    lessons = lesson_states(here)
+    sent = tuple(event.at.isoformat() for event in here.workspace.store.events("submit"))
+    console.heading("Lessons", f"{sum(x.read_at is not None for x in lessons)} of {len(lessons)} read")
+    for lesson in lessons:
+        when = f"read {day(lesson.read_at)}" if lesson.read_at else "not read yet"
+        console.line(f"{lesson.title} ({lesson.id}): {when}", indent=2)
+    done = sum(x.state in {"passed", "complete"} for x in exercises)
+    console.heading("Exercises", f"{done} of {len(exercises)} passed")
+    for exercise in exercises:
+        console.line(f"{exercise.title} ({exercise.id}): {_progress_line(exercise)}", indent=2)
+    quiz = quiz_state(here)
+    if quiz is not None:
+        console.heading("Quiz", _quiz_line(quiz))
+    often = _count(len(sent), "time")
+    console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
+    step = next_in_course(here)
+    console.note(f"Next: {step}")
+    console.emit(
+        Progress(
+            course=here.course,
+            workspace=str(here.workspace.root),
+            lessons=lessons,
+            exercises=exercises,
+            submissions=sent,
+            next=NextStep(step),
+            quiz=quiz,
+        )
+    )
+    return 0
+
+
+def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
+    """How far the student is with one exercise; raises what reading the record raises."""
+    history = here.history(exercise)
+    graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
+    return ExerciseState(
+        id=exercise.id,
+        title=exercise.title,
+        summary=exercise.summary,
+        lesson=exercise.lesson,
+        state=_state(here, exercise, history),
+        score=graded.score if graded else None,
+        max_score=graded.max_score if graded else None,
+        best_score=best.score if best else None,
+        checks_run=len(history.runs),
+        hints_shown=len(history.hints),
+        started_at=history.started.isoformat() if history.started else None,
+        checked_at=last.at.isoformat() if last else None,
+        passed_at=first_pass.at.isoformat() if first_pass else None,
+    )
+
+
+def quiz_state(here: Here) -> QuizState | None:
+    """What the record says about the quiz; None if the course has none."""
+    questions = len(list(here.catalog.content.quiz.glob("*.toml")))
+    if not questions:
+        return None
+    history = quiz_history(here.workspace.store.events())
+    best = history.best
+    if best is None:
+        return QuizState(attempts=0, best=None, total=questions, passed=False)
+    return QuizState(attempts=len(history.counting), best=best.score, total=best.total, passed=best.passed)
+
+
+def lesson_states(here: Here) -> tuple[LessonState, ...]:
+    """Every lesson and when it was first read."""
+    read: dict[str, str] = {}
+    for event in here.workspace.store.events("lesson"):
+        read.setdefault(event.subject, event.at.isoformat())
+    return tuple(lesson_state(lesson, read.get(lesson.id)) for lesson in here.catalog.lessons())
+
+
+def lesson_state(lesson: Lesson, read_at: str | None) -> LessonState:
+    """One lesson for a list."""
+    return LessonState(
+        id=lesson.id,
+        title=lesson.title,
+        summary=lesson.summary,
+        minutes=lesson.minutes,
+        exercises=lesson.exercises,
+        read_at=read_at,
+    )
+
+
+def day(moment: str) -> str:
+    """The local date and time of an ISO moment, to the minute."""
+    return datetime.fromisoformat(moment).astimezone().strftime("%Y-%m-%d %H:%M")
+
+
+def _state(here: Here, exercise: Exercise, history: History) -> str:
+    last, whole = history.last, history.last_graded
+    if last is None:
+        return "started" if exercise.id in here.workspace.started() else "new"
+    if last.state != "graded":
+        return "broken"
+    if whole is None:  # only some of the checks were ever run, which says nothing about the others
+        return "failing"
+    if whole.all_pass and last.all_pass:
+        return "complete"
+    return "passed" if whole.passed else "failing"
+
+
+def _outside(console: Console) -> int:
+    catalog = load_catalog()
+    lessons, exercises = catalog.lesson_ids(), catalog.exercise_ids()
+    step = "course init my-course"
+    console.heading(catalog.title)
+    console.line(
+        f"{_count(len(lessons), 'lesson')}, {_count(len(exercises), 'exercise')}; all of it works offline."
+    )
+    console.line("You are not in a workspace: the folder that holds your own files.")
+    console.note("See what it looks like first: course demo")
+    console.note(f"Next: {step}")
+    console.emit(
+        Status(
+            course=catalog.ref,
+            title=catalog.title,
+            workspace=None,
+            lessons_read=0,
+            lessons=len(lessons),
+            exercises=(),
+            next=NextStep(step),
+        )
+    )
+    return 0
+
+
+def _inside(console: Console, here: Here) -> int:
+    catalog = here.catalog
+    try:
+        states = tuple(exercise_state(here, exercise) for exercise in catalog.exercises())
+        read = sum(lesson.read_at is not None for lesson in lesson_states(here))
+        quiz = quiz_state(here)
+        step = next_in_course(here)
+    except CourseError as error:
+        # The dashboard is where someone in trouble looks first; it must not be one more error.
+        here.warnings.append(f"{error.message} {error.help}")
+        states, read, quiz, step = (), 0, None, "course doctor"
+    total = len(catalog.lesson_ids())
+    console.heading(catalog.title)
+    console.line(f"Workspace: {here.workspace.root}")
+    console.line(f"Lessons read: {read} of {total}")
+    if states:
+        console.table(
+            ("Exercise", "State", "Score"),
+            [(state.id, WORDS[state.state], _score(state)) for state in states],
+        )
+    if quiz is not None:
+        console.line(f"Quiz: {_quiz_line(quiz)}")
+    if here.workspace.version != catalog.version:
+        console.note(
+            f"The course is at version {catalog.version}, this workspace at {here.workspace.version}: "
+            "course update --dry-run shows what is new."
+        )
+    console.note((f"Next: {step}", "bold"))
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(
+        Status(
+            course=here.course,
+            title=catalog.title,
+            workspace=str(here.workspace.root),
+            lessons_read=read,
+            lessons=total,
+            exercises=states,
+            next=NextStep(step),
+            quiz=quiz,
+            warnings=tuple(here.warnings),
+        )
+    )
+    return 0
+
+
+def _progress_line(exercise: ExerciseState) -> str:
+    parts = [WORDS[exercise.state]]
+    if exercise.score is not None and exercise.max_score is not None:
+        parts.append(f"score {_score(exercise)}")
+        if exercise.best_score is not None and exercise.best_score > exercise.score:
+            parts.append(f"best {format_points(exercise.best_score)}")
+    if exercise.checks_run:
+        parts.append(_count(exercise.checks_run, "check run", "check runs"))
+    if exercise.hints_shown:
+        parts.append(_count(exercise.hints_shown, "hint"))
+    if exercise.passed_at:
+        parts.append(f"first passed {day(exercise.passed_at)}")
+    elif exercise.checked_at:
+        parts.append(f"last checked {day(exercise.checked_at)}")
+    elif exercise.started_at:
+        parts.append(f"since {day(exercise.started_at)}")
+    return ", ".join(parts)
+
+
+def _quiz_line(quiz: QuizState) -> str:
+    if quiz.best is None:
+        return "not taken yet"
+    parts = ["passed" if quiz.passed else "not passed yet", f"best {quiz.best} of {quiz.total}"]
+    return ", ".join([*parts, _count(quiz.attempts, "attempt")])
+
+
+def _score(state: ExerciseState) -> str:
+    if state.score is None or state.max_score is None:
+        return ""
+    return f"{format_points(state.score)}/{format_points(state.max_score)}"
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"

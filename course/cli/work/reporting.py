@@ -1,0 +1,182 @@
+"""``course report``: what a student's own code does on public data, in words, tables and figures."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
+from typing import TYPE_CHECKING, Annotated
+
+import msgspec
+import typer
+
+from course.catalog.models import CourseRef
+from course.cli.frame import files
+from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here, cwd
+from course.cli.frame.replies import Envelope, WrittenFile
+from course.cli.work.checking import say_which
+from course.cli.work.chosen import asked_for, chosen_work
+from course.errors import UsageError
+
+if TYPE_CHECKING:
+    from course.figures.described import Plot
+    from course.scoring.report import Report, Section
+
+__all__ = ["ReportReply", "SectionReply", "report"]
+
+
+class SectionReply(msgspec.Struct, frozen=True, kw_only=True):
+    """One part of a report. ``figure`` is the file drawn for it, ``description`` what is seen there."""
+
+    title: str
+    text: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    figure: WrittenFile | None
+    description: str
+
+
+class ReportReply(Envelope, tag="course.report/1", frozen=True, kw_only=True):
+    course: CourseRef
+    exercise: str
+    title: str
+    sections: tuple[SectionReply, ...]
+    bag: str | None
+
+
+def report(
+    exercise: ExerciseName = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="DIR", help="Where figures go; default: report/ beside your file."
+        ),
+    ] = None,
+    bag: Annotated[
+        Path | None,
+        typer.Option("--bag", metavar="DIR", help="Write the sensor streams as a ROS 2 bag (extra ros)."),
+    ] = None,
+) -> int:
+    """Show what your code does, with figures.
+
+    Runs your functions on public data, as the checks do, and draws the result. What needs a function that is
+    not written yet says so; the rest is shown.
+    """
+    from course.scoring.reporting import report_of
+
+    console, here = current(), Here.load()
+    work = chosen_work(here, *asked_for(here, exercise))
+    chosen = work.exercise
+    say_which(console, here, work)
+    with console.working(f"Running {work.name}"):
+        made = report_of(chosen, here.catalog, work.submission)
+    folder = _folder(here, chosen.id, out)
+    console.heading(made.title, chosen.id)
+    sections = tuple(
+        _shown(console, section, folder / f"{number}-{_slug(section.title)}.png")
+        for number, section in enumerate(made.sections, 1)
+    )
+    written = _write_bag(console, made, bag) if bag is not None else None
+    console.note(f"Next: course check {chosen.id}")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(
+        ReportReply(
+            course=here.course,
+            exercise=chosen.id,
+            title=made.title,
+            sections=sections,
+            bag=written,
+        )
+    )
+    return 0
+
+
+def _folder(here: Here, exercise: str, out: Path | None) -> Path:
+    folder = here.workspace.path(exercise, "report") if out is None else cwd() / out.expanduser()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(
+            f"The folder {folder} cannot be made ({error.strerror or error}).",
+            help="Name another one with --out.",
+            code="not_writable",
+        ) from error
+    return folder
+
+
+def _slug(title: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40] or "section"
+
+
+def _shown(console: Console, section: Section, path: Path) -> SectionReply:
+    """Print one section, draw its figure, and say it again for scripts."""
+    console.blank()
+    console.line((section.title, "bold"))
+    for paragraph in section.text.split("\n\n"):
+        if not paragraph.lstrip().startswith("- "):
+            console.line(" ".join(paragraph.split()))
+            continue
+        for item in paragraph.strip().split("\n"):
+            console.line(item.strip(), indent=2)
+    if section.rows:
+        _table(console, section)
+    figure = None
+    if section.plot is not None:
+        figure = _drawn(console, section.plot, path)
+    return SectionReply(
+        title=section.title,
+        text=section.text,
+        columns=section.columns,
+        rows=section.rows,
+        figure=figure,
+        description=section.plot.description if section.plot else "",
+    )
+
+
+def _table(console: Console, section: Section) -> None:
+    """The rows as a table or, where it is too wide for the window, each fact under its row's name."""
+    width = sum(max(map(len, column)) + 3 for column in zip(section.columns, *section.rows, strict=True))
+    if console.plain or width <= console.width:
+        console.table(section.columns, section.rows)
+        return
+    for first, *rest in section.rows:
+        console.line(first)
+        facts = [f"{head} {cell}" for head, cell in zip(section.columns[1:], rest, strict=True) if cell]
+        console.line(", ".join(facts), indent=2)
+
+
+def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
+    from course.figures.plots import render
+
+    with console.working("Drawing"):
+        picture = render(plot)
+    if plot.description:
+        console.line(("Figure: " + plot.description, "dim"))
+    # A figure that says the same as before is not a new one to keep a copy of.
+    path.unlink(missing_ok=True)
+    file = files.write(path, picture, why="report")
+    console.line(f"Wrote {file.path}")
+    return file
+
+
+def _write_bag(console: Console, made: Report, bag: Path) -> str:
+    """Write the streams as a bag, read it back, and say what is in it."""
+    if not made.streams:
+        raise UsageError(
+            "This report has no sensor streams to write.",
+            help="Its sensors are not written yet, or the exercise has none.",
+            code="no_streams",
+        )
+    from course.simulations.bags import read_bag, write_bag
+    from course.simulations.streams import KINDS, streams_from
+
+    path = cwd() / bag.expanduser()
+    write_bag(path, streams_from(made.streams))
+    kinds = {kind: name for name, kind in KINDS.items()}
+    # Read back: what a bag holds is what a reader finds in it.
+    counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in read_bag(path)]
+    console.blank()
+    console.line(f"Wrote {path}: messages {', '.join(counts)}.")
+    return str(path)

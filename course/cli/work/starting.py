@@ -1,0 +1,128 @@
+"""``course init`` and ``course start``: a workspace, and an exercise in it. Neither overwrites anything."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.catalog.models import CourseRef
+from course.cli.frame.arguments import OneExercise  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.console import current
+from course.cli.frame.here import Here, cwd, load_catalog
+from course.cli.frame.replies import FileReply, Init, NextStep, Start
+from course.errors import CourseError, NotFoundError, UsageError
+from course.progress.workspace import MARKER, Workspace
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+
+__all__ = ["HANDED_OUT", "init", "start"]
+
+#: Files of an exercise that a student gets besides the stub, where the exercise has them.
+HANDED_OUT = ("README.md", "boxes.py")
+
+
+def init(
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="DIR", help="Where; the current folder if left out.")
+    ] = None,
+) -> int:
+    """Make a workspace.
+
+    Creates the folder if need be, and course.toml in it. Nothing that is there already is changed.
+    """
+
+    console, catalog = current(), load_catalog()
+    here = cwd()
+    root = (here / (folder or Path()).expanduser()).resolve()
+    created = not (root / MARKER).is_file()
+    if created:
+        _refuse_odd_places(root, catalog)
+        workspace = Workspace.create(root, catalog.course_id, catalog.version)
+        console.line(f"Made a workspace for {catalog.title} in {root}.")
+    else:
+        workspace = Workspace.read(root)
+        console.line(f"{root} is a workspace already; nothing was changed.")
+    first = catalog.lesson_ids()[0] if catalog.lesson_ids() else ""
+    step = f"course lesson {first}".strip()
+    if root != here:
+        console.note(f"Go there:  cd {_quoted(root, here)}")
+    console.note(f"Then read: {step}")
+    console.emit(
+        Init(
+            workspace=str(workspace.root),
+            created=created,
+            course=CourseRef(id=workspace.course_id, version=workspace.version),
+            next=NextStep(step),
+        )
+    )
+    return 0
+
+
+def start(exercise: OneExercise) -> int:
+    """Put an exercise into the workspace.
+
+    You get the stub to fill in and its README. A file that is there already is left as it is.
+    """
+
+    console, here = current(), Here.load()
+    chosen = here.exercise(exercise)
+    files = []
+    for name in (*HANDED_OUT, chosen.module):
+        source = Path(chosen.folder) / name
+        if not source.is_file():
+            continue
+        target = here.workspace.path(chosen.id, name)
+        new = here.workspace.give(chosen.id, name, source.read_bytes())
+        files.append(FileReply(path=str(target), action="created" if new else "kept"))
+        verb = "created" if new else "is there already and was left as it is"
+        console.line(f"{here.workspace.shown(target)} {verb}.")
+    here.record("start", chosen.id, {"version": here.catalog.version})
+    step = f"course watch {chosen.id}"
+    console.note(f"Read {chosen.id}/README.md, write your code in {chosen.id}/{chosen.module}.")
+    console.note(f"Then check it on every save: {step}")
+    console.note(f"Or once, now and then: course check {chosen.id}")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(Start(exercise=chosen.id, files=tuple(files), next=NextStep(step)))
+    return 0
+
+
+def _refuse_odd_places(root: Path, catalog: Catalog) -> None:
+    """A workspace inside another one, or in the course's own folder, would mix up two people's files."""
+    content = catalog.content
+    if root in (content.root, content.exercises, content.lessons) or content.exercises in root.parents:
+        raise UsageError(
+            f"{root} is where the course itself lies.",
+            help="Name a folder of your own: `course init my-course`.",
+            code="inside_course",
+        )
+    if root.exists() and not root.is_dir():
+        raise UsageError(f"{root} is a file.", help="Name a folder.", code="exists")
+    outer = _enclosing(root)
+    if outer is not None:
+        raise UsageError(
+            f"{root} lies inside the workspace {outer.root}.",
+            help="Use that one, or make yours somewhere else.",
+            code="nested_workspace",
+        )
+
+
+def _enclosing(root: Path) -> Workspace | None:
+    try:
+        return Workspace.find(root.parent)
+    except NotFoundError:
+        return None
+    except CourseError as error:
+        raise UsageError(error.message, help=error.help, code="nested_workspace") from error
+
+
+def _quoted(root: Path, here: Path) -> str:
+    """A path for a shell: relative where that is shorter, quoted where it must be."""
+    try:
+        text = str(root.relative_to(here))
+    except ValueError:
+        text = str(root)
+    return f'"{text}"' if any(char.isspace() for char in text) else text

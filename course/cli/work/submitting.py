@@ -1,0 +1,224 @@
+"""``course submit``: one zip with what the student wrote, the same bytes for the same files."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import io
+import json
+import warnings
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here, cwd
+from course.cli.frame.replies import Submit, SubmitFile
+from course.cli.work.chosen import work_of
+from course.errors import CourseError, UngradableError, UsageError
+from course.progress.history import fingerprint
+from course.progress.quiz import quiz_history, records
+from course.progress.workspace import write_atomically
+from course.scoring.numbers import format_points
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from course.cli.frame.replies import FileReply
+    from course.cli.work.chosen import Work
+
+__all__ = ["FORMAT_VERSION", "archive", "submit"]
+
+FORMAT_VERSION = 1
+MANIFEST = "submission.json"
+#: What a grading run unpacks at most. In bytes.
+MAX_TOTAL_BYTES = 5_000_000
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
+
+
+def submit(
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Where; in the workspace if left out."),
+    ] = None,
+) -> int:
+    """Write the file to hand in.
+
+    Shows what goes in first. An exercise whose file is still the stub is left out; if its notebook was worked
+    in instead, that is handed in, without its outputs. If the output exists, a copy of it is kept.
+    """
+
+    console, here = current(), Here.load()
+    target = _target(here, output)
+    works, left_out = work_of(here)
+    files = tuple(_describe(here, work) for work in works)
+    quiz = _quiz_records(here)
+    _show(console, here, files, left_out, quiz)
+    if not works and not quiz:
+        raise UngradableError(
+            "There is nothing to hand in yet.",
+            help="Write an exercise first, or take the quiz.",
+            code="nothing_to_submit",
+        )
+    notes = [note for work in works if (note := _syntax_note(work))]
+    data = _packed(here, works, quiz)
+    backup = _keep_old(here, target, data)
+    write_atomically(target, data)
+    here.record("submit", "", {"output": str(target), "sha256": hashlib.sha256(data).hexdigest()})
+    if backup:
+        console.line(f"There was a file of that name; it is kept at {here.workspace.shown(Path(backup))}.")
+    console.line((f"Wrote {target}.", "bold"))
+    console.note("Hand in that file. Hidden checks run when it is graded.")
+    for note in (*notes, *here.warnings):
+        console.warn(note)
+    console.emit(
+        Submit(
+            course=here.course,
+            output=str(target),
+            files=files,
+            left_out=tuple(left_out),
+            quiz_attempts=len(quiz),
+            backup=backup,
+            warnings=tuple(notes),
+        )
+    )
+    return 0
+
+
+def archive(
+    course_id: str, version: str, files: Mapping[str, bytes], quiz: Sequence[Mapping[str, object]] = ()
+) -> bytes:
+    """The zip: each file, and ``submission.json`` with its checksum. The same arguments, the same bytes.
+
+    Args:
+        quiz: attempts as ``course.progress.quiz.records`` gives them; a grading run scores them again.
+    """
+    manifest = {
+        "format_version": FORMAT_VERSION,
+        "course": {"id": course_id, "version": version},
+        "files": {path: hashlib.sha256(data).hexdigest() for path, data in sorted(files.items())},
+        "quiz": list(quiz),
+    }
+    entries = {**files, MANIFEST: (json.dumps(manifest, indent=2, sort_keys=True) + "\n").encode()}
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as packed:
+        for path in sorted(entries):
+            info = zipfile.ZipInfo(path, date_time=_EPOCH)
+            info.create_system = 3  # Unix everywhere, or the bytes would depend on who packs
+            info.external_attr = 0o100644 << 16
+            packed.writestr(info, entries[path])
+    return buffer.getvalue()
+
+
+def _packed(here: Here, works: Sequence[Work], quiz: Sequence[Mapping[str, object]]) -> bytes:
+    """The archive's bytes; refused if no grading run would take them."""
+    data = archive(
+        here.catalog.course_id,
+        here.catalog.version,
+        {work.path: work.data for work in works},
+        quiz,
+    )
+    if len(data) > MAX_TOTAL_BYTES:
+        raise UngradableError(
+            f"Together the files are larger than {MAX_TOTAL_BYTES:,} bytes, which no grading run unpacks.",
+            help="Keep data out of them.",
+            code="too_large",
+        )
+    return data
+
+
+def _target(here: Here, output: Path | None) -> Path:
+    """Where the zip goes, before anything is read."""
+    name = f"{here.catalog.course_id}-submission.zip"
+    if output is None:
+        return here.workspace.root / name
+    path = cwd() / output.expanduser()
+    if path.is_dir():
+        path = path / name
+    if not path.parent.is_dir():
+        raise UsageError(f"There is no folder {path.parent}.", help="Make it, or name another file.")
+    if path.suffix.lower() != ".zip":
+        raise UsageError(
+            f"{path.name} does not end in .zip.", help="Name a .zip file with -o.", code="not_a_zip"
+        )
+    return path
+
+
+def _describe(here: Here, work: Work) -> SubmitFile:
+    try:
+        last = here.history(work.exercise).last_graded
+    except CourseError:
+        last = None
+    current_one = last if last is not None and last.fingerprint == fingerprint(work.source) else None
+    return SubmitFile(
+        path=work.path,
+        sha256=hashlib.sha256(work.data).hexdigest(),
+        bytes=len(work.data),
+        last_score=current_one.score if current_one else None,
+        max_score=current_one.max_score if current_one else None,
+    )
+
+
+def _quiz_records(here: Here) -> list[dict[str, object]]:
+    """The attempts at the quiz; none where the record of progress cannot be read, which is said."""
+    try:
+        return records(quiz_history(here.workspace.store.events()))
+    except CourseError as error:
+        here.warnings.append(f"Attempts at the quiz are left out: {error.message} {error.help}")
+        return []
+
+
+def _show(
+    console: Console,
+    here: Here,
+    files: tuple[SubmitFile, ...],
+    left_out: list[FileReply],
+    quiz: Sequence[Mapping[str, Any]],
+) -> None:
+    if files or quiz:
+        console.line("This goes in:")
+    for file in files:
+        score = "not checked since its last change"
+        if file.last_score is not None and file.max_score is not None:
+            score = (
+                f"score {format_points(file.last_score)}/{format_points(file.max_score)} at the last check"
+            )
+        console.line(f"{file.path}: {file.bytes:,} bytes, {score}", indent=2)
+    if quiz:
+        attempts = "1 attempt" if len(quiz) == 1 else f"{len(quiz)} attempts"
+        best = max(quiz, key=lambda record: record["score"])
+        console.line(
+            f"The quiz: {attempts}, best {best['score']} of {len(best['questions'])}; "
+            "scored again when graded",
+            indent=2,
+        )
+    if files or quiz:
+        console.line(
+            f"{MANIFEST}: the course ({here.course.id} {here.course.version}) and checksums", indent=2
+        )
+    for item in left_out:
+        console.line(f"Left out: {item.path} ({item.action}).")
+
+
+def _syntax_note(work: Work) -> str:
+    """A warning about a file that Python cannot read; it goes in all the same."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            ast.parse(work.source)
+    except SyntaxError as error:
+        return (
+            f"{work.path} does not parse (line {error.lineno}: {error.msg}); it could not be graded as it is."
+        )
+    except (ValueError, RecursionError, MemoryError):
+        return f"{work.path} does not parse; it could not be graded as it is."
+    return ""
+
+
+def _keep_old(here: Here, target: Path, data: bytes) -> str | None:
+    """Copy what is about to be replaced, unless it is the same."""
+    if not target.exists() or target.read_bytes() == data:
+        return None
+    return str(here.workspace.backup(target, "submit"))

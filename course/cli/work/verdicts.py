@@ -1,0 +1,224 @@
+"""A verdict on the screen: grouped by task; the message first, then advice, then numbers.
+
+What a student needs to act on comes before what they need to argue with, and the summary comes last, where
+the eye is when a terminal has finished scrolling.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.cli.frame.console import STATUS_STYLE, Console
+from course.scoring.numbers import format_points, numbers_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.catalog.models import Exercise, Task
+    from course.scoring.verdict import CheckResult, Verdict
+
+__all__ = ["show_everything", "show_verdict", "summary"]
+
+_DETAIL_INDENT = 4
+_LABEL_WIDTH = 9
+_UNWRITTEN = "NOT_IMPLEMENTED"
+
+
+def show_verdict(
+    console: Console,
+    exercise: Exercise,
+    verdict: Verdict,
+    *,
+    verbose: bool = False,
+    whole: bool = True,
+    brief: bool = False,
+) -> None:
+    """Show every task of a verdict, and the summary.
+
+    Args:
+        verbose: show tracebacks (the student's own lines) and what the student's code printed.
+        whole: all public checks were run, so that there is something to sum up.
+        brief: show the details of one function only, the first that fails; people work on one at a time.
+    """
+    if not console.quiet:
+        page = _Page(console, verbose=verbose, brief=brief)
+        unwritten: list[tuple[Task, list[CheckResult]]] = []
+        for task in exercise.task:
+            checks = [check for check in verdict.checks if check.task == task.id]
+            if _is_unwritten(checks):
+                unwritten.append((task, checks))
+            elif checks:
+                page.task(task.title, checks)
+        if unwritten:
+            page.unwritten(unwritten)
+        # Checks of a task that the exercise does not list must not vanish.
+        known = {task.id for task in exercise.task}
+        for check in verdict.checks:
+            if check.task not in known:
+                page.check(check)
+        page.close()
+        for warning in verdict.warnings:
+            console.line(f"Note: {warning}")
+    sentences = summary(exercise, verdict) if whole else _part(verdict)
+    for sentence in sentences:
+        console.line((sentence, "bold green" if verdict.all_pass else "bold"))
+
+
+def show_everything(console: Console, exercise: Exercise, checks: Sequence[CheckResult]) -> None:
+    """Every check of a grading run, hidden ones with their values: for the instructor."""
+    page = _Page(console, verbose=True, brief=False, hidden=True)
+    for task in exercise.task:
+        page.task(task.title, [check for check in checks if check.task == task.id])
+
+
+def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
+    """What it comes to, in one or two sentences."""
+    total = len(verdict.checks)
+    passing = sum(check.status == "pass" for check in verdict.checks)
+    score = f"score {format_points(verdict.score)}/{format_points(verdict.max_score)}"
+    hidden = exercise.hidden_checks
+    later = ""
+    if hidden:
+        later = f"; {hidden} hidden {'check runs' if hidden == 1 else 'checks run'} when you submit"
+    if verdict.all_pass:
+        everything = "The one public check passes" if total == 1 else f"All {total} public checks pass"
+        return [f"{everything}{later}.", _capital(f"{score}.")]
+    mark = exercise.pass_mark * verdict.max_score
+    reached = "reached" if verdict.passed else "not reached yet"
+    return [
+        f"{passing} of {total} public checks {'passes' if passing == 1 else 'pass'}{later}.",
+        _capital(f"{score}; the pass mark, {format_points(mark)} ({exercise.pass_mark:.0%}), is {reached}."),
+    ]
+
+
+def _part(verdict: Verdict) -> list[str]:
+    passing = sum(check.status == "pass" for check in verdict.checks)
+    return [f"Checks run: {len(verdict.checks)}; passed: {passing}."]
+
+
+class _Page:
+    """One verdict being shown; remembers what it has said, so as not to say it seven times."""
+
+    def __init__(self, console: Console, *, verbose: bool, brief: bool, hidden: bool = False) -> None:
+        self._console = console
+        self._hidden = hidden
+        self._verbose = verbose
+        self._brief = brief
+        self._detailed = ""
+        self._left_out = False
+        self._said: set[str] = set()
+        self._kept_back = False
+
+    def task(self, title: str, checks: Sequence[CheckResult]) -> None:
+        """A heading with the points, and the task's checks."""
+        self._console.heading(title, _points(checks))
+        if not self._detailed and any(check.status != "pass" for check in checks):
+            self._detailed = checks[0].task
+        if _all_alike(checks) and not self._hidden:
+            self._alike(next(check for check in checks if check.status != "skip"))
+        else:
+            for check in checks:
+                self.check(check)
+        self._gap()
+
+    def unwritten(self, tasks: Sequence[tuple[Task, Sequence[CheckResult]]]) -> None:
+        """The functions that still are as the stub has them: what is true of all is said once."""
+        every = [check for _, checks in tasks for check in checks]
+        self._console.heading("Not written yet", _points(every))
+        for task, _ in tasks:
+            self._console.item(
+                "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
+            )
+        self._text(next(check.help for check in every if check.diagnosis == _UNWRITTEN))
+        self._gap()
+
+    def _gap(self) -> None:
+        if self._console.fancy:
+            self._console.blank()
+
+    def check(self, check: CheckResult) -> None:
+        """One check: its title, and everything about it if it did not pass."""
+        aside = "" if check.status in {"pass", "skip"} and not self._hidden else f"  [{check.id}]"
+        if self._hidden and check.visibility == "hidden":
+            aside = f"  [{check.id}, hidden]"
+        self._label(check.status, check.title, aside)
+        if check.status == "pass" or self._is_left_out(check):
+            return
+        if check.blocked_by:
+            self._text(f"Runs once {check.blocked_by} passes.")
+            return
+        self._text(check.message)
+        self._details(check)
+
+    def close(self) -> None:
+        """Say once how to see what was kept back."""
+        if self._left_out:
+            self._console.note(("Details of one function at a time; `course check` shows all.", "dim"))
+        if self._kept_back:
+            self._console.note(("--verbose shows tracebacks and what your code printed.", "dim"))
+
+    def _alike(self, check: CheckResult) -> None:
+        """The same thing keeps every check of the task from running: say it once."""
+        self._label(check.status, check.message)
+        if not self._is_left_out(check):
+            self._details(check)
+
+    def _is_left_out(self, check: CheckResult) -> bool:
+        """True if the details of another function were shown, and those of one are enough."""
+        if self._brief and check.task != self._detailed:
+            self._left_out = True
+            return True
+        return False
+
+    def _details(self, check: CheckResult) -> None:
+        if check.help and check.help not in self._said:
+            self._text(check.help)
+        for label, text in numbers_of(check):
+            if label != "diagnosis" or check.help not in self._said:
+                self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
+        self._said.add(check.help)
+        if self._verbose:
+            self._traces(check)
+        elif check.traceback or check.stdout:
+            self._kept_back = True
+
+    def _traces(self, check: CheckResult) -> None:
+        for name, text in (
+            ("Traceback, your lines only:", check.traceback),
+            ("Your code printed:", check.stdout),
+        ):
+            if text:
+                self._text(name)
+                self._console.block(text.rstrip(), indent=_DETAIL_INDENT + 2)
+
+    def _text(self, text: str) -> None:
+        if text:
+            self._console.line(text, indent=_DETAIL_INDENT)
+
+    def _label(self, status: str, text: str, aside: str = "") -> None:
+        """A status as a word, upper case where something is wrong, so that colour only repeats it."""
+        word = status if status in {"pass", "skip"} else status.upper()
+        self._console.item(word, text, (aside, "dim"), style=STATUS_STYLE.get(status, ""), width=_LABEL_WIDTH)
+
+
+def _is_unwritten(checks: Sequence[CheckResult]) -> bool:
+    """True if the task's function is as the stub has it."""
+    ran = [check for check in checks if check.status != "skip"]
+    return bool(ran) and all(check.diagnosis == _UNWRITTEN for check in ran)
+
+
+def _all_alike(checks: Sequence[CheckResult]) -> bool:
+    """True if one thing keeps all of several checks from running, such as a missing function."""
+    ran = [check for check in checks if check.status != "skip"]
+    if len(checks) < 2 or len({(check.status, check.message) for check in ran}) != 1:
+        return False
+    return ran[0].status not in {"pass", "fail"}
+
+
+def _points(checks: Sequence[CheckResult]) -> str:
+    points = format_points(sum(check.points for check in checks))
+    return f"{points}/{format_points(sum(check.max_points for check in checks))} points"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,371 @@
+"""``gradebook.sqlite``: the one truth of a grading run. Every other file there is an export of it.
+
+One coordinator writes it. A result is kept under student, exercise, submission, grader, seed and run: grading
+the same again changes nothing, grading anew keeps the old beside the new. The submissions themselves are in
+it too, so that a regrading needs nothing but this file. What an instructor decides later (a score in place of
+the graders', a late policy) lies beside the results and never changes them;
+``course.grading.results.effective`` puts the two together.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import sqlite3
+import time
+import zlib
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Self
+
+import msgspec
+
+from course.errors import CourseError, IntegrityError
+from course.grading.gradebook.file import (
+    FORMAT_VERSION,
+    SEAL,
+    begin_writing,
+    create,
+    explained,
+    open_file,
+    release,
+    seal,
+    unseal,
+)
+from course.grading.gradebook.records import FromDownload, GradedExercise, Key, Override, Result, SubmittedAt
+from course.scoring.verdict import Verdict, finite
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
+
+__all__ = [
+    "FORMAT_VERSION",
+    "FromDownload",
+    "Gradebook",
+    "GradedExercise",
+    "Key",
+    "Override",
+    "Result",
+    "SubmittedAt",
+]
+
+_CHECKPOINT_S = 5.0  # what a power cut costs at most
+
+
+class Gradebook:
+    """An open gradebook.
+
+    Args:
+        path: the file.
+        create: make a new one; otherwise it must exist.
+        writing: hold it against everybody else.
+
+    Attributes:
+        write_s: seconds spent on writing.
+
+    Raises:
+        NotFoundError: there is none.
+        UsageError: another run is writing it.
+        MissingCapabilityError: it belongs to a newer version, or cannot be written.
+        IntegrityError: the file is damaged or no gradebook.
+    """
+
+    def __init__(self, path: Path, *, create: bool = False, writing: bool = False) -> None:
+        self.path = path
+        self.write_s = 0.0
+        self._writing = create or writing
+        self._begun = False
+        self._changed = False
+        self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
+        if create:
+            _create(path)
+        self._db = open_file(path, writing=self._writing)
+        self._run = self._newest_run()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        if kind is None:
+            self.close()
+            return
+        with contextlib.suppress(CourseError):  # what went wrong first is what is reported
+            self.close()
+
+    def close(self) -> None:
+        """Put everything into the one file and close it."""
+        try:
+            with explained(self.path):
+                if self._changed:
+                    seal(self._db)
+                if self._begun:
+                    release(self._db)
+        finally:
+            self._db.close()
+
+    # -- facts about the run --------------------------------------------------------------------------
+
+    def meta(self) -> dict[str, str]:
+        """Facts about the run: course, version, seed, late policy, roster, ..."""
+        with explained(self.path):
+            return dict(self._db.execute("SELECT key, value FROM meta WHERE key != ? ORDER BY key", (SEAL,)))
+
+    def set_meta(self, **facts: str | None) -> None:
+        """Record facts about the run; None removes one."""
+        with self._transaction():
+            for name, value in facts.items():
+                if value is None:
+                    self._db.execute("DELETE FROM meta WHERE key = ?", (name,))
+                else:
+                    self._db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (name, value))
+
+    def begin_run(self, kind: str, options: Mapping[str, Any]) -> int:
+        """Note that a grading ("run") or regrading ("rerun") begins; its results are kept apart."""
+        with self._transaction():
+            self._run += 1
+            text = msgspec.json.encode(options).decode()
+            self._db.execute("INSERT INTO runs VALUES (?, ?, ?, ?)", (self._run, kind, _now(), text))
+        return self._run
+
+    def run_options(self) -> dict[str, Any]:
+        """The options of the latest run; empty if none was noted."""
+        with explained(self.path):
+            row = self._db.execute("SELECT options FROM runs ORDER BY number DESC LIMIT 1").fetchone()
+        return dict(msgspec.json.decode(row[0])) if row else {}
+
+    def set_exercises(self, exercises: Iterable[GradedExercise]) -> None:
+        """Note what is graded; what was graded earlier and is not named stays."""
+        with self._transaction():
+            self._db.executemany(
+                "INSERT OR REPLACE INTO exercises VALUES (?, ?, ?, ?, ?)",
+                [msgspec.structs.astuple(exercise) for exercise in exercises],
+            )
+
+    def exercises(self) -> tuple[GradedExercise, ...]:
+        """What was graded, in the order of the course."""
+        with explained(self.path):
+            rows = self._db.execute("SELECT * FROM exercises ORDER BY position, id").fetchall()
+        return tuple(GradedExercise(*row) for row in rows)
+
+    # -- students -------------------------------------------------------------------------------------
+
+    def set_students(self, students: Mapping[str, FromDownload]) -> None:
+        """Note who students are to the system they were downloaded from."""
+        with self._transaction():
+            self._db.executemany(
+                "INSERT OR REPLACE INTO students VALUES (?, ?)",
+                [(name, msgspec.json.encode(who).decode()) for name, who in students.items()],
+            )
+
+    def students(self) -> dict[str, FromDownload]:
+        """Who students are to the system they were downloaded from; nobody for plain folders."""
+        with explained(self.path):
+            rows = self._db.execute("SELECT student, identity FROM students").fetchall()
+        return {student: msgspec.json.decode(text, type=FromDownload) for student, text in rows}
+
+    def add_times(self, times: Iterable[SubmittedAt], *, replace: bool = False) -> None:
+        """Note when things were handed in. Of one witness's times for one content the earliest stays."""
+        earliest = "excluded.at" if replace else "min(ifnull(at, excluded.at), ifnull(excluded.at, at))"
+        with self._transaction():
+            self._db.executemany(
+                "INSERT INTO times VALUES (?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET at = " + earliest,
+                [msgspec.structs.astuple(time_) for time_ in times],
+            )
+
+    def times(self) -> Iterator[SubmittedAt]:
+        """All that is known about when things were handed in."""
+        with explained(self.path):
+            for row in self._db.execute("SELECT * FROM times"):
+                yield SubmittedAt(*row)
+
+    # -- results --------------------------------------------------------------------------------------
+
+    def add(self, result: Result, files: Mapping[str, bytes] | None = None) -> None:
+        """Keep a result, and what was handed in; it is in the file when this returns."""
+        body = msgspec.json.encode(finite(msgspec.to_builtins(result.verdict)))
+        row = (self._run, *asdict(result.key).values(), result.graded_at or _now(), body, _sha256(body))
+        with self._transaction():
+            self._db.execute(
+                "INSERT OR REPLACE INTO results (run, student, exercise, submission_sha256, grader_version,"
+                " seed, graded_at, verdict, verdict_sha256) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                row,
+            )
+            if files is not None:
+                packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
+                self._db.execute(
+                    "INSERT OR IGNORE INTO submissions VALUES (?, ?)", (result.key.submission_sha256, packed)
+                )
+
+    def has(self, key: Key) -> bool:
+        """Whether this very submission was graded by this very grader, other than by a fault of ours."""
+        return self._find(key) is not None
+
+    def confirm(self, key: Key) -> bool:
+        """Like ``has``; and if so, make that result the newest of its student and exercise again.
+
+        A student who hands in an earlier version again is to get its score, and not the later one's.
+        """
+        number = self._find(key)
+        if number is None:
+            return False
+        with explained(self.path):
+            newest = self._db.execute(
+                "SELECT max(number) FROM results WHERE student = ? AND exercise = ?",
+                (key.student, key.exercise),
+            ).fetchone()[0]
+        if newest != number:
+            with self._transaction():
+                self._db.execute(
+                    "UPDATE results SET number = (SELECT max(number) + 1 FROM results) WHERE number = ?",
+                    (number,),
+                )
+        return True
+
+    def _find(self, key: Key) -> int | None:
+        with explained(self.path):
+            row = self._db.execute(
+                "SELECT number, verdict FROM results WHERE student = ? AND exercise = ?"
+                " AND submission_sha256 = ? AND grader_version = ? AND seed = ? ORDER BY number DESC LIMIT 1",
+                tuple(asdict(key).values()),
+            ).fetchone()
+        if row is None or msgspec.json.decode(row[1], type=_State).state == "grader_error":
+            return None
+        return int(row[0])
+
+    def results(self, student: str | None = None, exercise: str | None = None) -> Iterator[Result]:
+        """The newest result of each student and exercise, ordered by both.
+
+        Raises:
+            IntegrityError: a result is not what was written.
+        """
+        where, arguments = _about(student, exercise)
+        newest = f"number IN (SELECT max(number) FROM results{where} GROUP BY student, exercise)"
+        yield from self._results(f" WHERE {newest}", arguments)
+
+    def history(self, student: str, exercise: str) -> list[Result]:
+        """Every result of a student and exercise, oldest first."""
+        return list(self._results(*_about(student, exercise)))
+
+    def _results(self, where: str, arguments: tuple[str, ...]) -> Iterator[Result]:
+        query = (
+            "SELECT student, exercise, submission_sha256, grader_version, seed, graded_at, run, number,"
+            f" verdict, verdict_sha256 FROM results{where} ORDER BY student, exercise, number"
+        )
+        with explained(self.path):
+            for row in self._db.execute(query, arguments):
+                *key, graded_at, run, number, body, digest = row
+                if _sha256(body) != digest:
+                    raise _failed_checksum(f"The result of {key[0]!r} for {key[1]}", self.path)
+                yield Result(Key(*key), msgspec.json.decode(body, type=Verdict), graded_at, run, number)
+
+    def student_ids(self) -> list[str]:
+        """Everybody with a result, by name."""
+        with explained(self.path):
+            return [row[0] for row in self._db.execute("SELECT DISTINCT student FROM results ORDER BY 1")]
+
+    def submission(self, sha256: str) -> dict[str, bytes] | None:
+        """What was handed in: file name to content; None if nothing of that digest was kept.
+
+        Raises:
+            IntegrityError: it is damaged.
+        """
+        with explained(self.path):
+            row = self._db.execute("SELECT files FROM submissions WHERE sha256 = ?", (sha256,)).fetchone()
+        if row is None:
+            return None
+        try:
+            return msgspec.msgpack.decode(zlib.decompress(row[0]), type=dict[str, bytes])
+        except (zlib.error, msgspec.DecodeError, TypeError):
+            raise _failed_checksum(f"The submission {sha256[:12]}", self.path) from None
+
+    # -- what an instructor decided -------------------------------------------------------------------
+
+    def add_override(self, override: Override) -> None:
+        """Keep a decision; earlier ones stay beside it."""
+        at = override.at or _now()
+        row = (override.student, override.exercise, override.score, override.reason, at)
+        with self._transaction():
+            self._db.execute(
+                "INSERT INTO overrides (student, exercise, score, reason, at, sha256)"
+                " VALUES (?, ?, ?, ?, ?, ?)",
+                (*row, _sha256(repr(row))),
+            )
+
+    def overrides(self) -> list[Override]:
+        """Every decision, oldest first, lifted ones included.
+
+        Raises:
+            IntegrityError: one is not what was written.
+        """
+        found: list[Override] = []
+        query = "SELECT student, exercise, score, reason, at, sha256 FROM overrides ORDER BY number"
+        with explained(self.path):
+            for *row, digest in self._db.execute(query):
+                if _sha256(repr(tuple(row))) != digest:
+                    raise _failed_checksum(f"The override for {row[0]!r} and {row[1]}", self.path)
+                found.append(Override(*row))
+        return found
+
+    # -- writing --------------------------------------------------------------------------------------
+
+    def _newest_run(self) -> int:
+        with explained(self.path):
+            return int(self._db.execute("SELECT ifnull(max(number), 0) FROM runs").fetchone()[0])
+
+    @contextlib.contextmanager
+    def _transaction(self) -> Iterator[None]:
+        """All of it or nothing, and the time it took."""
+        start = time.perf_counter()
+        with explained(self.path):
+            if self._writing and not self._begun:
+                begin_writing(self._db)
+                self._begun = True
+            self._db.execute("BEGIN IMMEDIATE")
+            try:
+                if not self._changed:
+                    unseal(self._db)
+                yield
+                self._db.execute("COMMIT")
+                self._changed = True
+            except BaseException:
+                with contextlib.suppress(sqlite3.Error):
+                    self._db.execute("ROLLBACK")
+                raise
+            if self._begun and time.monotonic() > self._checkpoint_at:
+                self._db.execute("PRAGMA wal_checkpoint(PASSIVE)")
+                self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
+        self.write_s += time.perf_counter() - start
+
+
+class _State(msgspec.Struct):
+    """The one field of a verdict that decides whether it is kept."""
+
+    state: str
+
+
+def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, ...]]:
+    """A condition on student and exercise, and what it is asked with; none where both are None."""
+    asked = [
+        (name, value) for name, value in (("student", student), ("exercise", exercise)) if value is not None
+    ]
+    where = " AND ".join(f"{name} = ?" for name, _ in asked)
+    return (f" WHERE {where}" if asked else ""), tuple(value for _, value in asked)
+
+
+_create = create  # under its own name it is an argument above
+
+
+def _failed_checksum(what: str, path: Path) -> IntegrityError:
+    return IntegrityError(
+        f"{what} in {path} fails its checksum.",
+        help="Restore the gradebook from a backup, or grade into a new folder.",
+    )
+
+
+def _sha256(body: bytes | str) -> str:
+    # Whoever edits the file by hand may leave text where bytes were: that is damage too, not a crash.
+    return hashlib.sha256(body.encode() if isinstance(body, str) else body).hexdigest()
+
+
+def _now() -> str:
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())

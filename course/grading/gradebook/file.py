@@ -1,0 +1,288 @@
+"""The file below a gradebook: its format, its lock, and its errors as sentences.
+
+A run writes in SQLite's write-ahead mode while it holds the file alone. Every result is committed when it
+arrives (about 0.05 ms): a process that is killed loses nothing that was reported, and a machine that loses
+power leaves a consistent file that lacks the last seconds. Held exclusively, that mode needs no shared memory
+and so works on network folders; closing puts the file back into the ordinary mode, in which it is one file
+that can be copied.
+
+Closing also seals it: a digest over every row is kept in it and compared whenever it is opened. The first
+write breaks the seal, so a file whose writer was killed has none, and is taken as it is.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import itertools
+import os
+import sqlite3
+from typing import TYPE_CHECKING, Any
+
+from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = [
+    "FORMAT_VERSION",
+    "SEAL",
+    "begin_writing",
+    "create",
+    "explained",
+    "open_file",
+    "release",
+    "seal",
+    "unseal",
+]
+
+#: 2 had no seal, and is read as it is.
+FORMAT_VERSION = 3
+#: The name of the seal among the facts about a run.
+SEAL = "seal"
+_DAMAGED = "Restore it from a backup, or grade into a new folder; nothing in this one was mended or removed."
+_APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
+
+_TABLES = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE runs (
+    number INTEGER PRIMARY KEY, kind TEXT NOT NULL, started_at TEXT NOT NULL, options TEXT NOT NULL
+);
+CREATE TABLE exercises (
+    id TEXT PRIMARY KEY, title TEXT NOT NULL, max_points REAL NOT NULL, pass_share REAL NOT NULL,
+    position INTEGER NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE students (student TEXT PRIMARY KEY, identity TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE submissions (sha256 TEXT PRIMARY KEY, files BLOB NOT NULL) WITHOUT ROWID;
+CREATE TABLE times (
+    student TEXT NOT NULL, exercise TEXT NOT NULL, submission_sha256 TEXT NOT NULL, source TEXT NOT NULL,
+    at REAL, PRIMARY KEY (student, exercise, submission_sha256, source)
+) WITHOUT ROWID;
+CREATE TABLE overrides (
+    number INTEGER PRIMARY KEY, student TEXT NOT NULL, exercise TEXT NOT NULL, score REAL,
+    reason TEXT NOT NULL, at TEXT NOT NULL, sha256 TEXT NOT NULL
+);
+"""
+_RESULTS = """
+CREATE TABLE results (
+    number INTEGER PRIMARY KEY,
+    run INTEGER NOT NULL,
+    student TEXT NOT NULL,
+    exercise TEXT NOT NULL,
+    submission_sha256 TEXT NOT NULL,
+    grader_version TEXT NOT NULL,
+    seed INTEGER NOT NULL,
+    graded_at TEXT NOT NULL,
+    verdict BLOB NOT NULL,
+    verdict_sha256 TEXT NOT NULL,
+    UNIQUE (student, exercise, submission_sha256, grader_version, seed, run)
+);
+"""
+_SEALED = (
+    f"SELECT * FROM meta WHERE key != '{SEAL}' ORDER BY key",
+    "SELECT * FROM runs ORDER BY number",
+    "SELECT * FROM exercises ORDER BY id",
+    "SELECT * FROM students ORDER BY student",
+    "SELECT sha256 FROM submissions ORDER BY sha256",
+    "SELECT * FROM times ORDER BY student, exercise, submission_sha256, source",
+    "SELECT * FROM overrides ORDER BY number",
+    "SELECT number, run, student, exercise, submission_sha256, grader_version, seed, graded_at,"
+    " verdict_sha256 FROM results ORDER BY number",
+)
+#: Format 1 had results alone, and in them a lateness that was never filled in.
+_FROM_1 = f"""
+ALTER TABLE results RENAME TO results_1;
+{_TABLES.replace("CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;", "")}
+{_RESULTS}
+INSERT INTO runs VALUES (1, 'run', '', '{{}}');
+INSERT INTO results SELECT number, 1, student, exercise, submission_sha256, grader_version, seed, graded_at,
+    verdict, verdict_sha256 FROM results_1;
+DROP TABLE results_1;
+"""
+
+
+@contextlib.contextmanager
+def explained(path: Path) -> Iterator[None]:
+    """SQLite's errors as sentences.
+
+    Raises:
+        UsageError: somebody else is using the file.
+        MissingCapabilityError: it cannot be read or written where it is.
+        IntegrityError: it is damaged.
+    """
+    try:
+        yield
+    except sqlite3.OperationalError as error:
+        raise _operational(path, error) from None
+    except sqlite3.DatabaseError as error:
+        raise IntegrityError(
+            f"{path} is damaged: {error}.",
+            help=_DAMAGED,
+        ) from None
+
+
+def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
+    # The low byte is the kind of fault, the rest a detail of it. Python's own errors, such as text that is
+    # not UTF-8, carry no code: what was read was not what was written.
+    kind = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
+    if kind in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
+        return UsageError(
+            f"Another run is writing {path}.",
+            help="Wait for it to end, or name another --out.",
+            code="gradebook_locked",
+        )
+    # SQLITE_ERROR: a table or a column that our statements name is not there.
+    if kind in {sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}:
+        return IntegrityError(f"{path} is damaged: {error}.", help=_DAMAGED)
+    if kind == sqlite3.SQLITE_FULL:
+        message, fix = f"The disk is full: {path} cannot grow.", "Make room, then go on with --resume."
+        code = "disk_full"
+    elif kind in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}:
+        message, code = f"{path} cannot be written.", "read_only"
+        fix = "Make the folder writable, or copy it somewhere that is."
+    else:
+        message, fix, code = f"{path} cannot be used: {error}.", "Check the disk.", "gradebook_unusable"
+    return MissingCapabilityError(message, help=f"{fix} What was graded so far is kept.", code=code)
+
+
+def create(path: Path) -> None:
+    """An empty gradebook, made under another name first: a run killed here leaves none instead of half.
+
+    Raises:
+        UsageError: another run made one meanwhile.
+    """
+    draft = _draft(path)
+    try:
+        with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:
+            db.executescript(
+                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} PRAGMA user_version = {FORMAT_VERSION};"
+                f"PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
+            )
+        _publish(draft, path)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _draft(path: Path) -> Path:
+    """A name nobody else is using; a leftover of a killed run is taken over only if its process is gone."""
+    for number in itertools.count():
+        draft = path.with_name(f"{path.stem}.new-{os.getpid()}-{number}")
+        if not draft.exists():
+            return draft
+    raise AssertionError  # count() does not end
+
+
+def _publish(draft: Path, path: Path) -> None:
+    """Give the draft its name, unless there is a file of that name: of two runs at once one is told."""
+    try:
+        path.hardlink_to(draft)
+    except (FileExistsError, FileNotFoundError):
+        raise UsageError(
+            f"Another run is writing {path}.", help="Name another --out.", code="gradebook_locked"
+        ) from None
+    except OSError:  # a file system without hard links
+        if path.exists():
+            raise UsageError(
+                f"{path} exists already; nothing was touched.", help="Name a new folder.", code="out_exists"
+            ) from None
+        draft.replace(path)
+
+
+def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
+    """An open, recognised and up-to-date gradebook.
+
+    Args:
+        writing: hold it against everybody else until it is closed.
+
+    Raises:
+        NotFoundError: there is none.
+        UsageError: somebody else is writing it.
+        MissingCapabilityError: it belongs to a newer version, or cannot be written here.
+        IntegrityError: the file is damaged or no gradebook.
+    """
+    if not path.is_file():
+        raise NotFoundError(
+            f"There is no gradebook at {path}.",
+            help="Name the folder that `course grade run --out` wrote.",
+            code="gradebook_not_found",
+        )
+    with explained(path):
+        db = sqlite3.connect(path, isolation_level=None, timeout=1.0)
+    try:
+        with explained(path):
+            _prepare(db, path, writing=writing)
+    except BaseException:
+        db.close()
+        raise
+    return db
+
+
+def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
+    log = path.with_name(path.name + "-wal")
+    if writing or log.exists():
+        # Before the first look at a file in write-ahead mode: held alone it needs no shared memory.
+        db.execute("PRAGMA locking_mode = EXCLUSIVE")
+    version = _checked_format(db, path)
+    if version == 1:
+        db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;")
+    if writing:
+        # The lock is the operating system's, so it ends with the process however that ends.
+        db.execute("BEGIN EXCLUSIVE")
+        db.execute("COMMIT")
+    elif log.exists():
+        release(db)  # a run was killed: what it left beside the file goes into it
+        db.execute("PRAGMA locking_mode = NORMAL")
+        db.execute("SELECT count(*) FROM meta").fetchone()
+    kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
+    if kept is not None and kept[0] != _digest(db):
+        raise IntegrityError(f"{path} is damaged: it is not what was written.", help=_DAMAGED)
+
+
+def seal(db: sqlite3.Connection) -> None:
+    """Note what is in it now."""
+    db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (SEAL, _digest(db)))
+
+
+def unseal(db: sqlite3.Connection) -> None:
+    """Within a transaction that is about to change it."""
+    db.execute("DELETE FROM meta WHERE key = ?", (SEAL,))
+    db.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
+
+
+def _digest(db: sqlite3.Connection) -> str:
+    """Over all rows; what is large in them has a digest of its own, and that is among them."""
+    digest = hashlib.sha256()
+    for query in _SEALED:
+        digest.update(f"{query}\n".encode())
+        for row in db.execute(query):
+            digest.update(f"{row!r}\n".encode("utf-8", "surrogatepass"))
+    return digest.hexdigest()
+
+
+def begin_writing(db: sqlite3.Connection) -> None:
+    """Commit at once and cheaply from here on; to be undone by ``release``."""
+    db.execute("PRAGMA journal_mode = WAL")
+    db.execute("PRAGMA synchronous = NORMAL")
+
+
+def release(db: sqlite3.Connection) -> None:
+    """Put everything into the one file."""
+    db.execute("PRAGMA journal_mode = DELETE")
+
+
+def _checked_format(db: sqlite3.Connection, path: Path) -> int:
+    if _one(db, "PRAGMA application_id") != _APPLICATION_ID:
+        raise IntegrityError(f"{path} is not a gradebook.", help="Name another folder.")
+    version = int(_one(db, "PRAGMA user_version"))
+    if version > FORMAT_VERSION:
+        raise MissingCapabilityError(
+            f"{path} was written by a newer version of this course (format {version}).",
+            help="Update the course; nothing was changed.",
+            code="newer_format",
+        )
+    return version
+
+
+def _one(db: sqlite3.Connection, query: str) -> Any:
+    return db.execute(query).fetchone()[0]

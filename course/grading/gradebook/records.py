@@ -1,0 +1,93 @@
+"""What a gradebook holds, as types."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import msgspec
+
+if TYPE_CHECKING:
+    from course.scoring.verdict import Verdict
+
+__all__ = ["FromDownload", "GradedExercise", "Key", "Override", "Result", "SubmittedAt"]
+
+
+@dataclass(frozen=True, order=True)
+class Key:
+    """What one result is about."""
+
+    student: str
+    exercise: str
+    submission_sha256: str
+    grader_version: str
+    seed: int
+
+
+@dataclass(frozen=True)
+class Result:
+    """One result as it is kept.
+
+    Attributes:
+        graded_at: UTC, ISO 8601.
+        run: number of the grading or regrading it came from.
+        number: grows with time; the newest result of a student and exercise is the one that counts.
+    """
+
+    key: Key
+    verdict: Verdict
+    graded_at: str = ""
+    run: int = 0
+    number: int = 0
+
+
+class GradedExercise(msgspec.Struct, frozen=True):
+    """An exercise as it was when it was graded. ``pass_share`` is a share of ``max_points``."""
+
+    id: str
+    title: str
+    max_points: float
+    pass_share: float
+    position: int
+
+
+class FromDownload(msgspec.Struct, frozen=True):
+    """Who a student is to the system a class was downloaded from.
+
+    Attributes:
+        source: "canvas", "moodle" or "gradescope".
+        key: the student's number there.
+        name: as that system spells it.
+    """
+
+    source: str
+    key: str
+    name: str = ""
+    email: str = ""
+    sid: str = ""
+
+
+class SubmittedAt(msgspec.Struct, frozen=True):
+    """When something was handed in, by one witness.
+
+    Attributes:
+        submission_sha256: what; empty for whatever the student handed in.
+        source: the witness: "gradescope", "list", "mtime", or "canvas-late" (which only says: late).
+        at: seconds since 1970, UTC; None if the witness does not say.
+    """
+
+    student: str
+    exercise: str
+    submission_sha256: str
+    source: str
+    at: float | None
+
+
+class Override(msgspec.Struct, frozen=True):
+    """A score an instructor set. ``score`` None lifts an earlier one."""
+
+    student: str
+    exercise: str
+    score: float | None
+    reason: str
+    at: str = ""

@@ -1,0 +1,335 @@
+"""A class folder, however it came: one folder per student, or what a learning platform gave for download.
+
+    folders      SUBMISSIONS/<student>/...
+    moodle       SUBMISSIONS/<Full Name>_<number>_assignsubmission_file/...   or files that begin so
+    canvas       SUBMISSIONS/<name>[_LATE]_<user>_<attachment>_<file name>
+    gradescope   SUBMISSIONS/submission_<number>/... with submission_metadata.yml
+
+Which one it is follows from all the names together. A folder in which some names are a platform's and some
+are not is refused with the odd ones listed; a name that does not say whose it is is reported, never guessed.
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+import os
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+from course import extras
+from course.errors import NotFoundError, UsageError
+from course.grading.gradebook.book import FromDownload
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["IGNORED", "LAYOUTS", "ClassList", "Layout", "Place", "Student", "class_list"]
+
+Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
+LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")
+
+#: What operating systems and tools put into folders by themselves.
+IGNORED = frozenset(
+    {
+        "__MACOSX", "__pycache__", ".DS_Store", ".git", ".idea", ".ipynb_checkpoints", ".svn", ".vscode",
+        "Thumbs.db", "desktop.ini",
+    }
+)  # fmt: skip
+
+# Moodle takes '_' out of names, so that no name a student gives a file can pass for another student's.
+_MOODLE = re.compile(
+    r"(?P<name>[^_]*)_(?P<key>[0-9]+)_assignsubmission_(?P<plugin>[a-z]+)(?:_(?P<file>.*))?", re.S
+)
+# Canvas takes '_<digits>_' out of names, so the first two numbers are its own.
+_CANVAS = re.compile(
+    r"(?P<name>.*?)(?P<late>_LATE)?_(?P<key>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>.+)", re.S
+)
+_METADATA = "submission_metadata.yml"
+#: What can be handed in, by the ends of its names.
+_HANDED_IN = (".py", ".ipynb", ".zip")
+_MAX_METADATA = 200 << 20
+_SHOWN = 5
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a student's files are: a folder, or some of the files of a folder that others share.
+
+    Attributes:
+        root: the folder.
+        files: name the student gave -> path, where the folder is shared; None for a folder of one's own.
+    """
+
+    root: Path
+    files: tuple[tuple[str, Path], ...] | None = None
+
+    def find(self, *relative: str) -> list[Path]:
+        """What lies at any of these paths; nothing is opened."""
+        if self.files is None:
+            return [path for name in relative if os.path.lexists(path := self.root / name)]
+        return [path for name, path in self.files if any(_is_named(name, wanted) for wanted in relative)]
+
+    def archives(self) -> list[Path]:
+        """The zip files, by name."""
+        found = self.root.iterdir() if self.files is None else (path for _, path in self.files)
+        return sorted(path for path in found if path.suffix.lower() == ".zip")
+
+    def shown(self, path: Path) -> str:
+        """A path in words, from here."""
+        return os.fsencode(path.relative_to(self.root)).decode("utf-8", "backslashreplace")
+
+
+def _is_named(name: str, wanted: str) -> bool:
+    """Whether a file is the wanted one; Canvas adds ``-1``, ``-2`` to what is handed in again."""
+    stem, dot, suffix = wanted.rpartition(".")
+    return name == wanted or bool(re.fullmatch(re.escape(stem) + r"-[0-9]+" + re.escape(dot + suffix), name))
+
+
+@dataclass(frozen=True)
+class Student:
+    """One student of a class folder.
+
+    Attributes:
+        name: id in the gradebook, as text that any file format can hold.
+        identity: who that is to the platform; None for plain folders.
+        submitted_at: seconds since 1970, UTC, where the platform says so.
+        flagged_late: the platform says it was late, and not by how much.
+    """
+
+    name: str
+    place: Place
+    identity: FromDownload | None = None
+    submitted_at: float | None = None
+    flagged_late: bool = False
+
+
+@dataclass
+class ClassList:
+    """A class.
+
+    Attributes:
+        students: ordered by name.
+        unrecognised: what belongs to nobody that could be told, one sentence each.
+    """
+
+    layout: str
+    students: list[Student] = field(default_factory=list)
+    unrecognised: list[str] = field(default_factory=list)
+
+
+def class_list(folder: Path, layout: str = "auto") -> ClassList:
+    """The class in a folder.
+
+    Raises:
+        NotFoundError: there is no such folder, or nobody in it.
+        UsageError: some names are a platform's and some are not; the message lists them.
+        MissingCapabilityError: reading this download needs something that is not installed.
+    """
+    if layout not in LAYOUTS:
+        raise UsageError(f"--layout is {layout!r}.", help=f"It takes {', '.join(LAYOUTS)}.")
+    names = _names(folder)
+    inner = [name for name in names if (folder / name / _METADATA).is_file()]
+    if layout in {"auto", "gradescope"} and len(names) == len(inner) == 1:
+        folder, names = folder / inner[0], _names(folder / inner[0])  # the export is one folder in a zip
+    if layout == "auto":
+        layout = _recognised(folder, names)
+    readers = {"folders": _folders, "moodle": _moodle, "canvas": _canvas, "gradescope": _gradescope}
+    found = readers[layout](folder, names)
+    found.students.sort(key=lambda student: student.name)
+    if not found.students and not found.unrecognised:
+        raise NotFoundError(
+            f"{folder} holds no submissions.",
+            help="Name the folder that holds one folder per student, or an unpacked download.",
+            code="no_submissions",
+        )
+    return found
+
+
+def _names(folder: Path) -> list[str]:
+    try:
+        found = sorted(os.listdir(os.fsencode(folder)))  # noqa: PTH208 - bytes: a name need not be text
+    except OSError as error:
+        raise NotFoundError(
+            f"{folder} is not a folder of submissions: {error.strerror}.",
+            help="Name the folder that holds one folder per student.",
+            code="submissions_not_found",
+        ) from None
+    return [name for raw in found if (name := os.fsdecode(raw)) not in IGNORED]
+
+
+def _recognised(folder: Path, names: list[str]) -> str:
+    if _METADATA in names:
+        return "gradescope"
+    folders = [name for name in names if (folder / name).is_dir() or (folder / name).is_symlink()]
+    moodle = [name for name in names if _MOODLE.fullmatch(name)]
+    canvas = [name for name in names if name not in folders and _CANVAS.fullmatch(name)]
+    if moodle:
+        layout, odd = "moodle", [name for name in folders if name not in moodle]
+    elif canvas and (not folders or any(map(_may_be_handed_in, canvas))):
+        layout, odd = "canvas", [name for name in names if name not in canvas]
+    else:
+        return "folders"
+    if odd:
+        listed = ", ".join(_text(name) for name in odd[:_SHOWN]) + (", ..." if len(odd) > _SHOWN else "")
+        raise UsageError(
+            f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
+            help=f"Move those away, or say what it is with --layout folders or --layout {layout}.",
+            code="mixed_layout",
+        )
+    return layout
+
+
+def _may_be_handed_in(name: str) -> bool:
+    return name.lower().endswith(_HANDED_IN)
+
+
+def _text(name: str) -> str:
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
+def _folders(folder: Path, names: list[str]) -> ClassList:
+    """One folder per student; names are made unique where the file system's are not text."""
+    found = ClassList("folders")
+    owned: dict[str, Path] = {}
+    for raw in names:
+        path = folder / raw
+        if not (path.is_dir() or path.is_symlink()):
+            if _may_be_handed_in(raw):
+                found.unrecognised.append(f"{_text(raw)}: lies beside the students' folders, in nobody's")
+            continue  # a class list, notes: no submission of anybody's
+        name = _text(raw)
+        while name in owned:
+            name += "'"
+        owned[name] = path
+    found.students = [Student(name, Place(path)) for name, path in owned.items()]
+    return found
+
+
+def _moodle(folder: Path, names: list[str]) -> ClassList:
+    found = ClassList("moodle")
+    owned: dict[str, Path] = {}
+    shared: dict[str, list[tuple[str, Path]]] = {}
+    people: dict[str, FromDownload] = {}
+    for raw in names:
+        match = _MOODLE.fullmatch(raw)
+        if match is None:
+            found.unrecognised.append(f"{_text(raw)}: not a name that Moodle gives")
+            continue
+        student = _text(f"{match['name']}_{match['key']}")
+        people[student] = FromDownload("moodle", match["key"], _text(match["name"]))
+        if match["plugin"] != "file":
+            continue  # text typed into the platform, comments: no files of the student's
+        if (folder / raw).is_dir() or not match["file"]:
+            owned[student] = folder / raw
+        else:
+            shared.setdefault(student, []).append((match["file"], folder / raw))
+    for student, identity in people.items():
+        if student in owned and student in shared:
+            found.unrecognised.append(f"{student}: both a folder and files of their own")
+            continue
+        place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
+        found.students.append(Student(student, place, identity))
+    return found
+
+
+def _canvas(folder: Path, names: list[str]) -> ClassList:
+    found = ClassList("canvas")
+    files: dict[str, list[tuple[str, Path]]] = {}
+    spelled: dict[str, set[str]] = {}
+    late: set[str] = set()
+    for raw in names:
+        match = _CANVAS.fullmatch(raw)
+        if match is None or (folder / raw).is_dir():
+            found.unrecognised.append(f"{_text(raw)}: not a name that Canvas gives")
+            continue
+        files.setdefault(match["key"], []).append((match["file"], folder / raw))
+        spelled.setdefault(match["key"], set()).add(_text(match["name"]))
+        if match["late"]:
+            late.add(match["key"])
+    for key, items in files.items():
+        if len(spelled[key]) > 1:
+            both = " and ".join(sorted(spelled[key]))
+            found.unrecognised.append(
+                f"user {key} of Canvas is called {both}: whose files these are is unclear"
+            )
+            continue
+        name = next(iter(spelled[key]))
+        identity = FromDownload("canvas", key, name)
+        place = Place(folder, tuple(items))
+        found.students.append(Student(f"{name}_{key}", place, identity, flagged_late=key in late))
+    return found
+
+
+def _gradescope(folder: Path, names: list[str]) -> ClassList:
+    found = ClassList("gradescope")
+    metadata = _metadata(folder / _METADATA)
+    claims: dict[str, list[tuple[str, Student]]] = {}
+    for name in names:
+        if (folder / name).is_dir() and name not in metadata:
+            found.unrecognised.append(f"{_text(name)}: {_METADATA} does not say whose it is")
+    for name, about in metadata.items():
+        # A folder's name comes out of a file: it must be one that was listed, never a path.
+        if name not in names or not (folder / name).is_dir():
+            found.unrecognised.append(
+                f"{ascii(name)[1:-1]}: listed in {_METADATA}, but there is no such folder"
+            )
+            continue
+        submitters = _submitters(about)
+        if not submitters:
+            found.unrecognised.append(f"{_text(name)}: {_METADATA} names nobody for it")
+        for who in submitters:
+            student = who.sid or who.email or who.name
+            entry = Student(student, Place(folder / name), who, _created_at(about))
+            claims.setdefault(student, []).append((name, entry))
+    for student, entries in claims.items():
+        if len(entries) > 1:
+            listed = ", ".join(name for name, _ in entries)
+            found.unrecognised.append(f"{student} has several submissions: {listed}")
+        else:
+            found.students.append(entries[0][1])
+    return found
+
+
+def _metadata(path: Path) -> dict[str, Any]:
+    yaml = extras.load("gradescope")
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        if path.stat().st_size > _MAX_METADATA:
+            raise UsageError(f"{path} is larger than 200 MB.", help="Download the submissions again.")
+        with path.open("rb") as handle:
+            content = yaml.load(handle, loader)
+    except (OSError, yaml.YAMLError, ValueError, RecursionError) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise UsageError(
+            f"{path} cannot be read: {reason}.", help="Download the submissions again.", code="bad_metadata"
+        ) from None
+    if not isinstance(content, dict) or not all(isinstance(name, str) for name in content):
+        raise UsageError(
+            f"{path} is not what Gradescope writes.", help="Download it again.", code="bad_metadata"
+        )
+    return content
+
+
+def _submitters(about: Any) -> list[FromDownload]:
+    listed = about.get(":submitters") if isinstance(about, dict) else None
+    found = []
+    for item in listed if isinstance(listed, list) else ():
+        facts = item if isinstance(item, dict) else {}
+        name, sid, email = (str(facts.get(f":{field}") or "").strip() for field in ("name", "sid", "email"))
+        if name or sid or email:
+            found.append(FromDownload("gradescope", sid or email, name, email, sid))
+    return found
+
+
+def _created_at(about: Any) -> float | None:
+    """The time Gradescope received it, as YAML gave it: a date, or text if the YAML had it quoted."""
+    value = about.get(":created_at") if isinstance(about, dict) else None
+    if isinstance(value, str):
+        try:
+            value = dt.datetime.fromisoformat(value.strip())
+        except ValueError:
+            return None
+    if not isinstance(value, dt.datetime):
+        return None
+    return (value if value.tzinfo else value.replace(tzinfo=dt.UTC)).timestamp()

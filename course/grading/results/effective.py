@@ -1,0 +1,223 @@
+"""What a class scored, as everybody is to see it: the one reader of a gradebook.
+
+A gradebook keeps apart what the graders found, what an instructor decided and what lateness costs.
+``Results`` puts them together, the same way for every export and report: the newest grading of each student
+and exercise; an override in its place if there is one, which is final and not touched by lateness; else less
+the penalty of the late policy. A fault of ours is never a zero: its score is None until it is graded or
+overridden.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from course.catalog.models import CourseRef
+from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.results.late import Policy, lateness, parse_policy
+from course.grading.results.roster import Person, Roster
+from course.scoring.verdict import Problem, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+__all__ = ["Effective", "Results"]
+
+
+@dataclass(frozen=True)
+class Effective:
+    """One student and exercise, as it counts.
+
+    Attributes:
+        result: the newest grading; its verdict has what the checks found.
+        score: what counts, in points; None if a fault of ours kept it from being graded.
+        max_score: points of the exercise.
+        passed: whether ``score`` reaches the exercise's pass mark.
+        penalty: points taken off for lateness; 0 under an override.
+        late: seconds after the deadline; None if in time, or if the time is not known.
+        submitted_at: seconds since 1970, UTC, by the most trusted witness; None if there is none.
+        witness: whose time that is.
+        flagged_late: the download says "late" and nobody says by how much.
+        override: what the instructor decided, if so.
+    """
+
+    result: Result
+    score: float | None
+    max_score: float
+    passed: bool
+    penalty: float = 0.0
+    late: float | None = None
+    submitted_at: float | None = None
+    witness: str = ""
+    flagged_late: bool = False
+    override: Override | None = None
+
+    @property
+    def student(self) -> str:
+        return self.result.key.student
+
+    @property
+    def exercise(self) -> str:
+        return self.result.key.exercise
+
+    @property
+    def verdict(self) -> Verdict:
+        return self.result.verdict
+
+    @property
+    def raw_score(self) -> float | None:
+        """What the checks gave, before lateness and overrides."""
+        return None if self.verdict.state == "grader_error" else self.verdict.score
+
+
+class Results:
+    """What an open gradebook comes to.
+
+    Args:
+        book: the gradebook; the caller closes it.
+        roster: a class list; the one the gradebook remembers if None.
+
+    Attributes:
+        course: which course.
+        seed: of the run's hidden inputs.
+        policy: the late policy in force, if any.
+
+    Raises:
+        IntegrityError: something in it is not what was written.
+    """
+
+    def __init__(self, book: Gradebook, roster: Roster | None = None) -> None:
+        self.book = book
+        meta = book.meta()
+        self.course = CourseRef(meta.get("course", ""), meta.get("version", ""))
+        self.seed = int(meta.get("seed", 0))
+        self.policy: Policy | None = parse_policy(meta["late_policy"]) if "late_policy" in meta else None
+        self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
+        self.downloads = book.students()
+        self._exercises = {exercise.id: exercise for exercise in book.exercises()}
+        self._overrides: dict[tuple[str, str], Override] = {}
+        for override in book.overrides():
+            self._overrides[override.student, override.exercise] = override
+        self._times: dict[tuple[str, str], list[tuple[str, str, float | None]]] = {}
+        self.take_in(book.times())
+
+    @classmethod
+    def open(cls, out: Path) -> Self:
+        """The results in the folder of a grading run; close ``book`` when done.
+
+        Raises:
+            NotFoundError: there is no gradebook.
+            UsageError: a run is writing it.
+            MissingCapabilityError: a newer version wrote it.
+            IntegrityError: it is damaged.
+        """
+        return cls(Gradebook(out / "gradebook.sqlite"))
+
+    def take_in(self, times: Iterable[SubmittedAt]) -> None:
+        """Know of more times at which things were handed in."""
+        for time in times:
+            place = self._times.setdefault((time.student, time.exercise), [])
+            place.append((time.submission_sha256, time.source, time.at))
+
+    def exercises(self) -> tuple[GradedExercise, ...]:
+        """What was graded, in the order of the course."""
+        return tuple(self._exercises.values())
+
+    def students(self) -> list[str]:
+        """Everybody with a result or an override, by name."""
+        return sorted({*self.book.student_ids(), *(name for name, _ in self._overrides)})
+
+    def title(self, exercise: str) -> str:
+        """The exercise's title; its id where none was noted."""
+        return self._exercises[exercise].title if exercise in self._exercises else exercise
+
+    def person(self, student: str) -> Person | None:
+        """The roster's row about a student, if there is one."""
+        return self.roster.find(student, self.downloads.get(student)) if self.roster else None
+
+    def all(self, student: str | None = None, exercise: str | None = None) -> Iterator[Effective]:
+        """Every student and exercise, ordered by both; those that only an override is about at the end."""
+        seen: set[tuple[str, str]] = set()
+        for result in self.book.results(student, exercise):
+            seen.add((result.key.student, result.key.exercise))
+            yield self.of(result)
+        for (name, about), override in sorted(self._overrides.items()):
+            wanted = student in {None, name} and exercise in {None, about}
+            if wanted and override.score is not None and (name, about) not in seen:
+                yield self.of(self._nothing(name, about))
+
+    def of(self, result: Result) -> Effective:
+        """One result as it counts."""
+        verdict, key = result.verdict, result.key
+        noted = self._exercises.get(key.exercise)
+        most = verdict.max_score if noted is None or verdict.state == "graded" else noted.max_points
+        submitted, witness = self._submitted(key)
+        late = self._late(key, submitted)
+        override = self._overrides.get((key.student, key.exercise))
+        if override is not None and override.score is None:
+            override = None
+        penalty = 0.0
+        if override is not None:
+            score = override.score
+        elif verdict.state == "grader_error":
+            score = None
+        else:
+            if self.policy is not None and verdict.state == "graded":
+                penalty = self.policy.penalty(late, verdict.score, most).points
+            score = verdict.score - penalty
+        return Effective(
+            result, score, most, self._passes(result, score, most), penalty, late, submitted, witness,
+            self._is_flagged(key) and submitted is None, override,
+        )  # fmt: skip
+
+    def unmatched(self, students: Iterable[str]) -> list[str]:
+        """Students without exactly one row of the roster; none if there is no roster."""
+        return self.roster.match(students, self.downloads)[1] if self.roster else []
+
+    # -- parts ----------------------------------------------------------------------------------------
+
+    def _submitted(self, key: Key) -> tuple[float | None, str]:
+        """When it was handed in, by the most trusted witness who says so."""
+        known = self._times.get((key.student, key.exercise), ())
+        for source in self.policy.trust if self.policy else ("list", "gradescope"):
+            times = [
+                at
+                for sha256, who, at in known
+                if who == source and sha256 in {"", key.submission_sha256} and at is not None
+            ]
+            if times:
+                return min(times), source
+        return None, ""
+
+    def _is_flagged(self, key: Key) -> bool:
+        known = self._times.get((key.student, key.exercise), ())
+        return ("canvas-late") in {who for sha, who, _ in known if sha in {"", key.submission_sha256}}
+
+    def _late(self, key: Key, submitted: float | None) -> float | None:
+        if self.policy is None or submitted is None:
+            return None
+        person = self.person(key.student)
+        names = (key.student, person.student) if person else (key.student,)
+        due = self.policy.due(key.exercise, names, person.extension_days if person else 0.0)
+        return None if due is None else lateness(submitted, due)
+
+    def _passes(self, result: Result, score: float | None, most: float) -> bool:
+        if score is None:
+            return False
+        if score == result.verdict.score:
+            return result.verdict.passed
+        noted = self._exercises.get(result.key.exercise)
+        # The tolerance is rounding of sums of points, not mercy.
+        return noted is not None and score >= noted.pass_share * most - 1e-9
+
+    def _nothing(self, student: str, exercise: str) -> Result:
+        """In place of a grading, where an instructor gave a score and nothing was handed in."""
+        noted = self._exercises.get(exercise)
+        problem = Problem("not_submitted", "Nothing was handed in.", "The score was set by the instructor.")
+        verdict = Verdict(
+            exercise=exercise, scope="full", state="ungradable", score=0.0,
+            max_score=noted.max_points if noted else 0.0, passed=False, checks=(), isolation="",
+            error=problem,
+        )  # fmt: skip
+        return Result(Key(student, exercise, "", "", self.seed), verdict)

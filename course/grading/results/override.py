@@ -1,0 +1,89 @@
+"""A score an instructor sets, with a reason: it counts in place of the graders', whatever is graded later."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from course.errors import NotFoundError, UsageError
+from course.grading.gradebook.book import Override
+
+if TYPE_CHECKING:
+    from course.grading.results.effective import Effective, Results
+
+__all__ = ["lift", "override"]
+
+_MAX_REASON = 2000
+
+
+def override(results: Results, student: str, exercise: str, score: float, reason: str) -> Effective:
+    """Set a score and keep why; earlier decisions stay in the gradebook beside it.
+
+    Args:
+        results: over a gradebook opened for writing.
+        score: points, from 0 to the exercise's maximum.
+
+    Raises:
+        NotFoundError: the gradebook knows no such student or exercise.
+        UsageError: no such score is possible, or there is no reason.
+    """
+    most = _maximum(results, student, exercise)
+    if not math.isfinite(score) or not 0 <= score <= most:
+        raise UsageError(
+            f"--score is {score:g}; {exercise} has 0 to {most:g} points.",
+            help="Give the points that are to count.",
+            code="impossible_score",
+        )
+    reason = reason.strip()
+    if not reason or len(reason) > _MAX_REASON:
+        raise UsageError(
+            "An override needs a reason of at most 2000 characters.",
+            help="Add --reason: it is shown wherever the score is.",
+            code="no_reason",
+        )
+    results.book.add_override(Override(student, exercise, float(score), reason))
+    return _now_counts(results, student, exercise)
+
+
+def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
+    """Let what the graders found count again; None if they found nothing.
+
+    Raises:
+        NotFoundError: there is no override to lift.
+    """
+    _maximum(results, student, exercise)
+    found = next((item for item in results.all(student, exercise)), None)
+    if found is None or found.override is None:
+        raise NotFoundError(
+            f"There is no override for {student!r} and {exercise}.",
+            help="`course grade explain` shows what counts.",
+            code="no_override",
+        )
+    results.book.add_override(Override(student, exercise, None, reason.strip()))
+    return next(type(results)(results.book).all(student, exercise), None)
+
+
+def _now_counts(results: Results, student: str, exercise: str) -> Effective:
+    return next(type(results)(results.book).all(student, exercise))
+
+
+def _maximum(results: Results, student: str, exercise: str) -> float:
+    """Points of the exercise; that student and exercise exist is checked on the way."""
+    graded = next(iter(results.book.results(student, exercise)), None)
+    noted = next((item for item in results.exercises() if item.id == exercise), None)
+    if graded is None and noted is None:
+        raise NotFoundError(
+            f"The gradebook has no exercise {exercise!r}.",
+            help=f"It has {', '.join(item.id for item in results.exercises()) or 'none'}.",
+            code="exercise_not_found",
+        )
+    if graded is None and next(iter(results.book.results(student)), None) is None:
+        raise NotFoundError(
+            f"The gradebook has no student {student!r}.",
+            help="grades.csv lists all.",
+            code="student_not_found",
+        )
+    if noted is not None:
+        return noted.max_points
+    assert graded is not None
+    return graded.verdict.max_score

@@ -1,0 +1,284 @@
+"""Grades a class: N grader processes, one coordinator, results as they come.
+
+A grader that dies takes one submission with it at most: that one is tried again, and after the third grader
+it kills it is reported as our fault. A grader that hangs is ended at a deadline no submission can reach.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import selectors
+import subprocess
+import sys
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.errors import CourseError, InternalError
+from course.grading.running.grader import Answer, Config, Job, read_frame, write_frame
+from course.scoring.remote import BUDGET_S
+from course.scoring.verdict import Problem, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from course.grading.intake.students import Entry
+    from course.scoring.terms import Terms
+
+__all__ = [
+    "MAX_TRIES",
+    "Graded",
+    "as_error",
+    "grade_all",
+    "hang_s",
+    "killed_its_grader",
+    "start_grader",
+    "without_grading",
+]
+
+#: Deaths of graders after which a submission is our fault and no longer tried, or no grader can start at all.
+MAX_TRIES = 3
+_TICK_S = 0.5
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One entry and the verdict on it."""
+
+    entry: Entry
+    verdict: Verdict
+
+
+@dataclass
+class _Work:
+    entry: Entry
+    tries: int = 0
+
+
+@dataclass
+class _Grader:
+    """A grader process and the work it has in hand."""
+
+    number: int
+    process: subprocess.Popen[bytes]
+    work: _Work | None = None
+    ready: bool = False
+    since: float = field(default_factory=time.monotonic)
+
+
+def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> Iterator[Graded]:
+    """Verdicts on all entries that have a submission or a problem, in the order they are reached.
+
+    Args:
+        graders: processes.
+
+    Raises:
+        CourseError: no grader can work here at all (protection level, content).
+    """
+    coordinator = _Coordinator(entries, terms, graders)
+    try:
+        yield from coordinator.run()
+    finally:
+        coordinator.close()
+
+
+def start_grader(config: Config) -> subprocess.Popen[bytes]:
+    """A grader process, told how to grade. Its first answer says that it has started."""
+    # -P: the folder the command is run in, which may be a student's, never becomes importable.
+    command = [sys.executable, "-P", "-m", "course.grading.running.grader"]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    # The graders run the course that this process runs, however it came to be importable here.
+    package = str(Path(__file__).resolve().parents[3])
+    environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
+    process = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
+    )
+    assert process.stdin is not None
+    with contextlib.suppress(BrokenPipeError):
+        write_frame(process.stdin, config)
+    return process
+
+
+def hang_s(timeout: float) -> float:
+    """Seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
+    return BUDGET_S + timeout + 30.0
+
+
+class _Coordinator:
+    def __init__(self, entries: Iterable[Entry], terms: Terms, graders: int) -> None:
+        self._entries = iter(entries)
+        self._terms = terms
+        self._places = graders
+        self._again: deque[_Work] = deque()
+        self._done: deque[Graded] = deque()
+        self._graders: dict[int, _Grader] = {}
+        self._selector = selectors.DefaultSelector()
+        self._hang_s = hang_s(terms.timeout)  # only a fault of ours gets here
+        self._false_starts = 0
+
+    def run(self) -> Iterator[Graded]:
+        for number in range(self._places):
+            if not self._feed(number):
+                break
+        while True:
+            while self._done:
+                yield self._done.popleft()
+            if not any(grader.work for grader in self._graders.values()):
+                if not self._again:
+                    return
+                self._feed(next(iter(self._graders), 0))
+                continue
+            for key, _ in self._selector.select(_TICK_S):
+                self._collect(self._graders[key.data])
+            self._end_hung()
+
+    def close(self) -> None:
+        for grader in self._graders.values():
+            with contextlib.suppress(OSError):
+                if grader.process.stdin:
+                    grader.process.stdin.close()  # it ends at end of file, its sandbox with it
+        for grader in self._graders.values():
+            try:
+                grader.process.wait(0 if grader.work else 5)
+            except subprocess.TimeoutExpired:
+                grader.process.kill()
+                grader.process.wait()
+            if grader.process.stdout:
+                grader.process.stdout.close()
+        self._selector.close()
+
+    # -- work -----------------------------------------------------------------------------------------
+
+    def _next(self) -> _Work | None:
+        """The next submission; entries that need no grader are done on the way."""
+        if self._again:
+            return self._again.popleft()
+        for entry in self._entries:
+            if entry.submission is not None:
+                return _Work(entry)
+            if entry.problem is not None:
+                self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
+        return None
+
+    def _feed(self, number: int) -> bool:
+        """Give a grader its next submission, starting it if need be; False when there is none left."""
+        work = self._next()
+        if work is None:
+            return False
+        grader = self._graders.get(number) or self._start(number)
+        grader.work = work
+        grader.since = time.monotonic()
+        assert work.entry.submission is not None
+        job = Job(work.entry.exercise.id, dict(work.entry.submission.files))
+        assert grader.process.stdin is not None
+        with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
+            write_frame(grader.process.stdin, job)
+        return True
+
+    def _start(self, number: int) -> _Grader:
+        process = start_grader(Config(self._terms, number))
+        assert process.stdout is not None
+        grader = _Grader(number, process)
+        self._graders[number] = grader
+        self._selector.register(process.stdout, selectors.EVENT_READ, number)
+        return grader
+
+    def _collect(self, grader: _Grader) -> None:
+        """Take a grader's answer, or note its death, and give it or its successor more to do."""
+        assert grader.process.stdout is not None
+        frame = read_frame(grader.process.stdout)
+        if not grader.ready and frame is not None:
+            grader.ready, self._false_starts = True, 0
+            return
+        work, grader.work = grader.work, None
+        if not grader.ready:
+            self._start_again(grader, work)
+            return
+        if frame is None:
+            self._bury(grader)
+            if work is not None:
+                self._retry(work)
+        else:
+            answer = msgspec.msgpack.decode(frame, type=Answer)
+            if answer.error is not None:
+                raise as_error(answer.error, answer.exit_code)
+            assert work is not None
+            assert answer.verdict is not None
+            self._done.append(Graded(work.entry, answer.verdict))
+        self._feed(grader.number)
+
+    def _start_again(self, grader: _Grader, work: _Work | None) -> None:
+        """Replace a grader that died before any submission came near it.
+
+        Raises:
+            InternalError: none can start.
+        """
+        self._false_starts += 1
+        if self._false_starts >= MAX_TRIES:
+            raise InternalError("A grader process cannot start; what it printed is above.")
+        self._bury(grader)
+        if work is not None:
+            self._again.append(work)
+        self._feed(grader.number)
+
+    def _retry(self, work: _Work) -> None:
+        work.tries += 1
+        if work.tries < MAX_TRIES:
+            self._again.append(work)
+            return
+        self._done.append(
+            Graded(work.entry, without_grading(work.entry, "grader_error", killed_its_grader()))
+        )
+
+    def _bury(self, grader: _Grader) -> None:
+        assert grader.process.stdout is not None
+        self._selector.unregister(grader.process.stdout)
+        grader.process.kill()
+        grader.process.wait()
+        grader.process.stdout.close()
+        if grader.process.stdin:
+            with contextlib.suppress(OSError):
+                grader.process.stdin.close()
+        del self._graders[grader.number]
+
+    def _end_hung(self) -> None:
+        now = time.monotonic()
+        for grader in list(self._graders.values()):
+            if grader.work and now - grader.since > self._hang_s:
+                grader.process.kill()  # its pipe closes, and the next round finds it dead
+
+
+def as_error(problem: Problem, exit_code: int) -> CourseError:
+    """A grader's complaint, as the error it was over there."""
+    error = CourseError(problem.message, help=problem.help, code=problem.code)
+    error.exit_code = exit_code
+    return error
+
+
+def killed_its_grader() -> Problem:
+    """What is said of a submission that no grader survived."""
+    return Problem(
+        "grader_died",
+        f"The grader died {MAX_TRIES} times on this submission.",
+        "Report this; the submission is marked for regrading.",
+    )
+
+
+def without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:
+    """The verdict on what no grader had a say in."""
+    return Verdict(
+        exercise=entry.exercise.id,
+        scope="full",
+        state=state,
+        score=0.0,
+        max_score=entry.exercise.max_points,
+        passed=False,
+        checks=(),
+        isolation="",
+        error=problem,
+    )

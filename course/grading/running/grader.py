@@ -1,0 +1,161 @@
+"""One grader process: reads jobs from standard input, writes verdicts to standard output.
+
+It is trusted, and only ever talks to the coordinator that started it. Frames are a 4-byte little-endian
+length and msgpack. Each exercise's checks are collected at its first job and kept.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from typing import IO, TYPE_CHECKING, Any
+
+import msgspec
+
+from course.errors import CourseError, MissingCapabilityError
+from course.handed_in.notebook import opened
+from course.scoring.terms import Terms
+from course.scoring.verdict import Problem, Verdict
+
+if TYPE_CHECKING:
+    from course.scoring.session import GradingSession
+
+__all__ = ["Answer", "Config", "Job", "main", "read_frame", "write_frame"]
+
+_LENGTH = struct.Struct("<I")
+
+
+class Config(msgspec.Struct, frozen=True):
+    """What a grader is started with.
+
+    Attributes:
+        processor: number that picks the processor to stay on.
+    """
+
+    terms: Terms
+    processor: int
+
+
+class Job(msgspec.Struct, frozen=True):
+    """One submission to grade.
+
+    Attributes:
+        version: the ``grader_version`` it must be graded by; empty takes whatever is here.
+    """
+
+    exercise: str
+    files: dict[str, bytes]
+    version: str = ""
+
+
+class Answer(msgspec.Struct, frozen=True):
+    """The verdict on a job, or why this grader can give none at all."""
+
+    verdict: Verdict | None = None
+    error: Problem | None = None
+    exit_code: int = 0
+
+
+def main() -> None:
+    """Serve until standard input ends."""
+    source = os.fdopen(os.dup(0), "rb")
+    sink = os.fdopen(os.dup(1), "wb")
+    # Whatever prints in this process must not end up between two frames.
+    os.dup2(2, 1)
+    null = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null, 0)
+    config = msgspec.msgpack.decode(read_frame(source) or b"", type=Config)
+    grader = _Grader(config)
+    write_frame(sink, Answer())  # started: from here on a death is some submission's doing
+    try:
+        while (frame := read_frame(source)) is not None:
+            write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))
+    except (KeyboardInterrupt, BrokenPipeError):
+        pass  # the coordinator says what was interrupted
+    finally:
+        grader.close()
+
+
+class _Grader:
+    def __init__(self, config: Config) -> None:
+        from course.catalog.load import Catalog
+
+        self._config = config
+        self._catalog = Catalog()
+        self._sessions: dict[str, GradingSession] = {}
+        self._versions: dict[str, str] = {}
+
+    def answer(self, job: Job) -> Answer:
+        try:
+            self._check_version(job)
+            submission = opened(job.files, self._catalog.exercise(job.exercise))
+            verdict = self._session(job.exercise).grade(submission)
+            if verdict.error is not None and verdict.error.code == "isolation_failed":
+                # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
+                self._sessions.pop(job.exercise).close()
+                verdict = self._session(job.exercise).grade(submission)
+            return Answer(verdict=verdict)
+        except CourseError as error:
+            problem = Problem(error.code, error.message, error.help)
+            return Answer(error=problem, exit_code=error.exit_code)
+
+    def _check_version(self, job: Job) -> None:
+        """Refuse work of a coordinator that has other graders.
+
+        Raises:
+            MissingCapabilityError: its scores would not be comparable.
+        """
+        from course.scoring.version import grader_version
+
+        if not job.version:
+            return
+        if job.exercise not in self._versions:
+            known = job.exercise in self._catalog.exercise_ids()
+            self._versions[job.exercise] = (
+                grader_version(self._catalog.exercise(job.exercise), self._catalog) if known else "none"
+            )
+        mine = self._versions[job.exercise]
+        if mine != job.version:
+            raise MissingCapabilityError(
+                f"The graders of {job.exercise} are version {mine} here, {job.version} where the run began.",
+                help="Install the same checkout of the course on every machine, and restart the workers.",
+                code="version_mismatch",
+            )
+
+    def _session(self, exercise: str) -> GradingSession:
+        from course.scoring.session import GradingSession
+
+        if exercise not in self._sessions:
+            self._sessions[exercise] = GradingSession(
+                self._catalog.exercise(exercise),
+                self._catalog,
+                scope="full",
+                terms=self._config.terms,
+                processor=self._config.processor,
+            )
+        return self._sessions[exercise]
+
+    def close(self) -> None:
+        for session in self._sessions.values():
+            session.close()
+
+
+def read_frame(source: IO[bytes]) -> bytes | None:
+    """The next frame's content; None at the end of the stream."""
+    header = source.read(_LENGTH.size)
+    if len(header) < _LENGTH.size:
+        return None
+    size = _LENGTH.unpack(header)[0]
+    body = source.read(size)
+    return body if len(body) == size else None
+
+
+def write_frame(sink: IO[bytes], message: Any) -> None:
+    """Write one message and flush it."""
+    body = msgspec.msgpack.encode(message)
+    sink.write(_LENGTH.pack(len(body)) + body)
+    sink.flush()
+
+
+if __name__ == "__main__":
+    main()

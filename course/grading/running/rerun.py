@@ -1,0 +1,266 @@
+"""Grading again what a gradebook holds, with the graders as they are now.
+
+The submissions come out of the gradebook, so nothing else is needed, and hidden inputs are drawn with the
+same seed. Regraded is what another version of the graders scored, and what a fault of ours left unscored.
+Old results stay beside the new; an override goes on counting in place of both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.catalog.questions import read_questions
+from course.errors import IntegrityError, MissingCapabilityError
+from course.grading.gradebook.book import Key, Result
+from course.grading.intake.students import Entry
+from course.grading.quiz import EXERCISE_ID as QUIZ
+from course.grading.quiz import grade_quiz, quiz_version
+from course.grading.running.batch import grade_all
+from course.grading.running.run import QUIZ_RECORD, graded_exercises
+from course.quizzing.bank import Bank
+from course.scoring.session import Submission
+from course.scoring.terms import Terms
+from course.scoring.version import grader_version
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from course.catalog.load import Catalog
+    from course.grading.results.effective import Effective, Results
+    from course.grading.running.run import GradeAll
+    from course.scoring.verdict import Verdict
+
+__all__ = ["Change", "CheckChange", "Regraded", "RerunOptions", "rerun"]
+
+
+@dataclass(frozen=True)
+class RerunOptions:
+    """How to regrade.
+
+    Attributes:
+        dry_run: change nothing, only say what would change.
+        everything: regrade also what these very graders scored.
+        level, at_least: as in ``Terms``; the seed is the first run's.
+        timeout: wall seconds per check; None takes the first run's.
+    """
+
+    dry_run: bool = False
+    everything: bool = False
+    level: str | None = None
+    at_least: str = "L2"
+    timeout: float | None = None
+
+
+class CheckChange(msgspec.Struct, frozen=True):
+    """A check that ended otherwise than before; None where there was or is no such check."""
+
+    id: str
+    before: str | None
+    after: str | None
+    points_before: float
+    points_after: float
+
+
+class Change(msgspec.Struct, frozen=True):
+    """A student whose result is another one now. Scores are those that count."""
+
+    student: str
+    exercise: str
+    score_before: float | None
+    score_after: float | None
+    raw_before: float | None
+    raw_after: float | None
+    state_before: str
+    state_after: str
+    checks: tuple[CheckChange, ...]
+    overridden: bool
+
+
+class Regraded(msgspec.Struct, frozen=True):
+    """What a regrading came to.
+
+    Attributes:
+        up_to_date: results these very graders gave, which were left alone.
+        kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused).
+        faults: submissions a fault of ours kept from being graded.
+    """
+
+    regraded: int
+    up_to_date: int
+    kept: int
+    faults: int
+    changes: tuple[Change, ...]
+
+
+@dataclass
+class _Counts:
+    regraded: int = 0
+    up_to_date: int = 0
+    kept: int = 0
+    faults: int = 0
+
+
+def rerun(
+    results: Results,
+    catalog: Catalog,
+    options: RerunOptions,
+    report: Callable[[int], None] = lambda _: None,
+    *,
+    grade: GradeAll = grade_all,
+) -> Regraded:
+    """Regrade what is in a gradebook.
+
+    Args:
+        results: over a gradebook opened for writing, unless it is a dry run.
+        report: called with the number of submissions regraded so far.
+        grade: what turns entries into verdicts.
+
+    Raises:
+        MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
+        IntegrityError: a submission in the gradebook is damaged.
+    """
+    if catalog.content.graders is None:
+        raise MissingCapabilityError(
+            "This installation has no hidden graders: it is a student's.",
+            help="Grade from a checkout of the course.",
+            code="needs_checkout",
+        )
+    task = _Rerun(results, catalog, options)
+    changes = []
+    for before, after in task.pairs(grade):
+        task.counts.regraded += 1
+        task.counts.faults += after.verdict.state == "grader_error"
+        change = _change(before, after)
+        if change is not None:
+            changes.append(change)
+        report(task.counts.regraded)
+    counts = task.counts
+    return Regraded(counts.regraded, counts.up_to_date, counts.kept, counts.faults, tuple(changes))
+
+
+class _Rerun:
+    def __init__(self, results: Results, catalog: Catalog, options: RerunOptions) -> None:
+        self._results = results
+        self._catalog = catalog
+        self._options = options
+        self._exercises = {exercise.id: exercise for exercise in catalog.exercises()}
+        self._versions = {name: grader_version(item, catalog) for name, item in self._exercises.items()}
+        self._bank = Bank(read_questions(catalog.content.quiz))
+        self._versions[QUIZ] = quiz_version(self._bank)
+        self._before: dict[tuple[str, str], Effective] = {}
+        self._begun = False
+        self.counts = _Counts()
+
+    def pairs(self, grade: GradeAll) -> Iterator[tuple[Effective, Effective]]:
+        """What counted and what counts now, for each regraded submission."""
+        options, results = self._options, self._results
+        recorded = results.book.run_options()
+        timeout = options.timeout or float(recorded.get("timeout", 10.0))
+        terms = Terms(options.level, options.at_least, timeout, results.seed)
+        # Read before anything is written: what is newest changes while results come in.
+        waiting = [(item.result.key, item.verdict.state) for item in results.all() if item.result.number]
+        for graded in grade(self._entries(waiting), terms):
+            entry = graded.entry
+            yield self._taken(self._key(entry.student, entry.exercise.id, entry.sha256), graded.verdict)
+        for key, state in waiting:
+            if key.exercise == QUIZ and self._is_due(key, state):
+                yield from self._quiz(key)
+
+    def _entries(self, waiting: list[tuple[Key, str]]) -> Iterator[Entry]:
+        for key, state in waiting:
+            if key.exercise != QUIZ and self._is_due(key, state):
+                files = self._results.book.submission(key.submission_sha256)
+                exercise = self._exercises.get(key.exercise)
+                if files is None or exercise is None:
+                    self.counts.kept += 1
+                    continue
+                submission = Submission(files)
+                if submission.sha256 != key.submission_sha256:
+                    raise IntegrityError(
+                        f"What {key.student!r} handed in for {key.exercise} is damaged in the gradebook.",
+                        help="Restore the gradebook from a backup, or grade the class into a new folder.",
+                    )
+                self._remember(key)
+                yield Entry(key.student, exercise, submission)
+
+    def _is_due(self, key: Key, state: str) -> bool:
+        same = self._versions.get(key.exercise) == key.grader_version
+        if same and state != "grader_error" and not self._options.everything:
+            self.counts.up_to_date += 1
+            return False
+        return True
+
+    def _quiz(self, key: Key) -> Iterator[tuple[Effective, Effective]]:
+        files = self._results.book.submission(key.submission_sha256)
+        record = msgspec.json.decode(files[QUIZ_RECORD]) if files else None
+        verdict = grade_quiz(self._bank, record) if record is not None and self._bank.ids else None
+        if verdict is None:
+            self.counts.kept += 1
+            return
+        self._remember(key)
+        yield self._taken(self._key(key.student, QUIZ, key.submission_sha256), verdict)
+
+    def _remember(self, key: Key) -> None:
+        self._before[key.student, key.exercise] = next(self._results.all(key.student, key.exercise))
+
+    def _key(self, student: str, exercise: str, sha256: str) -> Key:
+        return Key(student, exercise, sha256, self._versions[exercise], self._results.seed)
+
+    def _taken(self, key: Key, verdict: Verdict) -> tuple[Effective, Effective]:
+        result = Result(key, verdict)
+        before = self._before.pop((key.student, key.exercise))
+        if not self._options.dry_run:
+            if not self._begun:
+                self._begin()
+            self._results.book.add(result)
+        return before, self._results.of(result)
+
+    def _begin(self) -> None:
+        """From the first new result on: a regrading that finds nothing to do leaves no trace."""
+        self._begun = True
+        options, book = self._options, self._results.book
+        facts = {**book.run_options(), "level": options.level, "at_least": options.at_least}
+        book.begin_run("rerun", facts)
+        book.set_meta(version=self._catalog.version)
+        noted = {item.id for item in self._results.exercises()}
+        bank = self._bank if QUIZ in noted and self._bank.ids else None
+        graded = [item for name, item in self._exercises.items() if name in noted]
+        book.set_exercises(graded_exercises(graded, bank))
+
+
+def _change(before: Effective, after: Effective) -> Change | None:
+    """What became different; None if nothing did that anybody would notice."""
+    old = {check.id: check for check in before.verdict.checks}
+    new = {check.id: check for check in after.verdict.checks}
+    checks = []
+    for name in dict.fromkeys((*old, *new)):
+        was, is_ = old.get(name), new.get(name)
+        if (
+            was
+            and is_
+            and (was.status, was.points, was.max_points) == (is_.status, is_.points, is_.max_points)
+        ):
+            continue
+        checks.append(
+            CheckChange(
+                name,
+                was.status.value if was else None,
+                is_.status.value if is_ else None,
+                was.points if was else 0.0,
+                is_.points if is_ else 0.0,
+            )
+        )
+    same = (before.score, before.raw_score, before.verdict.state) == (
+        after.score,
+        after.raw_score,
+        after.verdict.state,
+    )
+    if same and not checks:
+        return None
+    return Change(
+        after.student, after.exercise, before.score, after.score, before.raw_score, after.raw_score,
+        before.verdict.state, after.verdict.state, tuple(checks), after.override is not None,
+    )  # fmt: skip

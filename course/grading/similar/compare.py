@@ -1,0 +1,199 @@
+"""Which submissions are alike: compared on this machine, and with the course's own code.
+
+Each fingerprint weighs the more, the fewer submissions have it; those of the stub weigh nothing. How much of
+the smaller of two submissions is in the other is their share. What everybody writes therefore hardly counts,
+and a copy with changed names counts in full. Likeness is a reason to talk, not a finding: short exercises
+have few ways to be right.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.errors import NotFoundError
+from course.grading.quiz import EXERCISE_ID as QUIZ
+from course.grading.similar.fingerprints import Parser, Prints
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+    from course.grading.results.effective import Results
+
+__all__ = ["Document", "Pair", "Similar", "compare"]
+
+#: A fingerprint in more submissions than this proposes no pairs; it counts in those that others propose.
+_COMMON = 40
+#: Pairs that share less than this many fingerprints are chance.
+_FEWEST = 3
+MAX_PAIRS = 200
+
+
+@dataclass(frozen=True)
+class Document:
+    """One source that is compared.
+
+    Attributes:
+        label: the student, or what of the course's own it is.
+        own: the course's own code: compared with, never accused.
+    """
+
+    label: str
+    source: str
+    prints: Prints = field(repr=False, compare=False)
+    own: bool = False
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two documents of one exercise.
+
+    Attributes:
+        share: of the smaller one, by weight, that the other has too; 1 for all of it.
+        passages: lines of the first and of the second that correspond, as (first, last).
+        lines: of the first, that are in such passages.
+    """
+
+    exercise: str
+    first: Document
+    second: Document
+    share: float
+    passages: tuple[tuple[tuple[int, int], tuple[int, int]], ...]
+    lines: int
+
+
+@dataclass
+class Similar:
+    """What a comparison found.
+
+    Attributes:
+        pairs: the most alike first, at most ``MAX_PAIRS``.
+        compared: number of submissions.
+        unreadable: "student exercise" of what is no Python.
+        left_out: pairs beyond ``MAX_PAIRS``.
+    """
+
+    pairs: list[Pair] = field(default_factory=list)
+    compared: int = 0
+    unreadable: list[str] = field(default_factory=list)
+    left_out: int = 0
+
+
+def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, at_least: float) -> Similar:
+    """Compare all submissions of each exercise with each other and with the course's own code.
+
+    Args:
+        exercises: ids; empty takes all that were graded.
+        at_least: the smallest share to report.
+
+    Raises:
+        NotFoundError: nothing was graded for such an exercise.
+    """
+    found = Similar()
+    graded = [
+        item.id for item in results.exercises() if item.id != QUIZ and item.id in catalog.exercise_ids()
+    ]
+    unknown = [name for name in exercises if name not in graded]
+    if unknown:
+        raise NotFoundError(
+            f"The gradebook has no code for the exercise {unknown[0]!r}.",
+            help=f"It has {', '.join(graded) or 'none'}.",
+            code="exercise_not_found",
+        )
+    with Parser() as parse:
+        for name in graded:
+            if exercises and name not in exercises:
+                continue
+            exercise = catalog.exercise(name)
+            documents = list(_submissions(results, exercise, parse, found))
+            documents += _own(catalog, exercise, parse)
+            stub = parse(exercise.stub_path.read_bytes())
+            ignored = set(stub.marks) if stub else set()
+            found.pairs += _pairs(name, documents, ignored, at_least)
+    found.pairs.sort(key=lambda pair: (-pair.share, -pair.lines, pair.exercise, pair.first.label))
+    found.left_out = max(0, len(found.pairs) - MAX_PAIRS)
+    del found.pairs[MAX_PAIRS:]
+    return found
+
+
+def _submissions(results: Results, exercise: Exercise, parse: Parser, found: Similar) -> Iterator[Document]:
+    for effective in results.all(exercise=exercise.id):
+        files = results.book.submission(effective.result.key.submission_sha256) or {}
+        source = files.get(exercise.module)
+        if source is None:
+            continue
+        prints = parse(source)
+        if prints is None:
+            found.unreadable.append(f"{effective.student} {exercise.id}")
+            continue
+        found.compared += 1
+        yield Document(effective.student, source.decode("utf-8", "backslashreplace"), prints)
+
+
+def _own(catalog: Catalog, exercise: Exercise, parse: Parser) -> list[Document]:
+    """The model solution, and the textbook code that every student has."""
+    paths = sorted((Path(__file__).resolve().parents[2] / "physics").glob("*.py"))
+    if catalog.content.solutions is not None:
+        paths.insert(0, catalog.content.solutions / exercise.id / exercise.module)
+    documents = []
+    for path in paths:
+        if path.is_file() and path.name != "__init__.py":
+            source = path.read_bytes()
+            prints = parse(source)
+            label = "course.physics." + path.stem if path.parent.name == "physics" else "the model solution"
+            if prints is not None:
+                documents.append(Document(label, source.decode("utf-8"), prints, own=True))
+    return documents
+
+
+def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least: float) -> Iterator[Pair]:
+    having: dict[int, list[int]] = {}
+    for number, document in enumerate(documents):
+        for mark in document.prints.marks:
+            if mark not in ignored:
+                having.setdefault(mark, []).append(number)
+    total = sum(not document.own for document in documents)
+    weights = {mark: math.log1p(total / len(owners)) for mark, owners in having.items()}
+    size = [sum(weights.get(mark, 0.0) for mark in document.prints.marks) for document in documents]
+    for one, other in sorted(_candidates(documents, having)):
+        first, second = documents[one], documents[other]
+        if first.own and second.own:
+            continue
+        shared = [mark for mark in first.prints.marks if mark in second.prints.marks and mark in weights]
+        # A textbook chapter is large: what counts is how much of the student's is in it.
+        smaller = size[one] if second.own else size[other] if first.own else min(size[one], size[other])
+        share = sum(weights[mark] for mark in shared) / smaller if smaller else 0.0
+        copy = first.prints.whole == second.prints.whole
+        if share >= at_least and (copy or len(shared) >= _FEWEST):
+            yield _pair(exercise, first, second, min(share, 1.0), shared)
+
+
+def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[tuple[int, int]]:
+    """Pairs worth comparing: those with enough rare fingerprints in common, and copies of one another.
+
+    Of many copies each is paired with the first only, the course's own if there is one, and the first alone
+    with everything else: all pairs would be half a million for a thousand, and keep others off the list.
+    """
+    firsts: dict[str, int] = {}
+    for number, document in sorted(enumerate(documents), key=lambda item: not item[1].own):
+        firsts.setdefault(document.prints.whole, number)
+    first = [firsts[document.prints.whole] for document in documents]
+    common: Counter[tuple[int, int]] = Counter()
+    for owners in having.values():
+        if len(owners) <= _COMMON:
+            alone = [number for number in owners if first[number] == number]
+            common.update((one, other) for at, one in enumerate(alone) for other in alone[at + 1 :])
+    found = {pair for pair, count in common.items() if count >= _FEWEST}
+    copies = ((number, other) for number, other in enumerate(first) if number != other)
+    return found | {(min(pair), max(pair)) for pair in copies}
+
+
+def _pair(exercise: str, first: Document, second: Document, share: float, shared: list[int]) -> Pair:
+    passages = sorted((first.prints.marks[mark][0], second.prints.marks[mark][0]) for mark in shared)
+    lines = {line for (start, end), _ in passages for line in range(start, end + 1)}
+    return Pair(exercise, first, second, share, tuple(passages), len(lines))

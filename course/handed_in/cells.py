@@ -1,0 +1,282 @@
+"""The code cells of a notebook that someone handed in, as plain Python.
+
+A notebook is read as data: nothing of it runs, and its outputs are skipped. What IPython adds to Python is
+taken out line by line, so that every other line keeps its number within its cell.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from course.errors import UngradableError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = ["MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
+
+#: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
+MAX_NOTEBOOK = 32 << 20
+#: Of all code cells together: what a module may be large. In characters.
+MAX_CODE = 1 << 20
+
+_FIX = "Save it from Jupyter again, or hand in the .py file."
+#: Cell magics whose body is Python of this notebook; the cells of all others are something else.
+_PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})
+#: Of a line without space around it: a million spaces in a row would be tried in every way to part them.
+_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|.*\S\?{1,2}$")
+
+
+class _Cell(msgspec.Struct, frozen=True):
+    """A cell of format 4 has ``source``, one of format 3 ``input``; both may be a list of lines."""
+
+    cell_type: str = ""
+    source: str | list[str] = ""
+    input: str | list[str] = ""
+    metadata: dict[str, Any] = {}
+
+
+class _Worksheet(msgspec.Struct, frozen=True):
+    cells: list[_Cell] = []
+
+
+class _Named(msgspec.Struct, frozen=True):
+    language: str | None = None
+    name: str | None = None
+
+
+class _Metadata(msgspec.Struct, frozen=True):
+    kernelspec: _Named | None = None
+    language_info: _Named | None = None
+
+
+class _Notebook(msgspec.Struct, frozen=True):
+    nbformat: int
+    cells: list[_Cell] = []
+    worksheets: list[_Worksheet] = []
+    metadata: _Metadata | None = None
+
+
+@dataclass(frozen=True)
+class CodeCell:
+    """One code cell.
+
+    Attributes:
+        number: 1 is the first cell of the notebook, text cells included, as a person counts.
+        text: Python, with a ``pass`` where a line was taken out.
+        tree: its syntax tree; None if it is not Python.
+        tags: what the course wrote into the cell's metadata when it generated it; {} where that is lost.
+        dropped: lines that were taken out, (line, text) each.
+    """
+
+    number: int
+    text: str
+    tree: ast.Module | None
+    tags: dict[str, Any]
+    dropped: tuple[tuple[int, str], ...] = field(default=())
+
+
+def code_cells(data: bytes, name: str) -> list[CodeCell]:
+    """The code cells of a notebook, in its order.
+
+    Args:
+        data: the file.
+        name: what to call it in messages.
+
+    Raises:
+        UngradableError: it is no notebook, or one of another language.
+    """
+    if len(data) > MAX_NOTEBOOK:
+        raise UngradableError(
+            f"{name} is larger than {MAX_NOTEBOOK >> 20} MB.",
+            help="Clear its outputs, save it, and hand it in again.",
+            code="too_large",
+        )
+    notebook = _decoded(data, name)
+    language = _language(notebook.metadata)
+    if language not in {"", "python"}:
+        raise UngradableError(
+            f"{name} is a notebook for {language}, not for Python.",
+            help="Write the functions in a Python notebook.",
+            code="other_kernel",
+        )
+    cells = notebook.cells or [cell for sheet in notebook.worksheets for cell in sheet.cells]
+    codes = [(number, cell) for number, cell in enumerate(cells, 1) if cell.cell_type == "code"]
+    _must_be_small([(number, len(_text(cell))) for number, cell in codes], name)
+    return [_code_cell(number, cell) for number, cell in codes]
+
+
+def typed_cell(number: int, text: str) -> CodeCell:
+    """A cell of which only the text is known: what was typed into a running notebook."""
+    return _code_cell(number, _Cell("code", text))
+
+
+def _must_be_small(sizes: list[tuple[int, int]], name: str) -> None:
+    """Refuse more code than anyone writes before it is parsed: a syntax tree is far larger than its text."""
+    if sum(size for _, size in sizes) <= MAX_CODE:
+        return
+    number, size = max(sizes, key=lambda one: one[1])
+    raise UngradableError(
+        f"The code of {name} is larger than {MAX_CODE >> 20} MB; cell {number} has {size:,} characters.",
+        help="Keep data out of the cells; the exercise needs none.",
+        code="too_large",
+    )
+
+
+def _decoded(data: bytes, name: str) -> _Notebook:
+    try:
+        return msgspec.json.decode(data.removeprefix(b"\xef\xbb\xbf"), type=_Notebook)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise UngradableError(
+            f"{name} is not a notebook: {str(error)[:200] or 'it cannot be read'}.",
+            help=_FIX,
+            code="not_a_notebook",
+        ) from None
+
+
+def _language(metadata: _Metadata | None) -> str:
+    """The language a notebook says it is in, "" if it does not say."""
+    if metadata is None:
+        return ""
+    said = [
+        metadata.language_info.name if metadata.language_info else None,
+        metadata.kernelspec.language if metadata.kernelspec else None,
+    ]
+    words = [word.lower() for word in said if word]
+    # "ipython" is what old notebooks say, and "python3" some kernels.
+    return "python" if any("python" in word for word in words) else (words[0] if words else "")
+
+
+def _code_cell(number: int, cell: _Cell) -> CodeCell:
+    text, dropped = _without_magics(_text(cell).replace("\r\n", "\n").replace("\r", "\n"))
+    text, more = _without_shell(text)
+    tags = cell.metadata.get("course")
+    return CodeCell(number, text, _parsed(text), tags if isinstance(tags, dict) else {}, (*dropped, *more))
+
+
+def _text(cell: _Cell) -> str:
+    source = cell.source or cell.input
+    return source if isinstance(source, str) else "".join(source)
+
+
+def _parsed(text: str) -> ast.Module | None:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
+            return ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+# -- what IPython adds ------------------------------------------------------------------------------------
+
+
+def _without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
+    """The text as Python, and the lines that were taken out of it."""
+    first = text.lstrip("\n").partition("\n")[0]
+    if first.startswith("%%"):
+        name = first[2:].split(maxsplit=1)[0] if first[2:].strip() else ""
+        at = text.index("%%")
+        line = text.count("\n", 0, at) + 1
+        if name not in _PYTHON_MAGICS:
+            return "", ((line, first),)
+        rest, dropped = _without_magics(text[:at] + text[at + len(first) :])
+        return rest, ((line, first), *dropped)
+    if _parsed(text) is not None:
+        return text, ()  # Python as it stands, also where a line begins with a percent sign
+    lines = text.split("\n")
+    taken: list[tuple[int, str]] = []
+    for index in _statement_lines(text):
+        whole = lines[index]
+        shown = whole.strip()
+        if _MAGIC.match(shown) and _parsed(shown) is None:
+            indent = whole[: len(whole) - len(whole.lstrip())]
+            lines[index] = indent + "pass"
+            taken.append((index + 1, shown))
+    return "\n".join(lines), tuple(taken)
+
+
+def _without_shell(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
+    """The text without statements that are magics written out: get_ipython().run_line_magic(...)."""
+    tree = _parsed(text) if "get_ipython" in text else None
+    if tree is None:
+        return text, ()
+    lines = text.split("\n")
+    taken: list[tuple[int, str]] = []
+    for node in tree.body:
+        first, last = node.lineno - 1, node.end_lineno or node.lineno
+        alone = sum(one.lineno <= last and first < (one.end_lineno or one.lineno) for one in tree.body) == 1
+        if alone and _asks_shell(node):
+            taken.append((node.lineno, lines[first].strip()))
+            lines[first:last] = ["pass", *[""] * (last - first - 1)]
+    return "\n".join(lines), tuple(taken)
+
+
+def _asks_shell(node: ast.stmt) -> bool:
+    inner = node.value if isinstance(node, ast.Expr) else None
+    while isinstance(inner, ast.Attribute | ast.Call):
+        inner = inner.value if isinstance(inner, ast.Attribute) else inner.func
+    return isinstance(inner, ast.Name) and inner.id == "get_ipython"
+
+
+_PIECE = re.compile(
+    r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'|"(?:\\.|[^"\\\n])*")"""
+    r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>.)""",
+    re.DOTALL | re.VERBOSE,
+)
+
+
+def _statement_lines(text: str) -> Iterator[int]:
+    """Indices of the lines on which a statement can begin: none inside a string or a bracket."""
+    line = depth = position = 0
+    yield 0
+    while position < len(text):
+        piece = _PIECE.match(text, position)
+        if piece is None:
+            return
+        position = piece.end()
+        kind, found = piece.lastgroup, piece.group()
+        if kind == "triple":
+            closed = text.find(found, position)
+            stop = len(text) if closed < 0 else closed + 3
+            line += text.count("\n", position, stop)
+            position = stop
+        elif kind == "open":
+            depth += 1
+        elif kind == "close":
+            depth = max(0, depth - 1)
+        elif kind == "joined":
+            line += 1
+        elif kind == "end":
+            line += 1
+            if depth == 0:
+                yield line
+
+
+def read_notebook(path: Path) -> bytes:
+    """A notebook's file.
+
+    Raises:
+        UsageError: it is a folder, too large, or cannot be read.
+    """
+    try:
+        if not path.is_file():
+            raise UsageError(f"{path} is not a file.", help="Name a notebook.", code="not_a_file")
+        if path.stat().st_size > MAX_NOTEBOOK:
+            raise UsageError(
+                f"{path} is larger than {MAX_NOTEBOOK >> 20} MB.",
+                help="Clear its outputs and save it.",
+                code="too_large",
+            )
+        return path.read_bytes()
+    except OSError as error:
+        raise UsageError(
+            f"{path} cannot be read ({error.strerror or error}).", help="Check its permissions."
+        ) from error

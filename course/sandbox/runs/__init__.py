@@ -1,0 +1,1 @@
+"""Runs to keep: unseen and measured, recorded and replayed, filmed, told in sentences."""

@@ -1,0 +1,129 @@
+"""A run in sentences, from the same events that pictures are drawn from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from course.sandbox.world.contacts import MINOR
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from course.sandbox.runs.running import Run
+    from course.sandbox.world.events import Event, Receipt
+
+__all__ = ["account", "momentum", "sentence", "sentences"]
+
+#: A pair that touches again within this long is not told about each time, in s.
+_PATIENCE = 0.05
+#: Changes of energy below this share are not worth a clause.
+_WORTH = 0.005
+
+
+def sentence(event: Event) -> str:
+    """One event in words, with the time in front: "0.42 s: the ball meets the floor at 4.09 m/s ..."."""
+    when = f"{event.t:.2f} s: "
+    if event.kind == "contact":
+        return when + _contact(event)
+    if event.kind == "rest":
+        return f"{when}{_the(event.a)} comes to rest at x = {_place(event.x)} m, y = {_place(event.y)} m."
+    if event.kind == "gone":
+        return f"{when}{_the(event.a)} has left the scene."
+    return f"{when}{event.text}."
+
+
+def _place(value: float) -> str:
+    """To the centimetre, and never minus nothing."""
+    return f"{round(value, 2) + 0.0:.2f}"
+
+
+def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
+    """What is worth telling, and at the end how much was left out.
+
+    Args:
+        events: in order.
+        most: sentences at most, the last one not counted.
+    """
+    last: dict[tuple[str, str], float] = {}
+    told = left = 0
+    for event in events:
+        if event.kind == "contact":
+            pair = (event.a, event.b)
+            since = event.t - last.get(pair, -1.0)
+            last[pair] = event.t
+            if event.minor or since < _PATIENCE:
+                left += not event.minor
+                continue
+        if told >= most:
+            left += 1
+            continue
+        told += 1
+        yield sentence(event)
+    if left:
+        yield f"{left} more event{'s' if left > 1 else ''} happened; --csv and --json have every one."
+
+
+def account(receipt: Receipt) -> list[str]:
+    """The receipt in sentences."""
+    had = receipt.start + receipt.given
+    lines = [
+        f"Energy at the start {_joule(receipt.start)}"
+        + (f", given since {_joule(receipt.given)}" if abs(receipt.given) > 1e-9 else "")
+        + f"; now {_joule(receipt.kinetic)} of motion and {_joule(receipt.potential)} of height.",
+    ]
+    scale = max(abs(had), abs(receipt.kinetic), abs(receipt.contacts), abs(receipt.friction), 1e-12)
+    contacts, friction = (
+        part if abs(part) > 1e-9 * scale else 0.0 for part in (receipt.contacts, receipt.friction)
+    )
+    lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}.")
+    share = abs(receipt.residual) / scale
+    if share < 1e-9:
+        lines.append("Nothing is unaccounted for.")
+    else:
+        verb = "is missing, and was lost nowhere physical" if receipt.residual > 0 else "came from nowhere"
+        lines.append(f"{_joule(abs(receipt.residual))} {verb}: that is the solver's ({100 * share:.2g} %).")
+    return lines
+
+
+def momentum(done: Run) -> list[str]:
+    """What became of the momentum, in a sentence."""
+    (px, py, _), (qx, qy, _) = done.momentum_before, done.momentum_after
+    size = max(abs(px), abs(py), abs(qx), abs(qy), 1e-12)
+    now = f"({qx if abs(qx) > 1e-9 * size else 0.0:.4g}, {qy if abs(qy) > 1e-9 * size else 0.0:.4g}) kg m/s"
+    if abs(qx - px) <= 1e-9 * size and abs(qy - py) <= 1e-9 * size:
+        return [f"Momentum is kept: {now}."]
+    was = f"({px:.4g}, {py:.4g})"
+    return [f"Momentum went from {was} to {now}: something outside took part."]
+
+
+def _contact(event: Event) -> str:
+    if event.approach < -MINOR:
+        return (
+            f"{_the(event.a)} is found inside {_the(event.b)} and moves apart at {-event.approach:.2f} m/s."
+        )
+    text = f"{_the(event.a)} meets {_the(event.b)} at {event.approach:.2f} m/s"
+    if event.leave is None:
+        return f"{text}."
+    if event.leave > 0.01:
+        text += f" and leaves at {event.leave:.2f}"
+    else:
+        text += " and stays with it"
+    share = event.lost
+    if share is None or event.before is None or event.before < 1e-9:
+        return f"{text}."
+    whose = "their" if event.shared else "its"
+    if abs(share) < _WORTH:
+        return f"{text}; none of {whose} kinetic energy is gone."
+    if share < 0:
+        return f"{text}; {whose} kinetic energy grew by {-100 * share:.0f} %, pushed by others."
+    return f"{text}; {100 * share:.0f} % of {whose} kinetic energy is gone."
+
+
+def _the(name: str) -> str:
+    """A body's name as one says it: ``ball-3`` is "ball 3", ``floor`` "the floor"."""
+    words = name.replace("-", " ")
+    return words if words[-1:].isdigit() else f"the {words}"
+
+
+def _joule(value: float) -> str:
+    return f"{value:.4g} J"

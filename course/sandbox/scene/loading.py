@@ -1,0 +1,294 @@
+"""Scenes from files: the course's own by id, a student's by path, and either with parameters set."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from course.catalog.reading import read_document
+from course.errors import ContentError, NotFoundError, UsageError
+from course.sandbox.scene.expression import evaluate
+from course.sandbox.scene.model import Scene
+from course.sandbox.scene.parts import layout
+from course.sandbox.scene.rules import check_scene
+from course.sandbox.scene.settings import SETTINGS, checked, number
+from course.sandbox.scene.wording import fill, used
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from course.catalog.reading import Document
+
+__all__ = [
+    "FOLDER",
+    "Chosen",
+    "choose",
+    "question",
+    "scene_ids",
+    "scenes",
+    "unchanged",
+    "values_of",
+    "with_settings",
+]
+
+#: The course's own scenes.
+FOLDER = Path(__file__).parents[1] / "scenes"
+
+
+class Chosen(msgspec.Struct, frozen=True, kw_only=True):
+    """A scene and what was asked to be different.
+
+    Attributes:
+        scene: with its parameters put in.
+        parameters: the scene's own, every one.
+        settings: those of ``SETTINGS`` that were given.
+        path: the file.
+        own: it is not one of the course's.
+    """
+
+    scene: Scene
+    parameters: dict[str, float]
+    settings: dict[str, float]
+    path: Path
+    own: bool = False
+
+
+def scene_ids() -> tuple[str, ...]:
+    """Ids of the course's scenes, sorted; lists a folder and opens no file."""
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+
+
+def scenes() -> tuple[Scene, ...]:
+    """The course's scenes, in the order they are best played.
+
+    Raises:
+        ContentError: one is wrong.
+    """
+    found = (read_scene(FOLDER / f"{name}.toml") for name in scene_ids())
+    return tuple(sorted(found, key=lambda scene: (scene.order, scene.id)))
+
+
+def read_scene(path: Path) -> Scene:
+    """One file.
+
+    Raises:
+        ContentError: it is missing or wrong; names the line and the fix.
+    """
+    document = _read(path)
+    if document.value.id != path.stem:
+        document.fail(
+            ("id",), f"the id is {document.value.id}, the file {path.name}.", fix="Make them the same."
+        )
+    return document.value
+
+
+def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
+    """A scene by its id, or a file by its path, with parameters and settings.
+
+    Args:
+        name: an id of the course's scenes, or a path that ends in ``.toml``.
+        settings: values for the scene's parameters, for ``seed``, and for ``SETTINGS``.
+
+    Raises:
+        NotFoundError: there is no such scene.
+        UsageError: a student's file is wrong, or a parameter unknown or out of range.
+        ContentError: one of the course's files is wrong.
+    """
+    own = name.endswith(".toml") or "/" in name
+    path = Path(name).expanduser() if own else FOLDER / f"{name}.toml"
+    if own:
+        scene = _read_own(path)
+    elif name in scene_ids():
+        scene = read_scene(path)
+    else:
+        raise _unknown(name)
+    scene, parameters, rest = _put_in(scene, dict(settings or {}))
+    return Chosen(scene=scene, parameters=parameters, settings=rest, path=path, own=own)
+
+
+def values_of(chosen: Chosen) -> dict[str, float]:
+    """What a formula of the scene may name: its parameters, ``g``, ``step``, and fields of bodies."""
+    scene, parts = chosen.scene, layout(chosen.scene)
+    gravity = chosen.settings.get("gravity", math.hypot(*scene.gravity))
+    values = {name.replace("-", "_"): value for name, value in chosen.parameters.items()}
+    values |= {
+        "g": gravity or (scene.floor.gravity if scene.floor else 0.0),
+        "step": chosen.settings.get("step", scene.step),
+        "iterations": chosen.settings.get("iterations", float(scene.iterations)),
+        "duration": scene.duration,
+    }
+    for part in parts:
+        if part.wheels is not None:
+            values["left"] = chosen.settings.get("left", part.wheels.left)
+            values["right"] = chosen.settings.get("right", part.wheels.right)
+    for part in parts:
+        name = part.name.replace("-", "_")
+        own = {
+            "x": part.x,
+            "y": part.y,
+            "vx": part.vx,
+            "vy": part.vy,
+            "mass": part.mass,
+            "radius": part.radius,
+        }
+        own["restitution"] = part.restitution
+        own["friction"] = part.friction
+        if not part.fixed:
+            own["restitution"] = chosen.settings.get("restitution", part.restitution)
+            own["friction"] = chosen.settings.get("friction", part.friction)
+        values |= {f"{name}.{field}": value for field, value in own.items()}
+    return values
+
+
+def unchanged(scene: Scene) -> Chosen:
+    """A course's scene with nothing asked to be different."""
+    ready, parameters, _ = _put_in(scene, {})
+    return Chosen(scene=ready, parameters=parameters, settings={}, path=FOLDER / f"{scene.id}.toml")
+
+
+def with_settings(chosen: Chosen, settings: Mapping[str, float]) -> Chosen:
+    """The same with the settings that are in force in its world by now."""
+    return msgspec.structs.replace(chosen, settings=dict(settings))
+
+
+def question(chosen: Chosen) -> str:
+    """What the scene asks, with the numbers it has; "" if it asks nothing.
+
+    Raises:
+        UsageError: a formula in it has no value for these settings.
+    """
+    asked = chosen.scene.prediction
+    return "" if asked is None else fill(asked.question, values_of(chosen))
+
+
+def _read(path: Path) -> Document[Scene]:
+    document = read_document(path, Scene)
+    check_scene(document)
+    _check_formulas(document)
+    return document
+
+
+def _check_formulas(document: Document[Scene]) -> None:
+    """What is said, and when is looked, have values: as the scene is, and at both ends of what can be set."""
+    scene = document.value
+    texts: dict[tuple[str | int, ...], str] = {
+        ("probe", i, "time"): f"{{{probe.time}}}"
+        for i, probe in enumerate(scene.probe)
+        if isinstance(probe.time, str)
+    }
+    if scene.prediction is not None:
+        texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
+    texts = {where: text for where, text in texts.items() if "{" in text}
+    if not texts:
+        return
+    named = {name.rpartition(".")[2] for text in texts.values() for name in used(text)}
+    for settings in _ends(scene, named):
+        try:
+            ready, parameters, rest = _put_in(scene, dict(settings))
+        except UsageError:
+            continue  # that end is out of reach, as whoever asks for it is told
+        values = values_of(Chosen(scene=ready, parameters=parameters, settings=rest, path=document.path))
+        for where, text in texts.items():
+            try:
+                fill(text, values)
+                if where[-1] == "time" and not settings:
+                    _check_time(document, where, evaluate(text[1:-1], values))
+            except UsageError as error:
+                there = "".join(f" at {name}={value:g}" for name, value in settings.items())
+                document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
+
+
+def _check_time(document: Document[Scene], where: tuple[str | int, ...], time: float) -> None:
+    if not 0.0 <= time <= document.value.duration:
+        document.fail(where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`.")
+
+
+def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
+    """No settings, then each alone at either end of its range, if formulas use these names."""
+    yield {}
+    for parameter in scene.parameter:
+        yield {parameter.name: parameter.low}
+        yield {parameter.name: parameter.high}
+    for name, setting in SETTINGS.items():
+        if {"gravity": "g"}.get(name, name) in named:
+            yield {name: setting.low}
+            yield {name: setting.high}
+
+
+def _read_own(path: Path) -> Scene:
+    try:
+        document = _read(path)
+    except ContentError as error:
+        if not path.is_file():
+            raise NotFoundError(
+                f"There is no file {path}.",
+                help="`course sandbox list` shows the scenes.",
+                code="scene_not_found",
+            ) from error
+        raise UsageError(error.message, help=error.help, code="bad_scene") from error
+    return document.value
+
+
+def _unknown(name: str) -> NotFoundError:
+    close = difflib.get_close_matches(name, scene_ids(), n=3, cutoff=0.5)
+    close = close or [known for known in scene_ids() if name and known.startswith(name)][:3]
+    fix = f"Did you mean {' or '.join(close)}?" if close else "`course sandbox list` shows them."
+    return NotFoundError(f"There is no scene called {name[:80]!r}.", help=fix, code="scene_not_found")
+
+
+def _put_in(scene: Scene, settings: dict[str, object]) -> tuple[Scene, dict[str, float], dict[str, float]]:
+    """The scene with its parameters in their places; what is left goes to the world."""
+    parameters = {parameter.name: parameter for parameter in scene.parameter}
+    seed = settings.pop("seed", scene.seed)
+    given = {name: value for name, value in settings.items() if name in parameters}
+    rest = {name: value for name, value in settings.items() if name not in parameters}
+    for name in rest:
+        if name not in SETTINGS:
+            known = ", ".join([*parameters, "seed", *SETTINGS])
+            raise UsageError(
+                f"{scene.id} has no parameter called {name[:40]!r}.",
+                help=f"Known: {known}.",
+                code="bad_parameter",
+            )
+    raw: dict[str, Any] = msgspec.to_builtins(scene)
+    values: dict[str, float] = {}
+    for name, parameter in parameters.items():
+        value = number(given.get(name, parameter.default), name)
+        if not parameter.low <= value <= parameter.high:
+            raise UsageError(
+                f"{name} must be from {parameter.low:g} to {parameter.high:g}, and {value:g} is not.",
+                help=f"{name}: {parameter.meaning}",
+                code="bad_parameter",
+            )
+        values[name] = value
+    numbers = {name.replace("-", "_"): value for name, value in values.items()}
+    for place, formula in scene.sets.items():
+        _set_in(raw, place, evaluate(formula, numbers))
+    raw["seed"] = seed
+    try:
+        ready = msgspec.convert(raw, Scene)
+    except msgspec.ValidationError as error:
+        raise UsageError(f"The parameters do not fit the scene: {error}.", code="bad_parameter") from error
+    return ready, values, {name: checked(name, value) for name, value in rest.items()}
+
+
+def _set_in(raw: dict[str, Any], place: str, value: float) -> None:
+    """Put a value at ``body.field``, ``body.field.0`` or ``field``; whole numbers stay whole."""
+    steps = place.split(".")
+    target: Any = raw
+    named = {thing["name"]: thing for thing in (*raw["body"], *raw["joint"])}
+    if len(steps) > 1 and steps[0] in named:
+        target, steps = named[steps[0]], steps[1:]
+    for step in steps[:-1]:
+        inside = target[int(step)] if isinstance(target, list) else target[step]
+        if isinstance(inside, tuple):
+            inside = list(inside)
+            target[int(step) if isinstance(target, list) else step] = inside
+        target = inside
+    last: Any = int(steps[-1]) if isinstance(target, list) else steps[-1]
+    kind = type(target[last])
+    target[last] = kind(value) if kind in {int, bool} else value

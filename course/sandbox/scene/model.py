@@ -1,0 +1,302 @@
+"""Scenes: what a file under ``scenes/`` or a student's own file may say.
+
+Everything is in SI units and in the plane: x to the right, y up, angles counter-clockwise. Lengths in m,
+masses in kg, times in s; a name that ends in ``_deg`` is in degrees. Ranges are part of the types, so that a
+file out of range is refused with its line; what a type cannot say is checked in
+``course.sandbox.scene.rules``.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+__all__ = [
+    "Body",
+    "Floor",
+    "Joint",
+    "Material",
+    "Parameter",
+    "Prediction",
+    "Probe",
+    "Repeat",
+    "Scene",
+    "Wheels",
+]
+
+#: Beyond these a scene is a slip of the finger; 10 km and 10 km/s are far outside anything drawn.
+Length = Annotated[float, Meta(gt=0, le=1e4)]
+Coordinate = Annotated[float, Meta(ge=-1e4, le=1e4)]
+Speed = Annotated[float, Meta(ge=-1e4, le=1e4)]
+Fraction = Annotated[float, Meta(ge=0, le=1)]
+Coefficient = Annotated[float, Meta(ge=0, le=10)]
+Count = Annotated[int, Meta(ge=1, le=2000)]
+Text = Annotated[str, Meta(min_length=1, max_length=2000)]
+Name = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9]*(-[a-z0-9]+)*$", max_length=40)]
+#: Names a body, or several with ``*`` at the end: ``ball-*``.
+Pattern = Annotated[str, Meta(pattern=r"^(\*|[a-z][a-z0-9]*(-[a-z0-9]+)*(-?\*)?)$", max_length=41)]
+
+Point = tuple[Coordinate, Coordinate]
+
+
+class Material(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What something is made of.
+
+    Attributes:
+        restitution: 1 keeps the speed of approach, 0 none of it. Between two shapes the values are
+            multiplied, so two balls of 0.8 part with 0.64 of it.
+        friction: Coulomb's coefficient; also multiplied.
+        density: in kg/m², mass per area, since bodies are flat.
+    """
+
+    name: Name
+    restitution: Fraction = 0.5
+    friction: Coefficient = 0.5
+    density: Annotated[float, Meta(gt=0, le=1e6)] = 1.0
+
+
+class Repeat(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The same body several times in a row; two of them make a grid.
+
+    Attributes:
+        count: how many in all.
+        offset: from one to the next, in m.
+    """
+
+    count: Count
+    offset: Point
+
+
+class Wheels(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Two driven wheels beside each other on a body seen from above; it drives along its own x axis.
+
+    Attributes:
+        track: distance between the wheels, in m.
+        left, right: speed of each rim, in m/s.
+        grip: friction between wheel and floor.
+    """
+
+    track: Length
+    left: Speed = 0.0
+    right: Speed = 0.0
+    grip: Coefficient = 0.8
+
+
+class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One body, or a row or grid of equal ones, which are then called name-1, name-2 and so on.
+
+    Attributes:
+        name: what events and probes call it.
+        shape: a circle needs ``radius``, a box ``size``, a polygon ``points`` (convex, around the body's
+            position), a segment two ``points`` and a ``thickness``.
+        material: the name of one of the scene's materials.
+        position: in m, of the centre of mass.
+        angle_deg, velocity, spin: at the start; in degrees, m/s and rad/s.
+        mass: in kg; area times density if left out.
+        fixed: it never moves.
+        rotates: False gives it an infinite moment of inertia.
+        repeat: copies; the first stands at ``position``.
+        jitter: each coordinate of each copy is moved by up to this, in m, drawn from the scene's seed.
+        interval: copies appear one after another, this far apart, in s.
+        turn_deg, about: everything above is turned by this angle about this point, velocity included.
+        wheels: it drives.
+        colour: for views, as ``#rrggbb``.
+    """
+
+    name: Name
+    shape: Literal["circle", "box", "polygon", "segment"]
+    material: Name
+    position: Point = (0.0, 0.0)
+    angle_deg: Annotated[float, Meta(ge=-3600, le=3600)] = 0.0
+    velocity: tuple[Speed, Speed] = (0.0, 0.0)
+    spin: Annotated[float, Meta(ge=-1000, le=1000)] = 0.0
+    radius: Length | None = None
+    size: tuple[Length, Length] | None = None
+    points: Annotated[tuple[Point, ...], Meta(min_length=2, max_length=32)] | None = None
+    thickness: Length | None = None
+    mass: Annotated[float, Meta(gt=0, le=1e6)] | None = None
+    fixed: bool = False
+    rotates: bool = True
+    repeat: Annotated[tuple[Repeat, ...], Meta(max_length=2)] = ()
+    jitter: Annotated[float, Meta(ge=0, le=10)] = 0.0
+    interval: Annotated[float, Meta(ge=0, le=100)] = 0.0
+    turn_deg: Annotated[float, Meta(ge=-3600, le=3600)] = 0.0
+    about: Point = (0.0, 0.0)
+    wheels: Wheels | None = None
+    colour: Annotated[str, Meta(pattern=r"^#[0-9a-f]{6}$")] | None = None
+
+    @property
+    def copies(self) -> int:
+        """How many bodies this makes."""
+        total = 1
+        for repeat in self.repeat:
+            total *= repeat.count
+        return total
+
+
+class Joint(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What holds two bodies together, or one to the world.
+
+    Attributes:
+        kind: a rod keeps the distance of its two anchors, a pivot keeps them together.
+        name: only for ``sets``.
+        a, b: bodies; at least one of them can move.
+        anchor_a, anchor_b: in the body's own frame, in m from its centre.
+        touch: whether the two bodies collide with each other.
+    """
+
+    kind: Literal["rod", "pivot"]
+    name: Name | None = None
+    a: Name
+    b: Name
+    anchor_a: Point = (0.0, 0.0)
+    anchor_b: Point = (0.0, 0.0)
+    touch: bool = False
+
+
+class Floor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The ground of a scene seen from above: it rubs against everything that slides on it.
+
+    Attributes:
+        friction: Coulomb's coefficient.
+        gravity: presses bodies onto it, in m/s².
+    """
+
+    friction: Coefficient
+    gravity: Annotated[float, Meta(ge=0, le=1000)] = 9.81
+
+
+class Parameter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A number of the scene's own that ``--set`` may change; where it goes is said in ``Scene.sets``."""
+
+    name: Name
+    meaning: Text
+    unit: str
+    default: float
+    low: float
+    high: float
+
+
+class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Something that is read off a run.
+
+    Attributes:
+        quantity: what; ``contacts`` counts them, ``contact_time`` is that of the first one, ``count`` is how
+            many of the bodies end inside ``region``, ``spread`` and ``mean`` are of their x.
+        of: whose; several bodies (``ball-*``) for a total, a count, a mean or a spread.
+        other: the partner of a contact.
+        when: at which moment; ``after`` is just after the first contact of ``of`` and ``other``.
+        time: for ``when = "at"``, in s; a number, or a formula in what ``theory`` may use: ``"step"``.
+        region: left, bottom, right, top, in m.
+        change: since the start, instead of the value itself.
+        scale: the value is multiplied by this, which is how it gets another unit.
+    """
+
+    name: Name
+    quantity: Literal[
+        "x",
+        "y",
+        "vx",
+        "vy",
+        "speed",
+        "angle_deg",
+        "spin",
+        "kinetic",
+        "momentum_x",
+        "contacts",
+        "contact_time",
+        "count",
+        "mean",
+        "spread",
+    ]
+    of: Pattern
+    other: Name | None = None
+    when: Literal["start", "end", "max", "min", "at", "after"] = "end"
+    time: Annotated[float, Meta(ge=0, le=1e5)] | Text | None = None
+    region: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = None
+    change: bool = False
+    unit: str = ""
+    scale: float = 1.0
+
+
+class Prediction(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A number to guess before the run.
+
+    ``question`` and ``why`` hold formulas for the numbers that settings change: ``{speed * step:.2f}``, in
+    the names that ``theory`` may use; see ``course.sandbox.scene.wording``.
+
+    Attributes:
+        question: asks for it.
+        probe: what answers it.
+        unit: of the answer.
+        theory: a formula for it in parameters, ``g``, ``step`` and ``body.mass`` and the like.
+        why: where the formula comes from, and what a wrong guess usually thought.
+        near: a guess this close to the simulation counts as right; a fraction of the answer.
+        near_abs: the same as a number, for answers near zero.
+        agrees: how far simulation and theory may be apart, as a fraction of the theory.
+        agrees_abs: the same as a number.
+        agrees_because: where that comes from.
+    """
+
+    question: Text
+    probe: Name
+    unit: str
+    theory: Text
+    why: Text
+    near: Annotated[float, Meta(ge=0, le=1)] = 0.1
+    near_abs: Annotated[float, Meta(ge=0)] = 0.0
+    agrees: Annotated[float, Meta(ge=0, le=1)] = 0.0
+    agrees_abs: Annotated[float, Meta(ge=0)] = 0.0
+    agrees_because: Text
+
+
+class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A whole scene.
+
+    Attributes:
+        order: where it stands in the list.
+        teaches: one line for the list.
+        note: what to know before, including what this engine does that others do not.
+        after: the question to answer after the run.
+        view: what is drawn: left, bottom, right, top, in m.
+        gravity: in m/s².
+        step: of the simulation, in s; a run never uses another within one scene.
+        iterations: of the contact solver.
+        slop: how deep bodies may overlap before they are pushed apart, in m.
+        duration: of a run without somebody watching, in s.
+        reverse: bodies are added to the engine in the opposite order; physics does not care, solvers do.
+        seed: of ``jitter``.
+        sets: formulas in parameters, by where the number goes: ``body.field``, ``body.velocity.0`` (an item
+            of a pair, counted from 0), a joint's the same way, or a field of the scene.
+    """
+
+    format_version: int
+    id: Name
+    title: Text
+    order: int
+    teaches: Text
+    note: Text
+    after: Text
+    view: tuple[Coordinate, Coordinate, Coordinate, Coordinate]
+    gravity: tuple[Annotated[float, Meta(ge=-1000, le=1000)], Annotated[float, Meta(ge=-1000, le=1000)]]
+    step: Annotated[float, Meta(ge=1e-5, le=0.1)] = 1 / 240
+    iterations: Annotated[int, Meta(ge=1, le=1000)] = 20
+    slop: Annotated[float, Meta(ge=0, le=1)] = 0.001
+    duration: Annotated[float, Meta(gt=0, le=1e5)] = 5.0
+    reverse: bool = False
+    seed: Annotated[int, Meta(ge=0)] = 1
+    floor: Floor | None = None
+    material: Annotated[tuple[Material, ...], Meta(min_length=1)]
+    body: Annotated[tuple[Body, ...], Meta(min_length=1)]
+    joint: tuple[Joint, ...] = ()
+    parameter: tuple[Parameter, ...] = ()
+    sets: dict[str, Text] = {}
+    probe: tuple[Probe, ...] = ()
+    prediction: Prediction | None = None
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """Materials by name."""
+        return {material.name: material for material in self.material}

@@ -1,0 +1,270 @@
+"""What a scene has to keep that its types cannot say: references, shapes that are whole, ranges that fit."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from course.errors import UsageError
+from course.sandbox.scene import expression, wording
+from course.sandbox.scene.parts import layout, signed_area
+from course.sandbox.scene.settings import SETTINGS
+
+if TYPE_CHECKING:
+    from course.catalog.reading import Document
+    from course.sandbox.scene.model import Body, Joint, Probe, Scene
+
+__all__ = ["check_scene", "matching"]
+
+#: What ``body.field`` may mean in a formula.
+FIELDS = ("x", "y", "vx", "vy", "mass", "radius", "restitution", "friction")
+#: What a formula may use besides parameters and bodies.
+WORDS = ("g", "step", "iterations", "duration", "left", "right")
+
+_NEEDS = {"circle": ("radius",), "box": ("size",), "polygon": ("points",), "segment": ("points", "thickness")}
+_SHAPE_KEYS = ("radius", "size", "points", "thickness")
+_MOST = 1000
+#: Quantities that several bodies have together.
+_OF_MANY = {"kinetic", "momentum_x", "contacts", "contact_time", "count", "mean", "spread"}
+
+
+def check_scene(document: Document[Scene]) -> None:
+    """Raises ContentError, with the line, for the first thing that is wrong."""
+    scene = document.value
+    left, bottom, right, top = scene.view
+    if left >= right or bottom >= top:
+        document.fail(("view",), "the view is empty.", fix="Write left, bottom, right, top, smallest first.")
+    _check_bodies(document)
+    _check_joints(document)
+    _check_parameters(document)
+    _check_probes(document)
+    _check_prediction(document)
+
+
+def matching(pattern: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names a pattern means; one without ``*`` means itself."""
+    if pattern.endswith("*"):
+        return tuple(name for name in names if name.startswith(pattern[:-1]))
+    return tuple(name for name in names if name == pattern)
+
+
+def _check_bodies(document: Document[Scene]) -> None:
+    scene = document.value
+    seen: dict[str, int] = {}
+    total = 0
+    if len(scene.materials) < len(scene.material):
+        document.fail(("material",), "two materials have the same name.", fix="Rename one.")
+    for i, body in enumerate(scene.body):
+        where = ("body", i)
+        if body.name in seen:
+            document.fail(
+                (*where, "name"),
+                f"the name {body.name} is taken by body {seen[body.name] + 1}.",
+                fix="Name each body differently; `repeat` makes copies.",
+            )
+        seen[body.name] = i
+        if body.material not in scene.materials:
+            document.fail(
+                (*where, "material"),
+                f"there is no material called {body.material}.",
+                fix=f"Materials: {', '.join(scene.materials)}.",
+            )
+        _check_shape(document, i, body)
+        total += body.copies
+    if total > _MOST:
+        document.fail(("body",), f"there are {total} bodies.", fix=f"Keep to {_MOST}.")
+    names = [part.name for part in layout(scene)]
+    for name in names:
+        if names.count(name) > 1:
+            document.fail(
+                ("body",), f"two bodies are called {name}.", fix="A copy is called name-1, name-2 ..."
+            )
+
+
+def _check_shape(document: Document[Scene], i: int, body: Body) -> None:
+    where = ("body", i)
+    for key in _NEEDS[body.shape]:
+        if getattr(body, key) is None:
+            document.fail(
+                where, f"{body.name} is a {body.shape} and lacks `{key}`.", fix=f"Add `{key} = ...`."
+            )
+    for key in _SHAPE_KEYS:
+        if getattr(body, key) is not None and key not in _NEEDS[body.shape]:
+            document.fail((*where, key), f"a {body.shape} has no {key}.", fix="Remove the line.")
+    if body.shape == "segment":
+        if not body.fixed:
+            document.fail(
+                where, f"{body.name} is a segment and not fixed.", fix="Add `fixed = true`, or use a box."
+            )
+        if len(body.points or ()) != 2 or (body.points or ())[0] == (body.points or ())[1]:
+            document.fail(
+                (*where, "points"), "a segment has two different ends.", fix="Write [[x, y], [x, y]]."
+            )
+    if body.shape == "polygon" and not _is_convex(body.points or ()):
+        document.fail(
+            (*where, "points"),
+            "the polygon is not convex, or its corners are not in order.",
+            fix="List at least three corners in order around it; split a hollow shape into several bodies.",
+        )
+    if body.fixed:
+        _check_fixed(document, i, body)
+
+
+def _check_fixed(document: Document[Scene], i: int, body: Body) -> None:
+    where = ("body", i)
+    for key in ("mass", "wheels"):
+        if getattr(body, key) is not None:
+            document.fail((*where, key), f"{body.name} is fixed and needs no {key}.", fix="Remove the line.")
+    if body.velocity != (0.0, 0.0) or body.spin:
+        document.fail(where, f"{body.name} is fixed and cannot move.", fix="Remove its velocity and spin.")
+
+
+def _is_convex(points: tuple[tuple[float, float], ...]) -> bool:
+    if len(points) < 3:
+        return False
+    turned = 0.0
+    ordered = points if signed_area(points) > 0 else points[::-1]
+    for i in range(len(ordered)):
+        (x0, y0), (x1, y1), (x2, y2) = (ordered[(i + k) % len(ordered)] for k in range(3))
+        cross = (x1 - x0) * (y2 - y1) - (y1 - y0) * (x2 - x1)
+        if cross <= 0.0:
+            return False
+        turned += math.atan2(cross, (x1 - x0) * (x2 - x1) + (y1 - y0) * (y2 - y1))
+    return abs(turned - 2 * math.pi) < 1e-6  # a star goes round twice
+
+
+def _check_joints(document: Document[Scene]) -> None:
+    names = {part.name for part in layout(document.value)}
+    fixed = {part.name for part in layout(document.value) if part.fixed}
+    for i, joint in enumerate(document.value.joint):
+        for side in ("a", "b"):
+            name = getattr(joint, side)
+            if name not in names:
+                document.fail(("joint", i, side), f"there is no body called {name}.", fix=_known(names))
+        if joint.a == joint.b:
+            document.fail(
+                ("joint", i), "a joint needs two bodies.", fix="Leave `a` out to join it to the world."
+            )
+        if joint.b in fixed and joint.a in fixed:
+            document.fail(
+                ("joint", i), "neither end of this joint can move.", fix="Join something that moves."
+            )
+
+
+def _check_parameters(document: Document[Scene]) -> None:
+    scene = document.value
+    seen: set[str] = set()
+    for i, parameter in enumerate(scene.parameter):
+        where = ("parameter", i)
+        if parameter.name in seen or parameter.name in SETTINGS or parameter.name == "seed":
+            document.fail((*where, "name"), f"the name {parameter.name} is taken.", fix="Choose another.")
+        seen.add(parameter.name)
+        if not parameter.low <= parameter.default <= parameter.high:
+            document.fail((*where, "default"), "the default is outside low to high.", fix="Widen the range.")
+    known = {parameter.name.replace("-", "_") for parameter in scene.parameter}
+    for place, formula in scene.sets.items():
+        if not _can_be_set(scene, place):
+            document.fail(
+                ("sets", place), f"{place} is nothing that can be set.", fix="Write body.field or a field."
+            )
+        used = _names(document, ("sets", place), formula)
+        if not used <= known:
+            document.fail(
+                ("sets", place), f"the formula uses {min(used - known)}.", fix="It may use parameters only."
+            )
+
+
+def _can_be_set(scene: Scene, place: str) -> bool:
+    """Whether a place holds a number."""
+    target: object = scene
+    steps = place.split(".")
+    named: dict[str | None, Body | Joint] = {body.name: body for body in scene.body}
+    named |= {joint.name: joint for joint in scene.joint}
+    if len(steps) > 1 and steps[0] in named:
+        target, steps = named[steps[0]], steps[1:]
+    for step in steps:
+        if step.isdigit() and isinstance(target, tuple) and int(step) < len(target):
+            target = target[int(step)]
+        else:
+            target = getattr(target, step, None)
+    return isinstance(target, int | float)
+
+
+def _names(document: Document[Scene], where: tuple[str | int, ...], formula: str) -> frozenset[str]:
+    try:
+        return expression.names(formula)
+    except UsageError as error:
+        document.fail(where, error.message, fix=error.help)
+
+
+def _check_probes(document: Document[Scene]) -> None:
+    names = tuple(part.name for part in layout(document.value))
+    seen: set[str] = set()
+    for i, probe in enumerate(document.value.probe):
+        where = ("probe", i)
+        if probe.name in seen:
+            document.fail((*where, "name"), f"there are two probes called {probe.name}.", fix="Rename one.")
+        seen.add(probe.name)
+        for key in ("of", "other"):
+            pattern = getattr(probe, key)
+            if pattern is not None and not matching(pattern, names):
+                document.fail((*where, key), f"there is no body called {pattern}.", fix=_known(set(names)))
+        _check_probe(document, i, probe, len(matching(probe.of, names)))
+
+
+def _check_probe(document: Document[Scene], i: int, probe: Probe, bodies: int) -> None:
+    where = ("probe", i)
+    if (probe.when == "at") != (probe.time is not None):
+        document.fail(where, 'a probe needs `time` exactly when `when` is "at".', fix="Add it, or remove it.")
+    if isinstance(probe.time, str):
+        _check_names(document, (*where, "time"), _names(document, (*where, "time"), probe.time))
+    elif probe.time is not None and probe.time > document.value.duration:
+        document.fail((*where, "time"), "that is after the run has ended.", fix="Make `duration` longer.")
+    if (probe.quantity == "count") != (probe.region is not None):
+        document.fail(
+            where, "a probe needs `region` exactly when it is a count.", fix="Add it, or remove it."
+        )
+    if probe.when == "after" and probe.other is None:
+        document.fail(where, "after which contact?", fix="Name the partner with `other`.")
+    if bodies > 1 and probe.quantity not in _OF_MANY:
+        document.fail((*where, "of"), f"{probe.quantity} is of one body.", fix="Name one.")
+
+
+def _check_prediction(document: Document[Scene]) -> None:
+    scene = document.value
+    asked = scene.prediction
+    if asked is None:
+        return
+    if asked.probe not in {probe.name for probe in scene.probe}:
+        document.fail(("prediction", "probe"), f"there is no probe called {asked.probe}.", fix="Add it.")
+    if not asked.agrees and not asked.agrees_abs:
+        document.fail(
+            ("prediction",), "how far may theory be off?", fix="Add `agrees` (a fraction) or `agrees_abs`."
+        )
+    _check_names(document, ("prediction", "theory"), _names(document, ("prediction", "theory"), asked.theory))
+    for key in ("question", "why"):
+        try:
+            used = wording.used(getattr(asked, key))
+        except UsageError as error:
+            document.fail(("prediction", key), error.message, fix=error.help)
+        _check_names(document, ("prediction", key), used)
+
+
+def _check_names(document: Document[Scene], where: tuple[str | int, ...], used: frozenset[str]) -> None:
+    """That a formula uses nothing but what ``loading.values_of`` gives."""
+    scene = document.value
+    bodies = {part.name.replace("-", "_") for part in layout(scene)}
+    known = {parameter.name.replace("-", "_") for parameter in scene.parameter} | set(WORDS)
+    for name in sorted(used):
+        body, _, field = name.partition(".")
+        if (field and (body not in bodies or field not in FIELDS)) or (not field and name not in known):
+            document.fail(
+                where,
+                f"the formula uses {name}, which is nothing.",
+                fix=f"Use {', '.join(sorted(known))}, or a body's {', '.join(FIELDS)}.",
+            )
+
+
+def _known(names: set[str]) -> str:
+    shown = sorted(names)
+    return f"Bodies: {', '.join(shown[:12])}{' ...' if len(shown) > 12 else ''}."

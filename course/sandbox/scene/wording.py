@@ -1,0 +1,74 @@
+"""Texts of a scene that hold numbers: ``{restitution}``, ``{speed * step:.2f}``.
+
+A number that a setting changes is never written out in a question or its explanation, or the text would be
+false as soon as somebody set it. The formulas are those of ``course.sandbox.scene.expression``, and no text
+is ever handed to ``str.format``, whose fields reach into objects.
+"""
+
+from __future__ import annotations
+
+import re
+import string
+from typing import TYPE_CHECKING
+
+from course.errors import UsageError
+from course.sandbox.scene.expression import evaluate, names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+__all__ = ["fill", "used"]
+
+#: How a number may be shown; few digits, for a text is no table.
+_SHAPE = re.compile(r"\+?(\.\d)?[efg]")
+#: Where nothing is said: 0.4, 30, 0.004167.
+_USUAL = ".4g"
+_HELP = "Write {speed * step} or {speed:.2f}; a brace that is meant as one is doubled: {{."
+
+
+def fill(text: str, values: Mapping[str, float]) -> str:
+    """A text with the value of each of its formulas in the formula's place.
+
+    Args:
+        text: formulas are in braces, with a format such as ``.2f`` after a colon where four digits are wrong.
+        values: what each name stands for; see ``course.sandbox.scene.loading.values_of``.
+
+    Raises:
+        UsageError: one is no formula, names something unknown or has no value, or a brace is left over.
+    """
+    return "".join(
+        words + ("" if formula is None else _shown(evaluate(formula, values), shape))
+        for words, formula, shape in _pieces(text)
+    )
+
+
+def used(text: str) -> frozenset[str]:
+    """The names its formulas use.
+
+    Raises:
+        UsageError: see ``fill``.
+    """
+    found = (names(formula) for _, formula, _ in _pieces(text) if formula is not None)
+    return frozenset(name for some in found for name in some)
+
+
+def _pieces(text: str) -> Iterator[tuple[str, str | None, str]]:
+    """Words, the formula after them if there is one, and how to show its value."""
+    try:
+        pieces = list(string.Formatter().parse(text))
+    except ValueError as error:
+        raise _refused(text, f"has a brace without its partner ({error})") from None
+    for words, formula, shape, conversion in pieces:
+        if conversion or (shape and not _SHAPE.fullmatch(shape)):
+            raise _refused(f"{formula}:{shape or conversion}", "has a format that is none of .2f, .3g, +.1e")
+        yield words, formula, shape or _USUAL
+
+
+def _shown(value: float, shape: str) -> str:
+    shown = format(value, shape)
+    return shown.lstrip("-") if float(shown) == 0.0 else shown
+
+
+def _refused(text: str, why: str) -> UsageError:
+    short = text if len(text) <= 60 else text[:57] + "..."
+    return UsageError(f"The text {short!r} {why}.", help=_HELP, code="bad_formula")

@@ -1,0 +1,207 @@
+"""What is laid over the picture: the question before a run, the numbers after it, the keys, the events."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rich.table import Table
+from rich.text import Text
+from textual.binding import Binding
+from textual.containers import VerticalScroll
+from textual.screen import ModalScreen
+from textual.widgets import Input, Static
+
+from course.sandbox.views.terminal.words import KEYS, clean
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from course.sandbox.scene.model import Scene
+
+__all__ = ["Ask", "Page", "Told", "comparison", "guess_of", "help_pages"]
+
+_BOX = """
+%s { align: center middle; background: black 40%%; }
+%s > VerticalScroll {
+    width: 90%%; max-width: 76; height: auto; max-height: 90%%;
+    border: round $primary; padding: 0 1; background: $surface; scrollbar-size-vertical: 1;
+}
+"""
+
+#: A heading and paragraphs, or lines of two columns.
+Page = Sequence[str | tuple[str, str]]
+
+
+def guess_of(text: str) -> float | None:
+    """The number that somebody typed, comma or point; None if it is none."""
+    try:
+        value = float(text.strip().replace(",", "."))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+class Ask(ModalScreen[float | None]):
+    """The scene's question. Dismissed with the guess, or None to run without one."""
+
+    DEFAULT_CSS = _BOX % ("Ask", "Ask") + "Ask Input { width: 100%; } Ask #wrong { height: auto; }"
+    BINDINGS: ClassVar[list[Any]] = [Binding("escape", "without", show=False)]
+
+    def __init__(self, scene: Scene, question: str, unit: str, *, calm: bool) -> None:
+        super().__init__()
+        self._scene, self._question, self._unit, self._calm = scene, question, unit, calm
+
+    def compose(self) -> ComposeResult:
+        """Title, what to know, the question and a place for the answer."""
+        with VerticalScroll(can_focus=False) as box:
+            box.border_title = "Before it runs: your guess"
+            box.border_subtitle = "Enter: run   Escape: run without a guess"
+            yield Static(Text(clean(self._scene.note)))
+            yield Static(Text(f"\n{clean(self._question)}", style="bold"))
+            entry = Input(placeholder=f"a number in {clean(self._unit)}", id="guess")
+            entry.cursor_blink = not self._calm
+            yield entry
+            yield Static("", id="wrong", markup=False)
+
+    def on_mount(self) -> None:
+        """Ready to type, and the question in sight however low the window is."""
+        self.query_one(Input).focus()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Take a number; an empty line is no guess."""
+        if not event.value.strip():
+            self.dismiss(None)
+            return
+        guess = guess_of(event.value)
+        if guess is None:
+            self.query_one("#wrong", Static).update("That is no number: try something like 2.5 or -1e3.")
+            return
+        self.dismiss(guess)
+
+    def action_without(self) -> None:
+        """Run without a guess."""
+        self.dismiss(None)
+
+
+class Told(ModalScreen[str | None]):
+    """A page to read. Dismissed with the key that closed it, if it was one of ``keys``."""
+
+    DEFAULT_CSS = _BOX % ("Told", "Told")
+    BINDINGS: ClassVar[list[Any]] = [Binding("escape,enter,q,question_mark,f1,l", "close('')", show=False)]
+
+    def __init__(
+        self,
+        title: str,
+        page: Page,
+        *,
+        keys: Sequence[str] = (),
+        hint: str = "Escape: back",
+        at_end: bool = False,
+    ) -> None:
+        super().__init__()
+        self._title, self._page, self._keys = title, page, tuple(keys)
+        self._hint, self._at_end = hint, at_end
+
+    def compose(self) -> ComposeResult:
+        """The page, scrolled with arrows and the wheel."""
+        with VerticalScroll() as box:
+            box.border_title, box.border_subtitle = self._title, self._hint
+            for piece in self._page:
+                yield Static(_shaped(piece))
+
+    @property
+    def words(self) -> str:
+        """Everything on the page."""
+        return "\n".join(piece if isinstance(piece, str) else " ".join(piece) for piece in self._page)
+
+    def on_mount(self) -> None:
+        """Arrows scroll at once."""
+        box = self.query_one(VerticalScroll)
+        box.focus()
+        if self._at_end:
+            box.scroll_end(animate=False)
+
+    def on_key(self, event: Any) -> None:
+        """Close with a key that means something to what is behind."""
+        if event.character in self._keys or event.key in self._keys:
+            event.stop()
+            self.dismiss(event.key)
+
+    def action_close(self, key: str) -> None:
+        """Back to the world."""
+        self.dismiss(key or None)
+
+
+def _shaped(piece: str | tuple[str, str]) -> Text | Table:
+    """A paragraph, a heading, or a name with a text beside it that wraps under itself."""
+    if isinstance(piece, str):
+        return Text(piece)
+    name, text = piece
+    if not text:
+        return Text(name, style="bold")
+    line = Table.grid(padding=(0, 1))
+    line.add_column(width=12, style="bold")
+    line.add_column(ratio=1)
+    line.add_row(Text(name), Text(text))
+    return line
+
+
+def comparison(result: dict[str, Any], after: str) -> Page:
+    """Theory, guess and simulation side by side, why, and what to think about next.
+
+    Args:
+        result: a ``Comparison`` as plain values; None where a number is none.
+    """
+    unit = "" if result["unit"] == "1" else f" {clean(result['unit'])}"
+    rows = [("theory", result["theory"]), ("simulation", result["simulation"])]
+    if result["guess"] is not None:
+        rows.insert(0, ("your guess", result["guess"]))
+    numbers = [(name, "did not happen" if value is None else f"{value:.6g}{unit}") for name, value in rows]
+    return [
+        (clean(result["question"]), ""),
+        "",
+        *numbers,
+        "",
+        (clean(result["verdict"]), ""),
+        clean(result["why"]),
+        "",
+        f"And now: {clean(after)}",
+    ]
+
+
+def help_pages(scene: Scene, *, wheels: bool) -> Page:
+    """All keys, what the mouse does, and what the scene is about."""
+    keys = {key: value for key, value in KEYS.items() if wheels or key not in {"left", "right"}}
+    offered = [(f"{less} {more}", f"{name}: less, more") for less, more, name in keys.values()]
+    return [
+        ("Time", ""),
+        ("space", "run, pause"),
+        (".", "one step, and pause"),
+        ("- +", "half as fast, twice as fast"),
+        ("r", "reset: from the start, settings kept"),
+        "",
+        ("Hands", ""),
+        ("mouse", "press near a body and drag it; letting go while it moves throws it"),
+        ("", "while paused a drag aims: letting go throws the way it points"),
+        ("right button", "a new ball where the pointer is"),
+        ("arrows", "a pointer for the keyboard; with Shift five cells at a time"),
+        ("Enter", "take what is near the pointer, or let it go"),
+        ("c b", "a new ball, a new box at the pointer"),
+        "",
+        ("Settings", ""),
+        *offered,
+        "",
+        ("Looking", ""),
+        ("n", "names on every body, however small"),
+        ("l", "the list of events"),
+        ("p", "the question and its answer again"),
+        ("Tab", "hide and show what is beside the picture"),
+        ("m", "calm: four pictures a second, no flashes (always so with TEXTUAL_ANIMATIONS=none)"),
+        ("q", "leave; Ctrl+C does the same"),
+        "",
+        ("About this scene", ""),
+        clean(scene.teaches),
+        clean(scene.note),
+    ]

@@ -1,0 +1,217 @@
+"""What stands beside the picture: numbers, small curves and lines of text, as plain pieces."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course.sandbox.scene.settings import SETTINGS
+from course.sandbox.views.terminal.pace import speed_in_words
+
+if TYPE_CHECKING:
+    from course.sandbox.world.events import Receipt
+    from course.sandbox.world.ledger import Floats
+    from course.sandbox.world.world import History, World
+
+__all__ = ["KEYS", "Line", "bars", "clean", "head", "keys_line", "panel", "shown", "wrapped"]
+
+#: A line is pieces of text, each with a style: "", "bold", "dim" or a colour as #rrggbb.
+Line = tuple[tuple[str, str], ...]
+
+_BARS = " ▁▂▃▄▅▆▇█"
+_CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]+")
+
+#: Key for less, key for more, and the short name of each setting.
+KEYS = {
+    "gravity": ("g", "G", "gravity"),
+    "restitution": ("e", "E", "restitution"),
+    "friction": ("f", "F", "friction"),
+    "step": ("h", "H", "step h"),
+    "iterations": ("i", "I", "iterations"),
+    "left": ("a", "A", "left wheel"),
+    "right": ("d", "D", "right wheel"),
+}
+_ENERGIES = (
+    ("kinetic", "motion", "#66ccee"),
+    ("potential", "height", "#ccbb44"),
+    ("contacts", "contacts", "#ee6677"),
+    ("friction", "friction", "#dd88bb"),
+    ("residual", "solver", "#b0b6bf"),
+)
+_MOMENTA = (("px", "along x", "#66ccee"), ("py", "along y", "#ccbb44"), ("angular", "turning", "#b0b6bf"))
+_NAME, _NUMBER = 9, 8
+
+
+def clean(text: str) -> str:
+    """A text on one line, without anything that a terminal would obey."""
+    return " ".join(_CONTROLS.sub(" ", text).split())
+
+
+def shown(value: float, scale: float = 0.0) -> str:
+    """A number in at most seven characters; 0 if it is nothing beside ``scale``."""
+    if not math.isfinite(value):
+        return "none"
+    if abs(value) <= 1e-9 * scale or value == 0.0:
+        return "0"
+    if 0.001 <= abs(value) < 99999.5:
+        digits = max(0, 3 - max(0, math.floor(math.log10(abs(value)))))
+        return f"{value:.{digits}f}"
+    short = f"{value:.1e}" if 1e-9 < abs(value) < 9.94e9 else f"{value:.0e}"
+    return short.replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+
+
+def bars(values: Floats, width: int, low: float, span: float, height: int = 1) -> list[str]:
+    """A curve of vertical bars.
+
+    Args:
+        values: (n,), oldest first; brought to ``width`` columns by their means.
+        low, span: the value at the bottom, and how much fits above it.
+        height: in lines.
+
+    Returns:
+        its lines, the uppermost first.
+    """
+    if not len(values) or width < 1:
+        return [" " * width] * height
+    edges = np.linspace(0, len(values), min(width, len(values)) + 1).astype(int)
+    means = np.add.reduceat(values, edges[:-1]) / np.diff(edges)
+    means = np.interp(np.linspace(0, 1, width), np.linspace(0, 1, len(means)), means)
+    full = np.nan_to_num((means - low) / span if span > 0 else means * 0.0)
+    # What is there is seen: the lowest bar is an eighth, so that a curve is never blank.
+    eighths = np.clip(np.rint(full * (8 * height - 1)) + 1, 1, 8 * height).astype(int)
+    rows = range(height - 1, -1, -1)
+    return ["".join(_BARS[k] for k in np.clip(eighths - 8 * row, 0, 8)) for row in rows]
+
+
+def wrapped(text: str, width: int) -> list[str]:
+    """A text in lines that fit; a word that does not is cut."""
+    lines: list[str] = [""]
+    for word in clean(text).split(" "):
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append("")
+        lines[-1] += (" " if lines[-1] else "") + word
+        while len(lines[-1]) > width > 0:
+            lines[-1:] = [lines[-1][:width], lines[-1][width:]]
+    return lines
+
+
+def head(world: World, state: str, pace: float, width: int) -> Line:
+    """The line above the picture."""
+    # What is not quite kept up with for a moment is not worth a word.
+    slow = "" if world.paused or pace > 0.75 else f", but this machine manages {100 * pace:.0f} % of it"
+    right = f"{world.t:.3f} s  {state or speed_in_words(world.speed)}{slow} "
+    title = clean(world.scene.title)
+    room = width - len(right) - 3
+    if room < len(title):
+        title = title[: max(0, room - 1)] + "…" if room > 4 else ""
+    gap = max(1, width - len(title) - len(right) - 1)
+    return ((f" {title}", "bold"), (" " * gap, ""), (right[: max(0, width - 2)], "bold" if state else ""))
+
+
+def keys_line(width: int, *, paused: bool) -> Line:
+    """The line below everything: as many keys as there is room for."""
+    offered = [
+        ("space", "run" if paused else "pause"),
+        (".", "step"),
+        ("r", "reset"),
+        ("-+", "speed"),
+        ("?", "all keys"),
+        ("q", "leave"),
+        ("c b", "new ball, box"),
+        ("gG", "gravity"),
+        ("eE", "restitution"),
+        ("fF", "friction"),
+        ("hH", "step size"),
+        ("n", "names"),
+        ("l", "events"),
+    ]
+    pieces: list[tuple[str, str]] = []
+    used = 0
+    for key, what in offered:
+        needed = len(key) + len(what) + 3
+        if used + needed > width:
+            break
+        pieces += [(f" {key}", "bold"), (f" {what} ", "")]
+        used += needed
+    return tuple(pieces)
+
+
+def panel(world: World, width: int, height: int) -> list[Line]:
+    """Energy, momentum and settings, for a column beside the picture.
+
+    Args:
+        width, height: of the column, in cells.
+    """
+    history, receipt, momentum = world.history, world.receipt, world.momentum
+    settings = _settings(world, width)
+    tall = max(1, min(4, (height - 5 - len(settings) - 3) // 8))
+    lines = [*_energy(history, receipt, width, tall), *_momentum(history, momentum, width, tall)]
+    # Where there is little room, blank lines go first, then a heading and angular momentum.
+    if len(lines) + len(settings) + 2 <= height:
+        split = 2 + len(_ENERGIES) * tall
+        return [*lines[:split], ((" ", ""),), *lines[split:], ((" ", ""),), *settings]
+    if len(lines) + len(settings) > height:
+        lines, settings = lines[:-1], settings[1:]
+    return [*lines, *settings][:height]
+
+
+def _energy(history: History, receipt: Receipt, width: int, tall: int) -> list[Line]:
+    series = {name: getattr(history, name) for name, _, _ in _ENERGIES}
+    had = receipt.start + receipt.given
+    scale = max(abs(had), *(abs(getattr(receipt, name)) for name in series), 1e-12)
+    span = max(max((float(np.ptp(v)) for v in series.values() if len(v)), default=0.0), 1e-9 * scale)
+    lines: list[Line] = [(("Energy in J", "bold"),)]
+    for name, label, colour in _ENERGIES:
+        values = series[name]
+        lines += _curve(label, values, getattr(receipt, name), scale, span, width, tall, colour)
+    total = shown(had, scale)
+    label = "= start + given" if abs(receipt.given) > 1e-9 * scale else "= start"
+    lines.append(((f"{label:<{max(0, width - _NUMBER)}}", ""), (f"{total:>{_NUMBER}}", "bold")))
+    return lines
+
+
+def _momentum(history: History, momentum: tuple[float, float, float], width: int, tall: int) -> list[Line]:
+    series = [getattr(history, name) for name, _, _ in _MOMENTA]
+    scale = max(*(abs(value) for value in momentum), 1e-12)
+    lines: list[Line] = [(("Momentum in kg m/s", "bold"),)]
+    for (_, label, colour), values, value in zip(_MOMENTA, series, momentum, strict=True):
+        # Angular momentum has a unit and a size of its own; the two others share theirs.
+        peers = series[2:] if label == "turning" else series[:2]
+        largest = max((float(np.abs(v).max()) for v in peers if len(v)), default=0.0)
+        span = max(max((float(np.ptp(v)) for v in peers if len(v)), default=0.0), 1e-9 * largest, 1e-12)
+        lines += _curve(label, values, value, scale, span, width, tall, colour)
+    return lines
+
+
+def _curve(
+    label: str, values: Floats, value: float, scale: float, span: float, width: int, tall: int, colour: str
+) -> list[Line]:
+    """A name, a curve and a number; the curve may be several lines high."""
+    room = width - _NAME - _NUMBER
+    drawn = bars(values, max(0, room), float(values.min()) if len(values) else 0.0, span, tall)
+    lines: list[Line] = [((" " * _NAME, ""), (text, colour)) for text in drawn[:-1]]
+    number = f"{shown(value, scale):>{_NUMBER}}"
+    return [*lines, ((f"{label:<{_NAME}}", ""), (drawn[-1], colour), (number, "bold"))]
+
+
+def _settings(world: World, width: int) -> list[Line]:
+    lines: list[Line] = [(("Settings, less and more", "bold"),)]
+    for key, (less, more, name) in KEYS.items():
+        if key not in world.settings and key in {"left", "right"}:
+            continue
+        value = world.settings.get(key)
+        text = "own" if value is None else setting(key, value)
+        room = max(0, width - 4 - len(text))
+        lines.append(((f"{less}{more} ", "bold"), (f" {name:<{room}}"[: room + 1], ""), (text, "bold")))
+    return lines
+
+
+def setting(key: str, value: float) -> str:
+    """A setting with its unit, as short as it can be said."""
+    if key == "step":
+        return f"{1000 * value:.3g} ms"
+    unit = SETTINGS[key].unit
+    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"

@@ -1,0 +1,143 @@
+"""Contacts as events: from the account's blocks, or from inside the step in a world without one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from course.sandbox.world.events import Event
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from course.sandbox.scene.parts import Part
+    from course.sandbox.world.accounts import Clock
+    from course.sandbox.world.engine import Space
+    from course.sandbox.world.ledger import Block, Floats, Ledger
+
+__all__ = ["MINOR", "LiveContacts", "contact_events"]
+
+#: Contacts softer than this, in m/s, are what resting and rolling are made of.
+MINOR = 0.05
+
+
+def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[Event]:
+    """One event for each pair that began to touch in these steps, in a fixed order.
+
+    The numbers of all of them are worked out at once.
+    """
+    contacts = block.contacts
+    found = np.flatnonzero(contacts.first)
+    if not len(found):
+        return []
+    k, a, b = contacts.row[found], contacts.a[found], contacts.b[found]
+    normal, point = contacts.normal[found], contacts.point[found]
+    swap = np.array([_goes_second(parts[i], parts[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)])
+    a, b = np.where(swap, b, a), np.where(swap, a, b)
+    normal = np.where(swap[:, None], -normal, normal)
+    rows = np.stack([block.before[k, a], block.before[k, b], block.states[k, a, 3:], block.states[k, b, 3:]])
+    # Where the bodies are when the engine looks is where they are after the step: it moves them first.
+    arm_a, arm_b = point - block.states[k, a, :2], point - block.states[k, b, :2]
+    came = _relative(rows[0], rows[1], arm_a, arm_b)
+    left = _relative(rows[2], rows[3], arm_a, arm_b)
+    nx, ny = normal.T
+    weights = [np.stack([ledger.mass[i], ledger.mass[i], ledger.inertia[i]], axis=1) / 2 for i in (a, b)]
+    energies = [
+        (weights[0] * rows[i] ** 2).sum(axis=1) + (weights[1] * rows[i + 1] ** 2).sum(axis=1) for i in (0, 2)
+    ]
+    columns = (
+        k,
+        a,
+        b,
+        *point.T,
+        nx,
+        ny,
+        -(came[:, 0] * nx + came[:, 1] * ny),
+        left[:, 0] * nx + left[:, 1] * ny,
+        np.abs(came[:, 1] * nx - came[:, 0] * ny),
+        np.hypot(*contacts.impulse[found].T),
+        *energies,
+    )
+    events = [_event(block, parts, row) for row in zip(*(column.tolist() for column in columns), strict=True)]
+    # The engine lists contacts by memory address; names make the order the same in every run.
+    return sorted(events, key=lambda event: (event.step, event.a, event.b))
+
+
+def _event(block: Block, parts: Sequence[Part], row: tuple[Any, ...]) -> Event:
+    k, a, b, x, y, nx, ny, approach, leave, slip, impulse, before, after = row
+    return Event(
+        kind="contact",
+        t=float(block.times[k]),
+        step=block.first_step + k,
+        a=parts[a].name,
+        b=parts[b].name,
+        x=x,
+        y=y,
+        nx=nx,
+        ny=ny,
+        approach=approach,
+        leave=leave,
+        slip=slip,
+        impulse=impulse,
+        before=before,
+        after=after,
+        shared=not parts[b].fixed,
+        minor=abs(approach) < MINOR,
+    )
+
+
+class LiveContacts:
+    """Collects contacts while they begin; cheap as long as few do."""
+
+    def __init__(self, space: Space, clock: Callable[[], Clock], report: Callable[[Event], None]) -> None:
+        self._space = space
+        self._clock = clock
+        self._report = report
+
+    def begin(self, a: str, b: str, arbiter: Any) -> None:
+        """Called by the engine inside a step; velocities are still those of before the contact."""
+        space, clock = self._space, self._clock()
+        normal = arbiter.normal
+        points = arbiter.contact_point_set.points
+        point = points[0].point_a
+        swap = (space.part(a).fixed, a) > (space.part(b).fixed, b)
+        first, second = (b, a) if swap else (a, b)
+        nx, ny = (-normal.x, -normal.y) if swap else (normal.x, normal.y)
+        slow = space.body(first).velocity_at_world_point(point)
+        came = space.body(second).velocity_at_world_point(point) - slow
+        approach = -(came.x * nx + came.y * ny)
+        self._report(
+            Event(
+                kind="contact",
+                t=clock.t + clock.size,
+                step=clock.steps + 1,
+                a=first,
+                b=second,
+                x=point.x,
+                y=point.y,
+                nx=nx,
+                ny=ny,
+                approach=approach,
+                slip=abs(came.y * nx - came.x * ny),
+                shared=not space.part(second).fixed,
+                minor=abs(approach) < MINOR,
+            )
+        )
+
+
+def _goes_second(a: Part, b: Part) -> bool:
+    """Whether a sentence about the two begins with ``b``: what moves before what is fixed, then by name."""
+    return (a.fixed, a.name) > (b.fixed, b.name)
+
+
+def _relative(row_a: Floats, row_b: Floats, arm_a: Floats, arm_b: Floats) -> Floats:
+    """Velocities of ``b`` against ``a`` at points of contact, (m, 2), in m/s.
+
+    Args:
+        row_a, row_b: vx, vy and spin, (m, 3).
+        arm_a, arm_b: from the centres to the points, (m, 2).
+    """
+    vx = row_b[:, 0] - row_b[:, 2] * arm_b[:, 1] - row_a[:, 0] + row_a[:, 2] * arm_a[:, 1]
+    vy = row_b[:, 1] + row_b[:, 2] * arm_b[:, 0] - row_a[:, 1] - row_a[:, 2] * arm_a[:, 0]
+    return np.column_stack([vx, vy])

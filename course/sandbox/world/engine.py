@@ -1,0 +1,275 @@
+"""The only module that knows pymunk: bodies made from parts, and states and contacts copied out of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+from pymunk import batch
+
+from course.errors import InternalError
+from course.sandbox.world.ledger import Contacts
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from course.sandbox.scene.model import Joint
+    from course.sandbox.scene.parts import Part
+    from course.sandbox.world.ledger import Floats, Ints
+
+__all__ = ["Recorder", "Space", "versions"]
+
+#: Ids of bodies are addresses.
+Ids: TypeAlias = NDArray[np.uint64]
+
+_STATE = (
+    batch.BodyFields.POSITION
+    | batch.BodyFields.ANGLE
+    | batch.BodyFields.VELOCITY
+    | batch.BodyFields.ANGULAR_VELOCITY
+)
+_CONTACT = (
+    batch.ArbiterFields.BODY_A_ID
+    | batch.ArbiterFields.BODY_B_ID
+    | batch.ArbiterFields.IS_FIRST_CONTACT
+    | batch.ArbiterFields.TOTAL_IMPULSE
+    | batch.ArbiterFields.NORMAL
+    | batch.ArbiterFields.POINT_A_1
+)
+#: In a world with joints the middle of a contact along an edge matters, so both its points are read.
+_BOTH_POINTS = _CONTACT | batch.ArbiterFields.CONTACT_COUNT | batch.ArbiterFields.POINT_A_2
+
+
+def versions() -> dict[str, str]:
+    """What a run depends on to repeat bit by bit."""
+    return {"pymunk": pymunk.version, "chipmunk": pymunk.chipmunk_version}
+
+
+class Space:
+    """A pymunk space whose bodies are known by their index.
+
+    ``parts`` is kept in the engine's own order, which is the order of the rows of every state: movable bodies
+    first, and where one is removed the last takes its place.
+
+    Args:
+        parts: the bodies, in the order they are added.
+        joints: what holds them together.
+    """
+
+    def __init__(
+        self, parts: Sequence[Part], joints: Sequence[Joint], *, iterations: int, slop: float
+    ) -> None:
+        self.space = pymunk.Space()
+        self.space.iterations = iterations
+        self.space.collision_slop = slop
+        # Arbiters of bodies that have parted are dropped at once: what is listed is what touches.
+        self.space.collision_persistence = 1
+        self._bodies: dict[int, tuple[Part, pymunk.Body, pymunk.Shape]] = {}
+        self._by_name: dict[str, int] = {}
+        self.parts: tuple[Part, ...] = ()
+        self._buffer = batch.Buffer()
+        self.joints: list[pymunk.Constraint] = []
+        for part in parts:
+            self._insert(part)
+        for joint in joints:
+            self._join(joint)
+        self._number()
+
+    # -- building --------------------------------------------------------------------------------
+
+    def add(self, part: Part, settings: Mapping[str, float]) -> None:
+        """Put one more body in; restitution and friction in ``settings`` go before its own."""
+        restitution = settings.get("restitution", part.restitution)
+        friction = settings.get("friction", part.friction)
+        self._insert(replace(part, restitution=restitution, friction=friction))
+        self._number()
+
+    def remove(self, name: str) -> None:
+        """Take a body out, and every joint that held it."""
+        _, body, shape = self._bodies.pop(self._by_name.pop(name))
+        held = [joint for joint in self.joints if body in (joint.a, joint.b)]
+        self.joints = [joint for joint in self.joints if joint not in held]
+        self.space.remove(*held, shape, body)
+        self._number()
+
+    def _insert(self, part: Part) -> None:
+        body = (
+            pymunk.Body(body_type=pymunk.Body.STATIC) if part.fixed else pymunk.Body(part.mass, part.moment)
+        )
+        body.position = part.x, part.y
+        body.angle = part.angle
+        if not part.fixed:
+            body.velocity = part.vx, part.vy
+            body.angular_velocity = part.spin
+        shape: pymunk.Shape
+        if part.shape == "circle":
+            shape = pymunk.Circle(body, part.radius)
+        elif part.shape == "segment":
+            shape = pymunk.Segment(body, part.outline[0], part.outline[1], part.radius)
+        else:
+            shape = pymunk.Poly(body, list(part.outline))
+        shape.elasticity = part.restitution
+        shape.friction = part.friction
+        self.space.add(body, shape)
+        self._bodies[body.id] = (part, body, shape)
+        self._by_name[part.name] = body.id
+
+    def _join(self, joint: Joint) -> None:
+        kind = pymunk.PinJoint if joint.kind == "rod" else pymunk.PivotJoint
+        made = kind(self.body(joint.a), self.body(joint.b), joint.anchor_a, joint.anchor_b)
+        made.collide_bodies = joint.touch
+        self.space.add(made)
+        self.joints.append(made)
+
+    def _number(self) -> None:
+        """Learn the engine's order, and how to get from its ids to indices without a search."""
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, batch.BodyFields.BODY_ID, self._buffer)
+        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uint64).copy()
+        self.parts = tuple(self._bodies[int(body_id)][0] for body_id in ids)
+        self.index = {part.name: i for i, part in enumerate(self.parts)}
+        self._factor, self._shift, self._table = _perfect_hash(ids)
+
+    # -- one body --------------------------------------------------------------------------------
+
+    def body(self, name: str) -> pymunk.Body:
+        return self._bodies[self._by_name[name]][1]
+
+    def names(self) -> list[str]:
+        """All bodies, in the order they were added."""
+        return list(self._by_name)
+
+    def part(self, name: str) -> Part:
+        return self._bodies[self._by_name[name]][0]
+
+    def set_material(self, *, restitution: float | None = None, friction: float | None = None) -> None:
+        """Give every movable body another restitution or friction; fixed ones keep theirs."""
+        for part, _, shape in self._bodies.values():
+            if not part.fixed:
+                if restitution is not None:
+                    shape.elasticity = restitution
+                if friction is not None:
+                    shape.friction = friction
+
+    def nearest(self, x: float, y: float, reach: float) -> str | None:
+        """The movable body closest to a place, if its surface is within ``reach`` of it, in m."""
+        best: tuple[float, str] | None = None
+        for hit in self.space.point_query((x, y), reach, pymunk.ShapeFilter()):
+            if hit.shape is None or hit.shape.body is None:
+                continue
+            part = self._bodies[hit.shape.body.id][0]
+            if not part.fixed and (best is None or (hit.distance, part.name) < best):
+                best = (hit.distance, part.name)
+        return best[1] if best else None
+
+    def ends_of_joints(self) -> list[tuple[float, float, float, float]]:
+        """Where each joint's two anchors are now, in m."""
+        ends = []
+        for joint in self.joints:
+            a: Any = joint.a.local_to_world(joint.anchor_a)
+            b: Any = joint.b.local_to_world(joint.anchor_b)
+            ends.append((float(a.x), float(a.y), float(b.x), float(b.y)))
+        return ends
+
+    # -- everything at once ----------------------------------------------------------------------
+
+    def state(self) -> Floats:
+        """All bodies now, (n, 6)."""
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, _STATE, self._buffer)
+        return np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 6).copy()
+
+    def indices(self, ids: Ids) -> Ints:
+        """Rows of bodies, from the engine's ids."""
+        places = ids * self._factor
+        places >>= self._shift
+        found: Ints = self._table.take(places.view(np.int64))
+        return found
+
+    def on_contact(self, tell: Callable[[str, str, Any], None]) -> None:
+        """Call ``tell(name of a, name of b, arbiter)`` from inside the step, when two begin to touch."""
+
+        def begin(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:  # noqa: ARG001
+            a, b = arbiter.bodies
+            tell(self._bodies[a.id][0].name, self._bodies[b.id][0].name, arbiter)
+
+        self.space.on_collision(None, None, begin=begin)
+
+
+class Recorder:
+    """Copies states and contacts out after each step; appending costs no Python per body.
+
+    Args:
+        space: whose.
+        both_points: read both points of contacts along an edge.
+    """
+
+    def __init__(self, space: Space, *, both_points: bool) -> None:
+        self._space = space
+        self._states = batch.Buffer()
+        self._contacts = batch.Buffer()
+        self._fields = _BOTH_POINTS if both_points else _CONTACT
+        self._whole, self._numbers = (4, 8) if both_points else (3, 6)
+        self._ends: list[int] = []
+
+    def __len__(self) -> int:
+        return len(self._ends)
+
+    def take(self) -> None:
+        """Append the step that was just made."""
+        batch.get_space_bodies(self._space.space, _STATE, self._states)
+        batch.get_space_arbiters(self._space.space, self._fields, self._contacts)
+        self._ends.append(len(self._contacts.int_buf()))
+
+    def block(self) -> tuple[Floats, Contacts]:
+        """Everything since the last call: states (k, n, 6) and the contacts; then empty.
+
+        They are views of the engine's memory, which the next step overwrites.
+        """
+        count = len(self._ends)
+        states = np.frombuffer(self._states.float_buf(), dtype=np.float64).reshape(count, -1, 6)
+        ends = np.array(self._ends) // (8 * self._whole)
+        whole = np.frombuffer(self._contacts.int_buf(), dtype=np.uint64).reshape(-1, self._whole)
+        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, self._numbers)
+        point = numbers[:, 4:6]
+        if self._whole == 4:
+            along_edge = (whole[:, 3] == 2)[:, None]
+            point = np.where(along_edge, (point + numbers[:, 6:8]) / 2, point)
+        bodies = [self._space.indices(whole[:, i]) for i in (0, 1)]
+        contacts = Contacts(
+            row=np.repeat(np.arange(count), np.diff(ends, prepend=0)),
+            a=bodies[0],
+            b=bodies[1],
+            first=whole[:, 2],
+            impulse=numbers[:, 0:2],
+            normal=numbers[:, 2:4],
+            point=point,
+        )
+        self._states.clear()
+        self._contacts.clear()
+        self._ends.clear()
+        return states, contacts
+
+
+def _perfect_hash(ids: Ids) -> tuple[np.uint64, np.uint64, Ints]:
+    """A factor and a shift that send every id to a place of its own, and the table of what stands there.
+
+    Ids are addresses, so there is no telling how far apart they are. Factors are tried until none collide, in
+    a table that starts small, since it has to stay in the cache, and is doubled when luck does not come.
+    """
+    bits = max(6, math.ceil(math.log2(16 * max(len(ids), 1))))
+    while bits < 40:
+        shift = np.uint64(64 - bits)
+        for attempt in range(60):
+            factor = np.uint64((0x9E3779B97F4A7C15 * (2 * attempt + 1)) % 2**64)
+            places = (ids * factor) >> shift
+            if len(np.unique(places)) == len(ids):
+                table = np.zeros(2**bits, dtype=np.int64)
+                table[places] = np.arange(len(ids))
+                return factor, shift, table
+        bits += 1
+    raise InternalError("No table for the bodies of this scene could be found.")

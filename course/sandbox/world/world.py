@@ -1,0 +1,473 @@
+"""A scene that runs: fixed steps, one stream of events, and an account of energy and momentum.
+
+Views know nothing of the engine. They say how much real time has passed (``advance``), draw ``snapshot()``,
+read ``drain_events()``, ``receipt`` and ``history``, and pass on what hands do. Whatever is done to a world
+is also handed to ``on_input``, with the tick before which it happened: all that a replay needs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from course.errors import UsageError
+from course.sandbox.scene.model import Material
+from course.sandbox.scene.parts import layout, spawned
+from course.sandbox.scene.settings import SETTINGS, checked, number
+from course.sandbox.world.accounts import BLOCK, Accounts, Clock, History
+from course.sandbox.world.contacts import LiveContacts, contact_events
+from course.sandbox.world.engine import Space
+from course.sandbox.world.events import Event
+from course.sandbox.world.pushes import Hand
+from course.sandbox.world.watch import Watch
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from course.sandbox.scene.model import Scene
+    from course.sandbox.scene.parts import Part
+    from course.sandbox.world.events import Receipt
+    from course.sandbox.world.ledger import Block, Floats
+
+__all__ = ["MAX_BODIES", "History", "Snapshot", "World"]
+
+MAX_BODIES = 1000
+#: Steps between looking for bodies that left or came to rest.
+_TIDY = 64
+#: A gap in real time that a stalled view makes up for, at most, in s.
+_MAX_GAP = 0.25
+#: Events kept for whoever drains them; older ones are dropped and counted.
+_MAX_EVENTS = 5000
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """What is to be drawn. Rows are in the order of ``World.parts`` as long as ``version`` is the same.
+
+    Attributes:
+        version: changes when bodies were added or removed: fetch ``World.parts`` again.
+        x, y, angle, vx, vy, spin: (n,), in m, rad, m/s, rad/s.
+        joints: ends of each joint, (m, 4): ax, ay, bx, by, in m.
+        hand: where a body is held and where the pointer is: ax, ay, px, py, in m; None if nothing is held.
+    """
+
+    t: float
+    tick: int
+    version: int
+    x: Floats
+    y: Floats
+    angle: Floats
+    vx: Floats
+    vy: Floats
+    spin: Floats
+    joints: Floats
+    hand: tuple[float, float, float, float] | None
+
+
+class World:
+    """A running scene.
+
+    Args:
+        scene: what to build.
+        settings: values for ``SETTINGS``; the scene's own where left out.
+        receipt: keep the account of energy. Without it contacts know no loss, and stepping is faster.
+
+    Raises:
+        UsageError: a setting is unknown or out of range.
+
+    Attributes:
+        ticks: steps since the world was made; a reset does not turn it back.
+        paused, speed: for views: ``advance`` does nothing while paused, and runs ``speed`` times real time.
+        dropped: events nobody drained in time.
+        on_input: called with the tick, the method and its arguments, before anything done by hand acts.
+        on_tick: how many steps apart, and what is called then.
+        on_block: called with every stretch of steps that was booked.
+    """
+
+    def __init__(
+        self, scene: Scene, settings: Mapping[str, float] | None = None, *, receipt: bool = True
+    ) -> None:
+        self.scene = scene
+        self.settings: dict[str, float] = {}
+        self.ticks = 0
+        self.version = 0
+        self.dropped = 0
+        self.paused = False
+        self.speed = 1.0
+        self.on_input: Callable[[int, str, tuple[Any, ...]], None] | None = None
+        self.on_tick: tuple[int, Callable[[], None]] | None = None
+        self.on_block: list[Callable[[Block], None]] = []
+        self._with_receipt = receipt
+        self._events: deque[Event] = deque()
+        self._build({key: checked(key, value) for key, value in (settings or {}).items()})
+
+    def _build(self, settings: Mapping[str, float]) -> None:
+        """Everything as the scene has it, with the settings in force."""
+        scene = self.scene
+        parts = layout(scene)
+        self._wheeled = [part for part in parts if part.wheels is not None]
+        rims = {"left": 0.0, "right": 0.0}
+        for part in self._wheeled[:1]:
+            if part.wheels is not None:
+                rims = {"left": part.wheels.left, "right": part.wheels.right}
+        own = {
+            "gravity": math.hypot(*scene.gravity),
+            "step": scene.step,
+            "iterations": float(scene.iterations),
+        }
+        self.settings = own | (rims if self._wheeled else {}) | dict(settings)
+        ordered = parts[::-1] if scene.reverse else parts
+        self._waiting = sorted((part for part in ordered if part.appears > 0.0), key=lambda p: -p.appears)
+        self._space = Space(
+            [part for part in ordered if part.appears == 0.0],
+            scene.joint,
+            iterations=int(self.settings["iterations"]),
+            slop=scene.slop,
+        )
+        self._space.set_material(
+            restitution=self.settings.get("restitution"), friction=self.settings.get("friction")
+        )
+        self._space.space.gravity = self._gravity()
+        if not self._with_receipt:
+            self._space.on_contact(LiveContacts(self._space, self._clock_now, self._report).begin)
+        self._clock = Clock(self.settings["step"])
+        self._accounts = Accounts(self._space, self._gravity(), self._clock, joints=bool(scene.joint))
+        self._watch = Watch(scene.view)
+        self._hand: Hand | None = None
+        self._spawned = 0
+        self._debt = 0.0
+        self.version += 1
+
+    def _gravity(self) -> tuple[float, float]:
+        gx, gy = self.scene.gravity
+        size = math.hypot(gx, gy)
+        wanted = self.settings["gravity"]
+        return (0.0, -wanted) if size == 0.0 else (gx * wanted / size, gy * wanted / size)
+
+    def _clock_now(self) -> Clock:
+        return self._clock
+
+    # -- what views read -------------------------------------------------------------------------
+
+    @property
+    def t(self) -> float:
+        """Simulated time since the last reset, in s."""
+        return self._clock.t
+
+    @property
+    def steps(self) -> int:
+        """Steps since the last reset."""
+        return self._clock.steps
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The bodies, in the order of the rows of every snapshot."""
+        return self._space.parts
+
+    @property
+    def held(self) -> str | None:
+        """The body a hand holds."""
+        return self._hand.name if self._hand else None
+
+    def state(self) -> Floats:
+        """All bodies, (n, 6): x, y, angle, vx, vy, spin."""
+        return self._space.state()
+
+    def snapshot(self) -> Snapshot:
+        """Where everything is now."""
+        x, y, angle, vx, vy, spin = self._space.state().T
+        hand = None
+        if self._hand is not None:
+            place = self._space.body(self._hand.name).local_to_world(self._hand.anchor)
+            hand = (float(place.x), float(place.y), self._hand.x, self._hand.y)
+        return Snapshot(
+            t=self.t,
+            tick=self.ticks,
+            version=self.version,
+            x=x,
+            y=y,
+            angle=angle,
+            vx=vx,
+            vy=vy,
+            spin=spin,
+            joints=np.array(self._space.ends_of_joints()).reshape(-1, 4),
+            hand=hand,
+        )
+
+    def drain_events(self) -> list[Event]:
+        """What happened since the last call, oldest first."""
+        self._settle()
+        events = list(self._events)
+        self._events.clear()
+        return events
+
+    @property
+    def receipt(self) -> Receipt:
+        """Where the energy is now.
+
+        Raises:
+            UsageError: the world was made without a receipt.
+        """
+        if not self._with_receipt:
+            raise UsageError("This world keeps no receipt.", help="Make it with receipt=True.")
+        self._settle()
+        return self._accounts.receipt()
+
+    @property
+    def momentum(self) -> tuple[float, float, float]:
+        """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
+        return self._accounts.ledger.momentum(self._space.state())
+
+    @property
+    def history(self) -> History:
+        """The last minute of energies and momentum; one row in a world without a receipt."""
+        self._settle()
+        return self._accounts.history()
+
+    def state_hash(self) -> str:
+        """Sixteen letters that stand for every bit of every body's state."""
+        names = "\n".join(part.name for part in self.parts).encode()
+        return hashlib.blake2b(self._space.state().tobytes() + names, digest_size=8).hexdigest()
+
+    # -- time ------------------------------------------------------------------------------------
+
+    def advance(self, real_dt: float) -> int:
+        """Let real time pass: as many whole steps as fit; the rest is kept for the next call.
+
+        Args:
+            real_dt: since the last call, in s; a long gap is cut, so that a stalled view does not race.
+
+        Returns:
+            steps made.
+        """
+        if self.paused:
+            self._debt = 0.0
+            return 0
+        self._debt += min(max(number(real_dt, "real_dt"), 0.0), _MAX_GAP) * self.speed
+        count = int(self._debt / self._clock.size + 1e-9)
+        self._debt = max(0.0, self._debt - count * self._clock.size)
+        self.step(count)
+        return count
+
+    def step(self, count: int = 1) -> None:
+        """Make this many steps, whatever ``paused`` says."""
+        space, recorder, clock, size = self._space, self._accounts.recorder, self._clock, self._clock.size
+        pushed = bool(self._wheeled) or self.scene.floor is not None
+        for _ in range(count):
+            if self._waiting and self._waiting[-1].appears <= clock.t:
+                self._let_in()
+            if pushed or self._hand is not None:
+                self._push()
+            space.space.step(size)
+            clock.steps += 1
+            self.ticks += 1
+            if self._with_receipt:
+                recorder.take()
+                if len(recorder) >= BLOCK:
+                    self._settle()
+            if self.ticks % _TIDY == 0:
+                self._tidy()
+            if self.on_tick is not None and self.ticks % self.on_tick[0] == 0:
+                self.on_tick[1]()
+
+    def run_until(self, t: float) -> None:
+        """Step until this time, in s, is reached; a time that steps do not hit is passed by less than one."""
+        remaining = (t - self.t) / self._clock.size
+        if remaining > 0:
+            self.step(math.ceil(remaining - 1e-6))
+
+    # -- what is done to it -----------------------------------------------------------------------
+
+    def reset(self) -> None:
+        """Back to the start of the scene; settings that were changed stay changed."""
+        self._input("reset")
+        self._events.clear()
+        self._build(dict(self.settings))
+
+    def set(self, key: str, value: float) -> None:
+        """Change a setting; see ``course.sandbox.scene.settings.SETTINGS``.
+
+        Raises:
+            UsageError: it is unknown or out of range, or the scene has no wheels.
+        """
+        amount = checked(key, value)
+        if key in {"left", "right"} and not self._wheeled:
+            raise UsageError("Nothing in this scene has wheels.", code="bad_parameter")
+        self._input("set", key, amount)
+        self._settle()
+        self.settings[key] = amount
+        if key == "gravity":
+            self._space.space.gravity = self._gravity()
+            self._accounts.recast(self._gravity())
+        elif key == "restitution":
+            self._space.set_material(restitution=amount)
+        elif key == "friction":
+            self._space.set_material(friction=amount)
+        elif key == "iterations":
+            self._space.space.iterations = int(amount)
+        elif key == "step":
+            self._clock.resize(amount)
+        self._say(f"{key} is now {amount:g} {SETTINGS[key].unit}".removesuffix(" 1"))
+
+    def grab(self, x: float, y: float, reach: float = 0.3) -> str | None:
+        """Take hold of the body nearest to a place.
+
+        Args:
+            x, y: in m.
+            reach: how far its surface may be away, in m.
+
+        Returns:
+            its name; None if there was nothing to hold.
+        """
+        x, y = self._place(x, y)
+        reach = _bounded(reach, "reach")
+        self.release()
+        name = self._space.nearest(x, y, reach)
+        if name is None:
+            return None
+        self._input("grab", x, y, reach)
+        # A near miss holds the middle: pulling at a point outside would spin it wildly.
+        inside = self._space.nearest(x, y, 0.0) == name
+        anchor = self._space.body(name).world_to_local((x, y)) if inside else (0.0, 0.0)
+        self._hand = Hand(name, (float(anchor[0]), float(anchor[1])), x, y)
+        self._say(f"a hand takes {name}", name)
+        return name
+
+    def drag(self, x: float, y: float) -> None:
+        """Move the hand; nothing happens if it is empty."""
+        x, y = self._place(x, y)
+        if self._hand is not None:
+            self._input("drag", x, y)
+            self._hand.x, self._hand.y = x, y
+
+    def release(self) -> None:
+        """Let go; the body flies on with the speed it has."""
+        if self._hand is not None:
+            self._input("release")
+            self._say(f"the hand lets go of {self._hand.name}", self._hand.name)
+            self._hand = None
+
+    def throw(self, x: float, y: float, vx: float, vy: float, reach: float = 0.3) -> str | None:
+        """Give the body nearest to a place this velocity, in m/s. Returns its name, or None."""
+        x, y = self._place(x, y)
+        vx, vy, reach = _bounded(vx, "vx"), _bounded(vy, "vy"), _bounded(reach, "reach")
+        name = self._space.nearest(x, y, reach)
+        if name is None:
+            return None
+        self._input("throw", x, y, vx, vy, reach)
+        self._settle()
+        self._space.body(name).velocity = vx, vy
+        self._accounts.gave()
+        self._say(f"{name} is thrown at {math.hypot(vx, vy):.2f} m/s", name)
+        return name
+
+    def spawn(
+        self, shape: str, x: float, y: float, vx: float = 0.0, vy: float = 0.0, size: float = 0.0
+    ) -> str:
+        """Put a new body in.
+
+        Args:
+            shape: "circle" or "box".
+            x, y, vx, vy: in m and m/s.
+            size: radius or half the side, in m; a thirtieth of the view's height if 0.
+
+        Returns:
+            its name.
+
+        Raises:
+            UsageError: another shape, a size out of range, or too many bodies.
+        """
+        height = self.scene.view[3] - self.scene.view[1]
+        size = number(size, "size") or height / 30
+        if shape not in {"circle", "box"}:
+            raise UsageError(
+                f"{str(shape)[:20]!r} cannot be spawned; circle and box can.", code="bad_parameter"
+            )
+        if len(self._space.parts) >= MAX_BODIES:
+            raise UsageError(f"There are {MAX_BODIES} bodies; that is enough.", code="too_many_bodies")
+        if not height / 1000 <= size <= height:
+            raise UsageError(f"size must be from {height / 1000:g} to {height:g} m.", code="bad_parameter")
+        x, y = self._place(x, y)
+        vx, vy = _bounded(vx, "vx"), _bounded(vy, "vy")
+        self._input("spawn", shape, x, y, vx, vy, size)
+        self._settle()
+        self._spawned += 1
+        name = f"new-{self._spawned}"
+        self._space.add(spawned(name, shape, size, (x, y), (vx, vy), Material(name="new")), self.settings)
+        self._recast()
+        self._say(f"{name} appears", name)
+        return name
+
+    def _place(self, x: float, y: float) -> tuple[float, float]:
+        """A place somebody points at, kept within a view's size around what is drawn."""
+        left, bottom, right, top = self.scene.view
+        width, height = right - left, top - bottom
+        x = min(max(number(x, "x"), left - width), right + width)
+        return x, min(max(number(y, "y"), bottom - height), top + height)
+
+    def _input(self, what: str, *arguments: Any) -> None:
+        if self.on_input is not None:
+            self.on_input(self.ticks, what, arguments)
+
+    def _say(self, text: str, name: str = "") -> None:
+        self._report(Event(kind="input", t=self._clock.t, step=self._clock.steps, a=name, text=text))
+
+    # -- inside ----------------------------------------------------------------------------------
+
+    def _report(self, event: Event) -> None:
+        if len(self._events) >= _MAX_EVENTS:
+            self._events.popleft()
+            self.dropped += 1
+        self._events.append(event)
+
+    def _push(self) -> None:
+        speeds = self.settings.get("left", 0.0), self.settings.get("right", 0.0)
+        self._accounts.push(self._hand, self._wheeled, speeds, self.scene.floor)
+
+    def _settle(self) -> None:
+        """Book what was only copied so far, and report its contacts."""
+        block = self._accounts.close()
+        if block is None:
+            if not self._with_receipt:
+                self._accounts.base = self._space.state()
+            return
+        for event in contact_events(block, self.parts, self._accounts.ledger):
+            self._report(event)
+        for listener in self.on_block:
+            listener(block)
+
+    def _let_in(self) -> None:
+        """Put in the bodies whose time has come."""
+        self._settle()
+        while self._waiting and self._waiting[-1].appears <= self.t:
+            self._space.add(self._waiting.pop(), self.settings)
+        self._recast()
+
+    def _recast(self) -> None:
+        self._accounts.recast(self._gravity())
+        self.version += 1
+
+    def _tidy(self) -> None:
+        """Report bodies that came to rest, and take out those that left."""
+        self._settle()
+        state, parts = self._space.state(), self.parts
+        gone, resting = self._watch.look(parts, state)
+        for kind, rows in (("rest", resting), ("gone", gone)):
+            for i in rows:
+                x, y = float(state[i, 0]), float(state[i, 1])
+                self._report(Event(kind=kind, t=self.t, step=self.steps, a=parts[i].name, x=x, y=y))
+        for name in [parts[i].name for i in gone]:
+            if self.held == name:
+                self._hand = None
+            self._wheeled = [part for part in self._wheeled if part.name != name]
+            self._space.remove(name)
+            self._recast()
+
+
+def _bounded(value: float, what: str) -> float:
+    return min(max(number(value, what), -1e3), 1e3)

@@ -1,0 +1,124 @@
+"""How a check ends when it does not pass.
+
+``CheckFailed`` carries a finding: the check looked and something was wrong. ``StudentFailure`` means there
+was nothing to look at, because the student's code raised, hung, died or is missing. Neither is our fault;
+any other exception out of a check is.
+"""
+
+from __future__ import annotations
+
+import builtins
+import traceback
+from pathlib import Path
+
+from course.isolation.failures import FailureKind, StudentFailure, printable
+from course.scoring.explain.words import Diagnosis
+from course.scoring.places import Places
+from course.scoring.verdict import Finding
+
+__all__ = ["OURS", "CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "broke_at", "finding_of"]
+
+
+class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
+    """A check found something wrong; ``finding`` says what.
+
+    Attributes:
+        bare: message and advice of the check itself, without what its probe thinks.
+        guess: the mistake that its probe thinks it is.
+        broke: where the probe raised, for the check's author; empty if it did not.
+    """
+
+    def __init__(
+        self,
+        finding: Finding,
+        broke: str = "",
+        bare: tuple[str, str] | None = None,
+        guess: Diagnosis | None = None,
+    ) -> None:
+        super().__init__(finding.message)
+        self.finding = finding
+        self.bare = bare or (finding.message, finding.help)
+        self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
+        self.broke = broke
+
+
+#: Begins the traceback of a result whose check, or its search for the mistake, raised on a student's value.
+OURS = "In the check's own code: "
+
+
+def broke_at(error: BaseException) -> str:
+    """An exception of a check's own and the place it comes from, in one line for the check's author."""
+    frames = traceback.extract_tb(error.__traceback__)
+    try:
+        said = f"{type(error).__name__}: {printable(str(error), 200)}"
+    except Exception:  # noqa: BLE001 - an exception may carry a value that cannot even be printed
+        said = type(error).__name__
+    return f"{said} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else said
+
+
+def finding_of(failure: StudentFailure) -> Finding:
+    """A failure as words: what happened and what to do, without any value of the check's.
+
+    The exception's own message is in ``actual``, which hidden checks do not show.
+    """
+    if failure.kind == "error":
+        return _error_finding(failure)
+    if failure.kind == "missing":
+        return Finding(
+            message=f"Your file has no function `{failure.type}`.",
+            help="Keep the names the stub gave: define it at the top level of the file, spelled exactly so.",
+            diagnosis="MISSING_FUNCTION",
+        )
+    message, advice, code = _OTHER[failure.kind]
+    return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
+
+
+def _error_finding(failure: StudentFailure) -> Finding:
+    if failure.type == "NotImplementedError":
+        return Finding(
+            message="This function is not written yet: it still raises NotImplementedError.",
+            help="Replace the `raise` line by your code; the docstring above it says what to return.",
+            diagnosis="NOT_IMPLEMENTED",
+        )
+    places: Places = failure.places or Places()
+    where = f" {places.phrase(failure.line)}" if failure.line else ""
+    if failure.type == "ImportNotDeclaredError":
+        return Finding(
+            message=f"Your code needs a module{where} that this exercise does not allow.",
+            help="Do without it. Plots and experiments belong in a file of your own that imports this one.",
+            diagnosis="IMPORT_NOT_ALLOWED",
+            actual=failure.message,
+        )
+    # A class name is the student's to choose and could spell out a hidden input: only known ones are said.
+    known = isinstance(getattr(builtins, failure.type, None), type)
+    name = failure.type if known else "an exception of its own"
+    return Finding(
+        message=f"Your code raised {name}{where}.",
+        help="Call the function yourself as the README's example does, and read the traceback from below.",
+        diagnosis="RAISED",
+        actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
+    )
+
+
+_OTHER: dict[str, tuple[str, str, str]] = {
+    "timeout": (
+        "Your code had not answered when the time was up.",
+        "Look for a loop whose condition never becomes false, or one that takes far more steps than asked.",
+        "TIMEOUT",
+    ),
+    "memory": (
+        "Your code asked for more memory than a check may use.",
+        "Look for a list or array that grows in a loop without end.",
+        "OUT_OF_MEMORY",
+    ),
+    "crash": (
+        "The Python process that ran your code ended.",
+        "Look for exit(), os._exit(), or a recursion without an end.",
+        "CRASHED",
+    ),
+    "protocol": (
+        "Your function returned something that is not plain data.",
+        "Return numbers, lists, tuples, dicts or numpy arrays of numbers, nothing else.",
+        "NOT_PLAIN_DATA",
+    ),
+}

@@ -1,0 +1,113 @@
+"""What checks are written with. Public checks and hidden graders both import this module and nothing else
+of the grading side::
+
+    from course.grading import kit
+    from course.physics import systems
+
+Three groups of names come from here. ``as_...`` read what a student's function returned, which may be any
+plain value. ``expect_...`` compare and, when they fail, build the finding that the student reads. The rest
+is below: callbacks that count, and modules shared by the checks of one exercise.
+
+This side is trusted: nothing here runs in the process that holds the student's code.
+"""
+
+from course.figures.described import Panel, Plot, Series
+from course.scoring.companions import companion, known_answers, reference, sibling, words
+from course.scoring.explain.words import Words
+from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, finding_of
+from course.scoring.kit.callbacks import Counted, acceleration, black_box, counted, first_divergence
+from course.scoring.kit.expectations import (
+    Diagnose,
+    attempt,
+    expect_accepts,
+    expect_array,
+    expect_bounded,
+    expect_close,
+    expect_conserved,
+    expect_equal,
+    expect_evaluations,
+    expect_length,
+    expect_order,
+    expect_raises,
+    expect_true,
+    expect_untouched,
+    fail,
+)
+from course.scoring.kit.marching import Problem, march_all_errors, march_errors
+from course.scoring.report import Report, Section, guarded_section
+from course.scoring.values import (
+    Inspected,
+    as_array,
+    as_bool,
+    as_integer,
+    as_list,
+    as_march,
+    as_matrix,
+    as_number,
+    as_pair,
+    as_record,
+    as_text,
+    as_tuple,
+    as_vector,
+    plain,
+)
+from course.scoring.verdict import Divergence, Finding, Tolerance
+
+__all__ = [
+    "CheckFailed",
+    "Counted",
+    "Diagnose",
+    "Diagnosis",
+    "Divergence",
+    "Finding",
+    "Inspected",
+    "Panel",
+    "Plot",
+    "Problem",
+    "Report",
+    "Section",
+    "Series",
+    "StudentFailure",
+    "Tolerance",
+    "Words",
+    "acceleration",
+    "as_array",
+    "as_bool",
+    "as_integer",
+    "as_list",
+    "as_march",
+    "as_matrix",
+    "as_number",
+    "as_pair",
+    "as_record",
+    "as_text",
+    "as_tuple",
+    "as_vector",
+    "attempt",
+    "black_box",
+    "companion",
+    "counted",
+    "expect_accepts",
+    "expect_array",
+    "expect_bounded",
+    "expect_close",
+    "expect_conserved",
+    "expect_equal",
+    "expect_evaluations",
+    "expect_length",
+    "expect_order",
+    "expect_raises",
+    "expect_true",
+    "expect_untouched",
+    "fail",
+    "finding_of",
+    "first_divergence",
+    "guarded_section",
+    "known_answers",
+    "march_all_errors",
+    "march_errors",
+    "plain",
+    "reference",
+    "sibling",
+    "words",
+]

@@ -1,0 +1,371 @@
+"""Expectations: each compares what was measured with what theory says, or raises ``CheckFailed``.
+
+They share these keywords:
+
+    message     what is wrong if it fails, in words without values (a hidden check shows it)
+    help        what to do about it, in words without values
+    input       plain values that reproduce it
+    source      where the tolerance comes from
+    units       unit of the compared values; "1" where there is none
+    diagnose    a ``Diagnosis``, a code, or a function that looks for one; called only on failure
+
+A comparison with NaN always fails: no inequality here is written so that NaN could slip through it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from course.isolation.failures import IsolationError
+from course.physics.invariants import convergence_order
+from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, broke_at
+from course.scoring.values import as_array, as_list, as_number, as_vector, plain
+from course.scoring.verdict import Divergence, Finding, Tolerance
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from course.scoring.values import Inspected
+
+__all__ = [
+    "Diagnose",
+    "attempt",
+    "expect_accepts",
+    "expect_array",
+    "expect_bounded",
+    "expect_close",
+    "expect_conserved",
+    "expect_equal",
+    "expect_evaluations",
+    "expect_length",
+    "expect_order",
+    "expect_raises",
+    "expect_true",
+    "expect_untouched",
+    "fail",
+]
+
+Diagnose = Diagnosis | str | Callable[[], Diagnosis | str | None] | None
+
+
+def attempt(fn: Callable[[], Any]) -> Any:
+    """The value of ``fn()``, or None if the student's code fails in it. For diagnosis code only."""
+    try:
+        return fn()
+    except (StudentFailure, CheckFailed):
+        return None
+
+
+def fail(
+    message: str,
+    *,
+    help: str = "",  # noqa: A002 - the field's name in every report
+    diagnose: Diagnose = None,
+    input: dict[str, Any] | None = None,  # noqa: A002 - the field's name in every report
+    expected: Any = None,
+    actual: Any = None,
+    units: str = "",
+    tolerance: Tolerance | None = None,
+    first_divergence: Divergence | None = None,
+) -> NoReturn:
+    """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
+    found, broke = _explained(diagnose)
+    bare = message, help
+    code: str | None = found if isinstance(found, str) else None
+    if isinstance(found, Diagnosis):
+        code = found.code
+        message = f"{message} {found.looks_like}".strip()
+        help = found.advice or help  # noqa: A001
+        first_divergence = first_divergence or found.divergence
+    raise CheckFailed(
+        Finding(
+            message=message,
+            help=help,
+            diagnosis=code,
+            input=None if input is None else plain(input),
+            expected=plain(expected),
+            actual=plain(actual),
+            units=units,
+            tolerance=tolerance,
+            first_divergence=first_divergence,
+        ),
+        broke,
+        bare,
+        found if isinstance(found, Diagnosis) else None,
+    )
+
+
+def _explained(diagnose: Diagnose) -> tuple[Diagnosis | str | None, str]:
+    """The diagnosis, and where looking for it broke: the check has failed all the same, as it says."""
+    if not callable(diagnose):
+        return diagnose, ""
+    try:
+        return attempt(diagnose), ""
+    except IsolationError:
+        raise
+    except Exception as error:  # noqa: BLE001 - a student's value may break any computation; the author is told
+        return None, broke_at(error)
+
+
+def _or_not_finite(number: float, diagnose: Diagnose) -> Diagnose:
+    """The diagnosis of a wrong number: a check's own, or else that it is nan or infinite."""
+    if math.isfinite(number):
+        return diagnose
+
+    def look() -> Diagnosis | str | None:
+        found = attempt(diagnose) if callable(diagnose) else diagnose
+        return found or (_NAN if math.isnan(number) else _INFINITE)
+
+    return look
+
+
+_NAN = Diagnosis(
+    "NOT_A_NUMBER",
+    'There is a nan in it, which means "not a number".',
+    "nan comes from 0/0, inf - inf, 0 times inf, or the root or logarithm of a negative number, and spoils "
+    "whatever is computed from it. Print the intermediate results: where does it appear first?",
+)
+_INFINITE = Diagnosis(
+    "NOT_FINITE",
+    "It is infinite, or was computed from something that is not finite.",
+    "inf comes from a division by zero, or from something that grows without bound until it overflows. Print "
+    "the intermediate results: where does it appear first?",
+)
+
+
+def expect_true(condition: Any, message: str, **finding: Any) -> None:
+    """``condition`` is True itself; a truthy object is not."""
+    if condition is not True and not (isinstance(condition, np.bool_) and bool(condition)):
+        fail(message, **finding)
+
+
+def expect_equal(actual: Any, expected: Any, *, message: str, **finding: Any) -> None:
+    """Two plain values (text, whole numbers, True, None, lists of these) of one type are equal."""
+    if type(actual) is not type(expected) or actual != expected:
+        fail(message, expected=expected, actual=actual, **finding)
+
+
+def expect_length(value: Any, length: int, *, message: str, name: str = "the result", **finding: Any) -> None:
+    """A list or array has this many elements."""
+    items = as_list(value, name)
+    if len(items) != length:
+        fail(message, expected=length, actual=len(items), units="1", **finding)
+
+
+def expect_close(
+    actual: Any,
+    expected: float,
+    *,
+    rel: float = 0.0,
+    abs: float = 0.0,  # noqa: A002 - the tolerance's name in every report
+    source: str,
+    quantity: str,
+    message: str,
+    units: str = "1",
+    **finding: Any,
+) -> None:
+    """``|actual - expected| <= abs + rel |expected|``; an infinite expectation is met only by itself."""
+    number = as_number(actual, quantity)
+    if math.isinf(expected):
+        met = number == expected
+    else:
+        met = math.fabs(number - expected) <= abs + rel * math.fabs(expected)
+    if not met:
+        limits = Tolerance(rel=rel or None, abs=abs or None, source=source)
+        finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
+        fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
+
+
+def expect_array(
+    actual: Any,
+    expected: Any,
+    *,
+    rel: float = 0.0,
+    abs: float = 0.0,  # noqa: A002 - the tolerance's name in every report
+    source: str,
+    quantity: str,
+    message: str,
+    units: str = "1",
+    t: Any = None,
+    **finding: Any,
+) -> None:
+    """Every element is within ``abs + rel max|expected|``; the shapes are the same.
+
+    Short arrays are shown whole, long ones by the first element that is off.
+
+    Args:
+        t: times (s) of the rows, if the array is a trajectory; the finding then says when it went wrong.
+    """
+    wanted = np.asarray(expected, dtype=float)
+    array = as_array(actual, wanted.shape, quantity)
+    scale = float(np.max(np.abs(wanted), initial=0.0)) if rel else 0.0
+    with np.errstate(all="ignore"):
+        met = np.abs(array - wanted) <= abs + rel * scale
+    if met.all():
+        return
+    first = tuple(int(i) for i in np.argwhere(~met)[0])
+    label = quantity + "".join(f"[{i}]" for i in (first if t is None else first[1:]))
+    if t is not None:
+        finding.setdefault(
+            "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
+        )
+    finding["diagnose"] = _or_not_finite(float(array[first]), finding.get("diagnose"))
+    short = wanted.size <= 6
+    fail(
+        message,
+        expected=wanted if short else {quantity + "".join(f"[{i}]" for i in first): wanted[first]},
+        actual=array if short else {quantity + "".join(f"[{i}]" for i in first): array[first]},
+        units=units,
+        tolerance=Tolerance(rel=rel or None, abs=abs or None, source=source),
+        **finding,
+    )
+
+
+def expect_order(
+    hs: Sequence[float],
+    errors: Any,
+    order: float,
+    *,
+    abs: float,  # noqa: A002 - the tolerance's name in every report
+    source: str,
+    message: str,
+    **finding: Any,
+) -> None:
+    """The errors shrink as the step to the power ``order``: slope of log error over log step.
+
+    Errors that are zero, infinite or NaN have no slope and fail.
+
+    Args:
+        hs: steps, s.
+        errors: one per step, in any one unit.
+        abs: how far the measured slope may be from ``order``.
+    """
+    values = as_vector(errors, len(hs), "errors")
+    measured = convergence_order(hs, values) if np.all((values > 0) & np.isfinite(values)) else math.nan
+    if not math.fabs(measured - order) <= abs:
+        shown = {f"error at h = {h:.3g} s": float(e) for h, e in zip(hs, values, strict=True)}
+        fail(
+            message,
+            expected=order,
+            actual=measured,
+            units="1",
+            tolerance=Tolerance(abs=abs, source=source),
+            input={**(finding.pop("input", None) or {}), **shown},
+            **finding,
+        )
+
+
+def expect_conserved(
+    values: Any, *, rel: float, source: str, quantity: str, message: str, units: str = "1", **finding: Any
+) -> None:
+    """A quantity stays where it starts: max |x_i - x_0| <= rel |x_0|."""
+    array = as_vector(values, None, quantity)
+    with np.errstate(all="ignore"):
+        change = np.abs(array - array[0])
+        off = ~(change <= rel * np.abs(array[0]))
+    if off.any():
+        worst = float(np.max(np.where(np.isfinite(change), change, math.inf)))
+        fail(
+            message,
+            expected=0.0,
+            actual=worst / float(np.abs(array[0])) if array[0] else math.inf,
+            units=units,
+            tolerance=Tolerance(rel=rel, source=source),
+            **finding,
+        )
+
+
+def expect_bounded(
+    actual: Any,
+    *,
+    low: float = -math.inf,
+    high: float = math.inf,
+    source: str,
+    quantity: str,
+    message: str,
+    units: str = "1",
+    **finding: Any,
+) -> None:
+    """A number lies in [low, high]."""
+    number = as_number(actual, quantity)
+    if not low <= number <= high:
+        limits = Tolerance(source=source)
+        finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
+        expected: Any = [low, high]
+        if math.isinf(low) or math.isinf(high):
+            expected = {"at most": high} if math.isinf(low) else {"at least": low}
+        fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
+
+
+def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **finding: Any) -> None:
+    """The grader's own count of evaluations is one of the allowed numbers."""
+    if count not in allowed:
+        finding.setdefault("help", "Count the places where your code calls it, and how often a loop does.")
+        fail(
+            message,
+            expected=list(allowed),
+            actual=count,
+            units="evaluations",
+            tolerance=Tolerance(abs=0.0, source="counted by the grader"),
+            **finding,
+        )
+
+
+def expect_raises(fn: Callable[[], Any], exception: str, *, message: str, **finding: Any) -> None:
+    """Calling ``fn`` raises this exception (or one derived from it) in the student's code.
+
+    Any other failure of the student's code is reported as what it is.
+    """
+    try:
+        value = fn()
+    except StudentFailure as failure:
+        if failure.is_a(exception):
+            return
+        raise
+    fail(message, expected=exception, actual=value, **finding)
+
+
+def expect_accepts(fn: Callable[[], Any], exception: str, *, message: str, **finding: Any) -> Any:
+    """The value of ``fn()``, which must not be refused with this exception; other failures are reported."""
+    try:
+        return fn()
+    except StudentFailure as failure:
+        if failure.is_a(exception):
+            fail(message, expected="a result", actual=f"{failure.type}: {failure.message}", **finding)
+        raise
+
+
+def expect_untouched(
+    before: Sequence[Any],
+    inspected: Inspected,
+    *,
+    names: Sequence[str],
+    mutated: Diagnose,
+    shared: Diagnose,
+    **finding: Any,
+) -> None:
+    """A call left its arguments as they were, and returned nothing that shares memory with them.
+
+    Args:
+        before: the arguments as they were given.
+        names: their names; arguments without a name (None) are not compared.
+    """
+    for name, given, after in zip(names, before, inspected.args_after, strict=True):
+        if name and not _same(given, after):
+            fail(
+                f"The call changed its argument `{name}` in place.",
+                expected={name: given},
+                actual={name: after},
+                diagnose=mutated,
+                **finding,
+            )
+    if inspected.shared:
+        fail("What the call returned is the caller's own array, not a new one.", diagnose=shared, **finding)
+
+
+def _same(given: Any, after: Any) -> bool:
+    return bool(np.array_equal(np.asarray(given), np.asarray(after)))

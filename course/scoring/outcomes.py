@@ -1,0 +1,135 @@
+"""Results of checks and problems of submissions, put into the words and fields of a verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from course.scoring.values import kind_of, plain
+from course.scoring.verdict import CheckResult, Finding, Problem, Status
+
+if TYPE_CHECKING:
+    from course.catalog.models import Exercise
+    from course.isolation.session import LoadRefusedError
+    from course.scoring.collected import Check
+    from course.scoring.places import Places
+
+__all__ = ["NOT_JUDGED", "found", "load_problem", "no_functions", "result", "skipped", "unjudged"]
+
+#: Diagnosis of a check that broke on a student's value and not on the model solution's.
+NOT_JUDGED = "NOT_JUDGED"
+
+
+def result(check: Check, status: Status, **fields: Any) -> CheckResult:
+    return CheckResult(
+        id=check.id,
+        title=check.title,
+        task=check.task,
+        status=status,
+        visibility=check.visibility,
+        points=fields.pop("points", 0.0),
+        max_points=check.points,
+        **fields,
+    )
+
+
+def found(check: Check, status: Status, finding: Finding, duration_ms: float, **extra: Any) -> CheckResult:
+    return result(
+        check,
+        status,
+        duration_ms=duration_ms,
+        message=finding.message,
+        help=finding.help,
+        diagnosis=finding.diagnosis,
+        input=plain(finding.input, 4),  # a dict of arrays, such as one of matrices
+        expected=plain(finding.expected),
+        actual=plain(finding.actual),
+        units=finding.units,
+        tolerance=finding.tolerance,
+        first_divergence=finding.first_divergence,
+        **extra,
+    )
+
+
+def skipped(check: Check, blocking: str) -> CheckResult:
+    return result(
+        check,
+        Status.SKIP,
+        blocked_by=blocking,
+        message="Not run: it builds on a check that did not pass.",
+        help="Repair that one first.",
+    )
+
+
+def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
+    """What a student reads where the check's own code failed on what the submission returned.
+
+    Args:
+        returned: name and value of the function that returned last; None if none did.
+        proven: the same check passes the model solution, so it is the value that is out of the ordinary.
+    """
+    what = f"what `{returned[0]}` returned: {kind_of(returned[1])}" if returned else "this submission"
+    doubt = (
+        "" if proven else " There is no model solution here to tell whether the value or the check is wrong."
+    )
+    advice = (
+        "The README's contract says what to return, and what each part is. Call the function yourself and "
+        "print the result: is every number finite, and of an ordinary size?"
+    )
+    if not proven:
+        advice += " If all is as the README says, report the check to whoever teaches the course."
+    return Finding(message=f"This check could not judge {what}.{doubt}", help=advice, diagnosis=NOT_JUDGED)
+
+
+def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
+    failure = refused.failure
+    module = places.module
+    where = places.heading(failure.line) if failure.line else module
+    if refused.stage == "syntax":
+        return Problem("syntax_error", *_unreadable(refused, where))
+    if refused.stage == "timeout":
+        message = f"{module} did not finish loading in time."
+        return Problem(
+            "import_timeout", message, "Move work out of the top level of the file, into functions."
+        )
+    if refused.stage == "import" and failure.type == "ImportNotDeclaredError":
+        return Problem(
+            "import_error",
+            f"{where}: {failure.message}.",
+            "Take that import out. Plots and experiments belong in a file of your own that imports this one.",
+        )
+    if refused.stage == "import":
+        return Problem(
+            "import_error",
+            f"{where}: loading it raises {failure.type}: {failure.message}.",
+            "A file that is checked must load without errors: try `python -c 'import ...'` on it.",
+        )
+    message = f"{module} ends its process while it is loaded ({failure.message})."
+    return Problem(
+        "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
+    )
+
+
+def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
+    """What is wrong with a file that is no Python, and what to do about it."""
+    failure = refused.failure
+    if "UnicodeError" in failure.bases:
+        message = f"{where}: Python cannot read this file: {failure.message}."
+        return message, "Save it as UTF-8, or declare its encoding in the first line."
+    if not failure.line:
+        message = f"{where} is no Python source: {failure.message}."
+        return (
+            message,
+            "Was something else saved under its name? `course reset` puts the stub back, and keeps it.",
+        )
+    shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
+    message = f"{where}: Python cannot read this file: {failure.message}{shown}."
+    return message, "Run `python -m py_compile` on it, or look at that line and the one above it."
+
+
+def no_functions(exercise: Exercise) -> Problem:
+    names = ", ".join(task.id for task in exercise.task)
+    return Problem(
+        "no_declared_functions",
+        f"{exercise.module} defines none of the functions of this exercise.",
+        f"Keep the names the stub gave: {names}.",
+    )

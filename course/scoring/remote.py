@@ -1,0 +1,228 @@
+"""The ``submission`` that checks call: functions of a student's, run in a worker, under deadlines."""
+
+from __future__ import annotations
+
+import contextlib
+from time import monotonic
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from course.isolation.failures import StudentFailure
+from course.isolation.session import Connection, LoadRefusedError
+from course.scoring.places import Places
+from course.scoring.values import Inspected, as_march
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from course.isolation.spawn import Spawner
+
+T = TypeVar("T")
+
+__all__ = ["BUDGET_S", "RemoteSubmission"]
+
+#: Wall seconds one submission has in all; what is left over when they are gone ends as a timeout.
+BUDGET_S = 60.0
+
+
+class RemoteSubmission:
+    """One submission in a worker. A worker that died is replaced before the next check.
+
+    Args:
+        spawner: starts workers.
+        files: file name to content.
+        main: the file whose functions are checked.
+        timeout: wall seconds per check.
+        seed: seed of the grading run.
+        places: how its lines are told; failures carry it.
+
+    Attributes:
+        returned: name and value of the last function of the student's that returned in this check.
+
+    Raises:
+        LoadRefusedError: it cannot be loaded.
+    """
+
+    def __init__(
+        self,
+        spawner: Spawner,
+        files: Mapping[str, bytes],
+        main: str,
+        *,
+        timeout: float,
+        seed: int,
+        places: Places | None = None,
+    ) -> None:
+        self._places = places or Places(module=main)
+        self.seed = seed
+        self._spawner = spawner
+        self._files = files
+        self._main = main
+        self._timeout = timeout
+        self._end = monotonic() + BUDGET_S
+        self._deadline = min(monotonic() + timeout, self._end)
+        self._printed_before = 0
+        self._task, self._began = "", monotonic()
+        self.returned: tuple[str, Any] | None = None
+        self._left: dict[str, float] = {}  # of each task's share, s
+        self._connection = self._connect()
+
+    @property
+    def functions(self) -> frozenset[str]:
+        """Names of the functions and classes the module defines."""
+        return self._connection.functions
+
+    # -- for checks -----------------------------------------------------------------------------------
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+        """What the student's function returns, as plain data.
+
+        Args:
+            name: the function.
+            args, kwargs: plain data, arrays, right-hand sides of ``course.physics.systems`` (evaluated
+                beside the student's code), functions and ``kit.black_box`` objects (evaluated here, at a cost
+                of some 50 microseconds a call), ``ref(name)``, or generators (which cross as a seed).
+
+        Raises:
+            StudentFailure: it gave no value.
+            CheckFailed: a function given to it refused its arguments.
+        """
+        with self._asking() as worker:
+            return self._told(name, worker.call(name, *args, **kwargs))
+
+    def call_inspect(self, name: str, *args: Any) -> Inspected:
+        """Call it, and say what became of the arguments."""
+        with self._asking() as worker:
+            value, after, shared = worker.inspect(name, *args)
+        self._told(name, value)
+        return Inspected(value, after, shared)
+
+    def ref(self, name: str) -> Any:
+        """The student's own function, to be passed back as an argument.
+
+        Raises:
+            StudentFailure: there is none of that name.
+        """
+        if name not in self._live().functions:
+            raise StudentFailure.missing(name)
+        return {"$function": name}
+
+    def march(
+        self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
+    ) -> tuple[Any, Any, Any]:
+        """``n`` steps in a row, looped beside the student's code.
+
+        Returns:
+            Times (n + 1,) in s, positions and velocities (n + 1, d).
+
+        Raises:
+            CheckFailed: a step returned something else than two vectors of d numbers.
+        """
+        return self.march_each(step_name, [(system, q0, v0, h, n, t0)])[0]
+
+    def march_each(
+        self, step_name: str, marches: Sequence[tuple[Any, Any, Any, float, int, float]]
+    ) -> list[tuple[Any, Any, Any]]:
+        """Several marches in one round trip.
+
+        Args:
+            marches: (system, q0, v0, h, n, t0) of each, as for ``march``.
+        """
+        sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
+        with self._asking() as worker:
+            values = self._told(step_name, worker.march(step_name, sent))
+        return [
+            (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
+            for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
+        ]
+
+    def call_each(self, name: str, calls: Iterable[Sequence[Any]]) -> list[Any]:
+        """What the student's function returns for each sequence of arguments, in one round trip.
+
+        Raises:
+            StudentFailure: one of the calls gave no value; the later ones were not made.
+        """
+        with self._asking() as worker:
+            return self._told(name, worker.each(name, [list(args) for args in calls]))
+
+    def fold(
+        self,
+        name: str,
+        state: Any,
+        calls: Iterable[Sequence[Any]],
+        *,
+        carry: int | None = None,
+        keep: Sequence[str] | None = None,
+    ) -> list[Any]:
+        """Hand a state through ``name(state, *args)``, once for each sequence of arguments.
+
+        Args:
+            carry: which element of a returned pair is the next state; None if the whole value is.
+            keep: of states that are dicts, the keys to report; the last state comes whole.
+
+        Returns:
+            The n + 1 states, the given one first; with ``carry``, the n returned values, whole.
+
+        Raises:
+            StudentFailure: one of the calls gave no value.
+        """
+        kept = None if keep is None else list(keep)
+        with self._asking() as worker:
+            states = worker.fold(name, state, [list(args) for args in calls], carry, kept)
+        return self._told(name, states)
+
+    def _told(self, name: str, value: T) -> T:
+        self.returned = name, value
+        return value
+
+    # -- for the grader -------------------------------------------------------------------------------
+
+    def begin_check(self, task: str = "") -> None:
+        """Start the clock of one check.
+
+        The checks of a task have together half of the time that is left when the first of them begins: a
+        function that never answers costs its own task, however many checks that has.
+        """
+        now = monotonic()
+        if self._task:
+            self._left[self._task] -= now - self._began
+        left = self._left.setdefault(task, (self._end - now) / 2)
+        self._task, self._began = task, now
+        self._deadline = min(now + min(self._timeout, left), self._end)
+        self.returned = None
+        self._connection.deadline = self._deadline
+        self._printed_before = len(self._connection.output()) if self._connection.alive else 0
+
+    def printed(self) -> str:
+        """What the submission printed since the check began."""
+        return self._connection.output()[self._printed_before :]
+
+    def close(self) -> None:
+        """End the worker."""
+        self._connection.close()
+
+    def _connect(self) -> Connection:
+        return Connection(self._spawner, self._files, self._main, self._deadline)
+
+    @contextlib.contextmanager
+    def _asking(self) -> Iterator[Connection]:
+        """The worker to ask; what comes of it knows how its lines are told."""
+        try:
+            yield self._live()
+        except StudentFailure as failure:
+            failure.places = self._places
+            raise
+
+    def _live(self) -> Connection:
+        if monotonic() > self._deadline:
+            raise StudentFailure("timeout", message="it ran out of time")
+        if not self._connection.alive:
+            self._printed_before = 0
+            try:
+                self._connection = self._connect()
+            except (
+                LoadRefusedError
+            ) as error:  # it loaded before: the difference is the submission's own doing
+                raise error.failure from None
+        return self._connection

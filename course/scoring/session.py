@@ -1,0 +1,382 @@
+"""Grades submissions of one exercise: checks collected once, a proven sandbox kept warm.
+
+with GradingSession(exercise, catalog, scope="public") as session:
+    verdict = session.grade(Submission({"integrators.py": source}))
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import random
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
+
+import msgspec
+
+from course.errors import InternalError, MissingCapabilityError, UngradableError
+from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.probe import open_spawner
+from course.isolation.session import LoadRefusedError
+from course.isolation.spawn import Level
+from course.scoring.collected import Check, CollectedChecks
+from course.scoring.companions import companion
+from course.scoring.explaining import Explainer
+from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
+from course.scoring.outcomes import found, load_problem, no_functions, result, skipped, unjudged
+from course.scoring.places import Places
+from course.scoring.remote import RemoteSubmission
+from course.scoring.terms import Terms
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+__all__ = ["GradingSession", "Scope", "Submission", "check_files", "kept_on"]
+
+Scope = Literal["public", "full"]
+T = TypeVar("T")
+
+_STATUS = {
+    "error": Status.ERROR,
+    "missing": Status.ERROR,
+    "protocol": Status.CRASH,
+    "timeout": Status.TIMEOUT,
+    "memory": Status.MEMORY,
+    "crash": Status.CRASH,
+}
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What one student handed in for one exercise.
+
+    Attributes:
+        files: file name to content, exactly as handed in.
+        places: how its lines are told; None if the module is what the student wrote.
+        notes: what was left out or taken for granted when it was read, a sentence each.
+    """
+
+    files: Mapping[str, bytes]
+    places: Places | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """Over names and contents, in a fixed order."""
+        digest = hashlib.sha256()
+        for name in sorted(self.files):
+            digest.update(f"{len(name)}:{name}:{len(self.files[name])}:".encode())
+            digest.update(self.files[name])
+        return digest.hexdigest()
+
+
+class GradingSession:
+    """Checks and sandbox of one exercise, ready for any number of submissions.
+
+    Args:
+        exercise: what to grade.
+        catalog: where its files are.
+        scope: "public" for the checks a student has, "full" for the hidden ones too.
+        terms: protection level, deadline and seed.
+        processor: picks the processor to stay on; None picks any.
+
+    Raises:
+        MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
+        ContentError: a check file is wrong.
+    """
+
+    def __init__(
+        self,
+        exercise: Exercise,
+        catalog: Catalog,
+        *,
+        scope: Scope = "public",
+        terms: Terms = Terms(),  # noqa: B008 - it cannot change
+        processor: int | None = None,
+    ) -> None:
+        self.exercise = exercise
+        self.scope = scope
+        self._terms = terms
+        self._processor = _choose(processor)
+        self._catalog = catalog
+        self._failed: dict[str, CheckFailed] = {}  # of the submission at hand
+        self._explainer = _explainer(exercise)
+        self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
+        self._checks = CollectedChecks(check_files(exercise, catalog, scope), draws=scope == "full")
+        with kept_on(self._processor):  # the workers inherit it
+            self._spawner = _open(exercise.imports, terms)
+        self.level: str = self._spawner.level.value
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks, in the order they are shown."""
+        return self._checks.checks
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the sandbox; safe to call twice."""
+        self._spawner.close()
+        self._checks.close()
+
+    def grade(self, submission: Submission, *, only: str | None = None) -> Verdict:
+        """The verdict on one submission.
+
+        Args:
+            only: id of one check to run, with what it requires; the rest is left out of the verdict.
+
+        Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
+        """
+        with kept_on(self._processor):
+            verdict = self._grade(submission, only)
+        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
+
+    def _grade(self, submission: Submission, only: str | None) -> Verdict:
+        try:
+            remote = self._load(submission)
+        except LoadRefusedError as refused:
+            return self._ungradable(load_problem(refused, self._places(submission)))
+        except IsolationError as error:
+            return self._grader_error(str(error))
+        try:
+            if not any(task.id in remote.functions for task in self.exercise.task):
+                return self._ungradable(no_functions(self.exercise))
+            results = self._run(remote, only, submission)
+        except IsolationError as error:
+            return self._grader_error(str(error))
+        finally:
+            with contextlib.suppress(IsolationError):
+                remote.close()
+        return self._graded(results)
+
+    def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
+        """What ``use`` makes of a submission, loaded as for a check; one deadline holds for all of it.
+
+        Raises:
+            UngradableError: it cannot be loaded.
+            InternalError: the sandbox broke.
+        """
+        with kept_on(self._processor):
+            try:
+                remote = self._load(submission)
+            except LoadRefusedError as refused:
+                problem = load_problem(refused, self._places(submission))
+                raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
+            except IsolationError as error:
+                raise InternalError(f"The submission could not be run: {error}.") from None
+            try:
+                remote.begin_check()
+                return use(remote)
+            finally:
+                with contextlib.suppress(IsolationError):
+                    remote.close()
+
+    # -- checks ---------------------------------------------------------------------------------------
+
+    def _load(self, submission: Submission) -> RemoteSubmission:
+        """The submission in a worker; the benchmarks put an unprotected one in its place."""
+        return RemoteSubmission(
+            self._spawner, submission.files, self.exercise.module,
+            timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
+        )  # fmt: skip
+
+    def _places(self, submission: Submission) -> Places:
+        return submission.places or Places(module=self.exercise.module)
+
+    def _run(self, remote: RemoteSubmission, only: str | None, submission: Submission) -> list[CheckResult]:
+        places = self._places(submission)
+        ordered = self._checks.in_order()
+        if only is not None:
+            wanted = _with_required(only, ordered)
+            ordered = [check for check in ordered if check.id in wanted]
+        results: dict[str, CheckResult] = {}
+        self._failed.clear()
+        for check in ordered:
+            blocking = next(
+                (name for name in check.requires if results[name].status is not Status.PASS), None
+            )
+            results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
+        if self._explainer is not None and self._failed:
+            source = submission.files[self.exercise.module]
+            self._explainer.explain(results, self._failed, remote, source)
+        return [results[check.id] for check in self._checks.checks if check.id in results]
+
+    def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
+        start = perf_counter()
+        remote.begin_check(check.task)
+        outcome = self._checks.run(check, remote)
+        duration_ms = (perf_counter() - start) * 1e3
+        if outcome is None:
+            return result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
+        printed = remote.printed()[:4000] or None
+        match outcome:
+            case IsolationError():
+                raise outcome
+            case CheckFailed():
+                self._failed[check.id] = outcome
+                ours = OURS + outcome.broke if outcome.broke else None
+                return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
+            case StudentFailure():
+                status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
+                traceback = places.trace(outcome.traceback) or None
+                finding = finding_of(outcome)
+                return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
+        where = broke_at(outcome)
+        proven = self._passes_the_model(check)
+        if proven is False:
+            message = f"The check itself failed, on the model solution too: {where}"
+            return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+        finding = unjudged(remote.returned, proven=bool(proven))
+        return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _passes_the_model(self, check: Check) -> bool | None:
+        """Whether a check that broke on a submission passes the model solution; None without one here."""
+        solutions = self._catalog.content.solutions
+        if solutions is None:
+            return None
+        if check.id not in self._sound:
+            source = (solutions / self.exercise.id / self.exercise.module).read_bytes()
+            try:
+                model = self._load(Submission({self.exercise.module: source}))
+            except LoadRefusedError:
+                return False
+            try:
+                model.begin_check(check.task)
+                self._sound[check.id] = self._checks.run(check, model) is None
+            finally:
+                model.close()
+        return self._sound[check.id]
+
+    # -- verdicts -------------------------------------------------------------------------------------
+
+    def _graded(self, results: list[CheckResult]) -> Verdict:
+        score = sum(result.points for result in results)
+        most = sum(result.max_points for result in results)
+        broken = next((result for result in results if result.status is Status.GRADER_ERROR), None)
+        if broken is not None:
+            problem = Problem(
+                "check_failed", f"{broken.id}: {broken.message}", "Regrade once it is repaired."
+            )
+            return self._verdict("grader_error", score, tuple(results), error=problem)
+        return self._verdict("graded", score, tuple(results), most=most)
+
+    def _ungradable(self, problem: Problem) -> Verdict:
+        return self._verdict("ungradable", 0.0, (), error=problem)
+
+    def _grader_error(self, message: str) -> Verdict:
+        problem = Problem(
+            "isolation_failed", message, "Run `course doctor`, then grade this submission again."
+        )
+        return self._verdict("grader_error", 0.0, (), error=problem)
+
+    def _verdict(
+        self,
+        state: str,
+        score: float,
+        checks: tuple[CheckResult, ...],
+        *,
+        most: float | None = None,
+        error: Problem | None = None,
+    ) -> Verdict:
+        most = sum(check.points for check in self.checks) if most is None else most
+        return Verdict(
+            exercise=self.exercise.id,
+            scope=self.scope,
+            state=state,
+            score=score,
+            max_score=most,
+            # The tolerance is rounding of sums of points, not mercy.
+            passed=state == "graded" and score >= self.exercise.pass_mark * most - 1e-9,
+            checks=checks,
+            isolation=self.level,
+            error=error,
+        )
+
+
+def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tuple[Path, Visibility]]:
+    """The files whose checks a scope runs.
+
+    Raises:
+        MissingCapabilityError: the full scope needs hidden checks, and this installation has none.
+    """
+    files = [(exercise.checks_path, Visibility.PUBLIC)]
+    if scope == "full":
+        graders = catalog.content.graders
+        if graders is None:
+            raise MissingCapabilityError(
+                "This installation has no hidden graders: it is a student's.",
+                help="Grade from a checkout of the course.",
+                code="needs_checkout",
+            )
+        hidden = graders / exercise.id / "checks.py"
+        if hidden.is_file():
+            files.append((hidden, Visibility.HIDDEN))
+    return files
+
+
+def _explainer(exercise: Exercise) -> Explainer | None:
+    """What explains failed checks, for an exercise whose words are data."""
+    if not (Path(exercise.folder) / "diagnoses.toml").is_file():
+        return None
+    return Explainer(Path(exercise.folder), companion(exercise.id, "questions").QUESTIONS)
+
+
+def _open(imports: tuple[str, ...], terms: Terms) -> Any:
+    lowest = Level(terms.level or terms.at_least)
+    highest = Level.L3 if terms.level is None else lowest
+    try:
+        return open_spawner(imports, at_least=lowest, at_most=highest)
+    except IsolationError as error:
+        raise MissingCapabilityError(
+            f"This machine cannot run submissions at protection level {lowest}: {error}.",
+            help="`course doctor` says what would raise the level.",
+            code="protection_level",
+        ) from None
+
+
+def _choose(processor: int | None) -> int | None:
+    """The processor to grade on; None where processes are not kept on one."""
+    if not hasattr(os, "sched_getaffinity"):
+        return None
+    available = sorted(os.sched_getaffinity(0))
+    return random.choice(available) if processor is None else available[processor % len(available)]
+
+
+@contextlib.contextmanager
+def kept_on(processor: int | None) -> Iterator[None]:
+    """Keep this thread, and the processes it starts, on one processor meanwhile.
+
+    Grader and worker take turns and never run at once. On one processor a callback costs about a third of
+    what waking another processor does, and the processor's caches stay warm.
+    """
+    if processor is None:
+        yield
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {processor})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def _with_required(only: str, checks: list[Check]) -> set[str]:
+    by_id = {check.id: check for check in checks}
+    wanted, left = set(), [only]
+    while left:
+        name = left.pop()
+        if name not in wanted:
+            wanted.add(name)
+            left += by_id[name].requires
+    return wanted

@@ -1,0 +1,23 @@
+"""What a grading run decides once, for every submission of it."""
+
+from __future__ import annotations
+
+import msgspec
+
+__all__ = ["Terms"]
+
+
+class Terms(msgspec.Struct, frozen=True):
+    """How submissions are judged; made once and handed on as it is, over pipes and networks too.
+
+    Attributes:
+        level: protection level to insist on; None takes the best one not below ``at_least``.
+        at_least: the weakest level to accept when ``level`` is None.
+        timeout: wall seconds per check.
+        seed: of the run, for checks that draw their inputs.
+    """
+
+    level: str | None = None
+    at_least: str = "L1"
+    timeout: float = 10.0
+    seed: int = 0

@@ -1,0 +1,346 @@
+"""Reading what a student's function returned, which may be any plain value at all.
+
+Each ``as_...`` gives the value in the shape a check can use, or raises ``CheckFailed`` with a finding that
+says what came instead. A wrong type, a wrong shape or None is the student's mistake and never an exception
+of ours. NaN and infinity pass through: comparing them is the check's business.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from course.isolation.failures import printable
+from course.scoring.failures import CheckFailed
+from course.scoring.verdict import Finding
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+__all__ = [
+    "Inspected",
+    "as_array",
+    "as_bool",
+    "as_integer",
+    "as_list",
+    "as_march",
+    "as_matrix",
+    "as_number",
+    "as_pair",
+    "as_record",
+    "as_text",
+    "as_tuple",
+    "as_vector",
+    "kind_of",
+    "plain",
+]
+
+_SHOWN = 24  # numbers of an array that a finding shows
+#: Verdicts travel and are kept with integers of 64 bits, sign included.
+_STORED_BITS = 63
+#: Beyond this a square overflows, so that sums of squares, energies and errors do.
+_HUGE = 1e150
+
+
+@dataclass(frozen=True, slots=True)
+class Inspected:
+    """What a call left behind.
+
+    Attributes:
+        value: what it returned.
+        args_after: the arguments as they were after the call.
+        shared: True if a returned array shares memory with an argument.
+    """
+
+    value: Any
+    args_after: list[Any]
+    shared: bool
+
+
+def as_number(value: Any, name: str = "the result") -> float:
+    """One real number; a one-element array of no dimension counts, a list of one number does not."""
+    if isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "fiu":
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        _refuse(value, name, "a number")
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def as_integer(value: Any, name: str = "the result") -> int:
+    """One whole number; 4.0 counts as 4."""
+    number = as_number(value, name)
+    if not number.is_integer():
+        _refuse(value, name, "a whole number")
+    return int(number)
+
+
+def as_bool(value: Any, name: str = "the result") -> bool:
+    """True or False; neither 1 nor "yes"."""
+    if isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind == "b":
+        value = value.item()
+    if not isinstance(value, bool | np.bool_):
+        _refuse(value, name, "True or False")
+    return bool(value)
+
+
+def as_text(value: Any, name: str = "the result") -> str:
+    """A str."""
+    if not isinstance(value, str):
+        _refuse(value, name, "a str")
+    return value
+
+
+def as_list(value: Any, name: str = "the result", length: int | None = None) -> list[Any]:
+    """A list or tuple (or the rows of an array), of the given length if one is given."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        value = list(value)
+    if not isinstance(value, list | tuple):
+        _refuse(value, name, "a list", "a list" if length is None else f"a list of {length}")
+    if length is not None and len(value) != length:
+        raise CheckFailed(
+            Finding(
+                message=f"{_capital(name)} has the wrong length.",
+                help="Print its `len` and compare it with what the README asks for.",
+                diagnosis="WRONG_TYPE",
+                expected=f"a list of {length}",
+                actual=plain(value),
+            )
+        )
+    return list(value)
+
+
+def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") -> Array:
+    """Real numbers of this shape; None in ``shape`` stands for any length. Nested lists count."""
+    array = _real(value)
+    if array is None:
+        _refuse(value, name, "an array of numbers", f"numbers of shape {_spelled(shape)}")
+    if array.ndim != len(shape) or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True)):
+        raise CheckFailed(
+            Finding(
+                message=f"{_capital(name)} has the wrong shape.",
+                help="Print its `numpy.shape` and compare it with the shape in the README's contract.",
+                diagnosis="WRONG_SHAPE",
+                expected=f"shape {_spelled(shape)}",
+                actual=f"shape {array.shape}",
+            )
+        )
+    return array
+
+
+def as_vector(value: Any, d: int | None = None, name: str = "the result") -> Array:
+    """Real numbers of shape (d,); of any length if d is None."""
+    return as_array(value, (d,), name)
+
+
+def as_matrix(value: Any, shape: tuple[int | None, int | None], name: str = "the result") -> Array:
+    """Real numbers of shape (rows, columns)."""
+    return as_array(value, shape, name)
+
+
+def as_tuple(value: Any, names: Sequence[str]) -> list[Any]:
+    """What a function that returns several things returned: exactly as many as there are names."""
+    wanted = f"({', '.join(names)})"
+    if isinstance(value, np.ndarray) and value.shape[:1] == (len(names),):
+        value = list(value)
+    if not isinstance(value, list | tuple):
+        _refuse(value, "the result", wanted)
+    if len(value) != len(names):
+        few = "too few" if len(value) < len(names) else "too many"
+        raise CheckFailed(
+            Finding(
+                message=f"The result has {few} parts: it should be {wanted}.",
+                help="Return exactly these, in this order, separated by commas.",
+                diagnosis="WRONG_TYPE",
+                expected=wanted,
+                actual=plain(value),
+            )
+        )
+    return list(value)
+
+
+def as_pair(value: Any, d: int, names: tuple[str, str] = ("q_next", "v_next")) -> tuple[Array, Array]:
+    """Two vectors of shape (d,), as the steps return them."""
+    first, second = as_tuple(value, names)
+    return as_vector(first, d, names[0]), as_vector(second, d, names[1])
+
+
+def as_record(value: Any, keys: Sequence[str], name: str = "the result") -> dict[str, Any]:
+    """A dict with exactly these keys; a missing or an extra one is named."""
+    if not isinstance(value, dict):
+        _refuse(value, name, "a dict")
+    missing = [key for key in keys if key not in value]
+    extra = [str(key)[:80] for key in value if key not in keys]
+    if missing or extra:
+        parts = [f"lacks {', '.join(missing)}"] * bool(missing) + ["has keys nobody asked for"] * bool(extra)
+        raise CheckFailed(
+            Finding(
+                message=f"{_capital(name)} {' and '.join(parts)}.",
+                help=f"Return a dict with exactly these keys: {', '.join(keys)}.",
+                diagnosis="WRONG_KEYS",
+                expected=list(keys),
+                actual=[str(key)[:80] for key in list(value)[:40]],
+            )
+        )
+    return value
+
+
+def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
+    """Positions and velocities of a march of n steps, each (n + 1, d), from what the worker said.
+
+    The worker answers either the two arrays or ``{"bad": what came, "step": i}`` for a step that did not
+    return two vectors of shape (d,).
+    """
+    if isinstance(result, dict) and "bad" in result:
+        bad = str(result["bad"])[:200]
+        nothing = bad.startswith("NoneType")
+        raise CheckFailed(
+            Finding(
+                message="Your step returned None." if nothing else _NOT_A_PAIR,
+                help=_NO_RETURN if nothing else "Return two arrays as long as q: `return q_next, v_next`.",
+                diagnosis="RETURNS_NOTHING" if nothing else "NOT_A_PAIR",
+                expected=f"(q_next, v_next), each of shape ({d},)",
+                actual=bad,
+            )
+        )
+    q, v = as_tuple(result, ("q", "v"))
+    return as_array(q, (n + 1, d), "q"), as_array(v, (n + 1, d), "v")
+
+
+def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per kind of value
+    """``value`` for a finding: numpy becomes lists and numbers, what is long or deep is cut, others named."""
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist(), value.ndim) if value.size <= _SHOWN else f"array of shape {value.shape}"
+    if isinstance(value, np.longdouble | np.clongdouble):  # their item() is no Python number
+        value = complex(value) if isinstance(value, np.clongdouble) else float(value)
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, dict | list | tuple) and depth == 0:
+        return f"({type(value).__name__} of {len(value)})"
+    if isinstance(value, dict):
+        shown = list(value.items())[:_SHOWN]
+        return {printable(str(plain(key)), 80): plain(item, depth - 1) for key, item in shown}
+    if isinstance(value, list | tuple):
+        more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
+        return [plain(item, depth - 1) for item in value[:_SHOWN]] + more
+    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > _STORED_BITS:
+        return f"(a whole number of {value.bit_length()} bits)"
+    if value is None or isinstance(value, bool | int | float):
+        return value
+    text = str(value) if isinstance(value, str | complex) else f"({type(value).__name__})"
+    return printable(text, 200)
+
+
+def kind_of(value: Any) -> str:
+    """What sort of value it is and what is odd in it, in words that give none of it away."""
+    odd = sorted({name for item in _leaves(value) if (name := _oddity(item))})
+    within = f" with {' and '.join(odd)} in it" if odd else ""
+    if isinstance(value, int | float | np.generic) and not isinstance(value, bool) and odd:
+        return odd[0]
+    return _kind(value) + ("" if value is None else within)
+
+
+def _leaves(value: Any, depth: int = 6) -> Iterator[Any]:
+    """Up to a few thousand of the plain values that it is made of."""
+    if isinstance(value, np.ndarray):
+        value = value.ravel()[:4096].tolist()
+    if isinstance(value, list | tuple | dict) and depth:
+        for item in list(value.values() if isinstance(value, dict) else value)[:4096]:
+            yield from _leaves(item, depth - 1)
+    else:
+        yield value
+
+
+def _oddity(item: Any) -> str:
+    """What may surprise a computation in one plain value; empty if nothing does."""
+    if isinstance(item, float):
+        if math.isnan(item):
+            return "nan"
+        return "infinite numbers" if math.isinf(item) else "huge numbers" if abs(item) > _HUGE else ""
+    if isinstance(item, int) and item.bit_length() > _STORED_BITS:
+        return "huge numbers"
+    return {type(None): "None", str: "text", complex: "complex numbers"}.get(type(item), "")
+
+
+def _real(value: Any) -> Array | None:
+    """``value`` as a float array, or None if it is not real numbers of one regular shape."""
+    if not _is_numeric(value) or isinstance(value, bool):
+        return None
+    try:
+        array = np.asarray(value)
+    except ValueError:  # ragged lists
+        return None
+    if array.size == 0 and array.dtype == object:
+        return None
+    return array.astype(float) if array.dtype.kind in "fiu" else None
+
+
+def _is_numeric(value: Any) -> bool:
+    """Whether it is made of numbers; of text numpy would make an array as wide as the longest, throughout."""
+    if isinstance(value, list | tuple):
+        return all(map(_is_numeric, value))
+    return isinstance(value, np.ndarray | int | float)
+
+
+def _spelled(shape: Sequence[int | None]) -> str:
+    """A shape as Python prints one, with N for any length."""
+    lengths = ", ".join("N" if n is None else str(n) for n in shape)
+    return f"({lengths},)" if len(shape) == 1 else f"({lengths})"
+
+
+def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
+    """Fail because ``value`` is not ``wanted``; a wanted size stands in ``expected`` only."""
+    nothing = value is None
+    raise CheckFailed(
+        Finding(
+            message=f"{_capital(name)} is {_kind(value)}, not {wanted}.",
+            help=_NO_RETURN if nothing else _advice(value, wanted),
+            diagnosis="RETURNS_NOTHING" if nothing else "WRONG_TYPE",
+            expected=expected or wanted,
+            actual=plain(value),
+        )
+    )
+
+
+def _advice(value: Any, wanted: str) -> str:
+    """What to do about a value of the wrong kind."""
+    if wanted == "a number" and isinstance(value, list | tuple | np.ndarray):
+        return "Return one plain number: no brackets around it, and no array, not even of one element."
+    if wanted.startswith("an array of numbers") and isinstance(value, list | tuple):
+        return "Every element must be a number, and all rows equally long: is there a None, or text, in it?"
+    return "The README's contract says what to return, and what each part is."
+
+
+def _kind(value: Any) -> str:
+    """What sort of value it is, in words that give none of it away."""
+    return _KINDS.get(type(value), "something else")
+
+
+_KINDS = {
+    type(None): "None",
+    bool: "True or False",
+    int: "a number",
+    float: "a number",
+    str: "a str",
+    list: "a list",
+    tuple: "a tuple",
+    dict: "a dict",
+    np.ndarray: "an array",
+}
+
+
+def _capital(name: str) -> str:
+    return name[:1].upper() + name[1:] if name.startswith("the ") else f"`{name}`"
+
+
+_NOT_A_PAIR = "Your step does not return two arrays of the same shape as q and v."
+_NO_RETURN = "Is a `return` missing? A function without one gives None."

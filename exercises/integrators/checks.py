@@ -256,6 +256,102 @@ def test_stable_step_verlet(submission, draw):
         )
 
 
+@pytest.mark.task("explicit_euler_step")
+@pytest.mark.points(0)
+def test_explicit_euler_arguments(submission):
+    """explicit_euler_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "explicit_euler_step")
+
+
+@pytest.mark.task("semi_implicit_euler_step")
+@pytest.mark.points(0)
+def test_semi_implicit_arguments(submission):
+    """semi_implicit_euler_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "semi_implicit_euler_step")
+
+
+@pytest.mark.task("velocity_verlet_step")
+@pytest.mark.points(0)
+def test_verlet_arguments(submission):
+    """velocity_verlet_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "velocity_verlet_step")
+
+
+@pytest.mark.task("rk4_step")
+@pytest.mark.points(0)
+def test_rk4_arguments(submission):
+    """rk4_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "rk4_step")
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(0)
+def test_integrate_arguments(submission):
+    """integrate leaves q0 and v0 alone and takes whole numbers (no points here, two in the grading run)"""
+    q0, v0, h, n = np.array([2, -1]), np.array([1, 3]), 0.25, 4
+    args = [_spiral(0.4, 0.98), systems.Oscillator(2.0), q0, v0, n * h, h]
+    given = {"q0": q0, "v0": v0, "t_end": n * h, "h": h}
+    inspected = kit.expect_accepts(
+        lambda: submission.call_inspect("integrate", *args),
+        "TypeError",
+        input=given,
+        message="integrate fails on an initial state of whole numbers.",
+        diagnose=lambda: probes.named("INTEGER_STATE"),
+    )
+    _, q, _ = kit.as_tuple(inspected.value, ("t", "q", "v"))
+    q = kit.as_array(q, (n + 1, 2), "q")
+    kit.expect_true(
+        not np.array_equal(q, np.trunc(q)),
+        "From whole numbers, integrate goes through whole numbers only.",
+        input=given,
+        diagnose=lambda: probes.named("INTEGER_STATE"),
+    )
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["", "", "q0", "v0", "", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input=given,
+    )
+
+
+def _expect_clean(submission, task):
+    """A step changes none of its arguments, returns arrays of its own and takes whole numbers."""
+    system, t, h = systems.Oscillator(2.0), 0.5, 0.2
+    whole = np.array([2, -1]), np.array([1, 3])
+    args = [system, t, *(part.astype(float) for part in whole), h]
+    given = {"omega": 2.0, "t": t, "q": whole[0], "v": whole[1], "h": h}
+    inspected = submission.call_inspect(task, *args)
+    wanted = kit.as_pair(inspected.value, 2)
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["", "", "q", "v", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input=given,
+    )
+    result = kit.expect_accepts(
+        lambda: submission.call(task, system, t, *whole, h),
+        "TypeError",
+        input=given,
+        message="The step fails on a state of whole numbers.",
+        diagnose=lambda: probes.of_whole_numbers(submission, task),
+    )
+    for actual, expected, name in zip(kit.as_pair(result, 2), wanted, ("q_next", "v_next"), strict=True):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            source="the same step from the same state as floats",
+            quantity=name,
+            input=given,
+            message="From whole numbers the step gives something else than from the same state as floats.",
+            diagnose=lambda: probes.of_whole_numbers(submission, task),
+        )
+
+
 #: Numbers of steps for drawn springs: at these the slopes of correct methods keep within the same limits.
 DRAWN_COUNTS = {"velocity_verlet_step": (24, 48, 96), "rk4_step": (32, 48, 72)}
 

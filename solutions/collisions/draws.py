@@ -148,10 +148,12 @@ def same_meeting(rng, share):
 
 
 def head_on(rng, kind):
-    """A pair that meets between 0.3 and 0.8 s, one with a wall, one that chases, or one that never meets."""
+    """A pair that meets between 0.3 and 0.8 s: plainly, with a wall, chasing, at mm/s; or one that parts."""
     m, radius = masses(rng), rng.uniform(0.1, 0.5)
     va = rng.uniform(0.5, 3.0)
     vb = {"chase": 0.3 * va, "part": 1.7 * va}.get(kind, -rng.uniform(0.5, 3.0))
+    if kind == "slow":
+        va, vb = 1e-3 * va, 1e-3 * vb
     if kind == "wall":
         m = (m[0], math.inf)
     gap = abs(va - vb) * rng.uniform(0.3, 0.8)
@@ -267,16 +269,16 @@ def gap(rng):
 
 
 def slow(rng, d):
-    """Two bodies that approach at some mm/s to some dm/s."""
+    """Two bodies that approach at a few mm/s: below every limit at which engines drop the rebound."""
     ma, mb, va, _, n, e = blow(rng, d)
-    speed = 10 ** rng.uniform(-2.7, -0.6)
+    speed = 10 ** rng.uniform(-2.7, -2.2)
     return ma, mb, va, va - speed * n, n, e
 
 
 def slow_line(rng):
     """The same on a line."""
     ma, mb, va, _, e = line(rng)
-    return ma, mb, va, va - float(10 ** rng.uniform(-2.7, -0.6)), e
+    return ma, mb, va, va - float(10 ** rng.uniform(-2.7, -2.2)), e
 
 
 def parting(args):

@@ -290,7 +290,7 @@ def test_moment_symmetries(submission, rng):
 @pytest.mark.points(3)
 def test_head_on_drawn(submission, rng):
     """Balls of any masses meet at the right instant and part as they should; those that part do not meet"""
-    scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "part")]
+    scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "slow", "part")]
     h, n = rng.uniform(0.01, 0.03), 120
     values = submission.call_each(bundles.HEAD_ON, [scene.args(n * h, h) for scene in scenes])
     truths = bundles.meetings([(scene, n * h, h) for scene in scenes])

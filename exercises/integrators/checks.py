@@ -259,28 +259,28 @@ def test_stable_step_verlet(submission, draw):
 @pytest.mark.task("explicit_euler_step")
 @pytest.mark.points(0)
 def test_explicit_euler_arguments(submission):
-    """explicit_euler_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
     _expect_clean(submission, "explicit_euler_step")
 
 
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(0)
 def test_semi_implicit_arguments(submission):
-    """semi_implicit_euler_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
     _expect_clean(submission, "semi_implicit_euler_step")
 
 
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(0)
 def test_verlet_arguments(submission):
-    """velocity_verlet_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
     _expect_clean(submission, "velocity_verlet_step")
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(0)
 def test_rk4_arguments(submission):
-    """rk4_step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
     _expect_clean(submission, "rk4_step")
 
 

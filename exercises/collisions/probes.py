@@ -216,7 +216,9 @@ def of_head_on(scene, truth, t, x, v, h):
     straight, _ = scene.at(t, math.inf, None)
     if np.allclose(x, straight, atol=1e-9) and truth.contact < t[-1]:
         met = np.any(np.abs(straight[:, 1] - straight[:, 0]) <= 2 * scene.radius)
-        return named("PASSES_THROUGH" if met else "FIRST_STEP_MISSED" if truth.contact < h else "TUNNELS")
+        if truth.contact < h:
+            return named("FIRST_STEP_MISSED")  # scenes that meet later come before, and were right
+        return named("PASSES_THROUGH" if met else "TUNNELS")
     if truth.contact == math.inf:  # they part from the start
         return named("IMPULSE_ON_SEPARATING") if np.any(v != v[0]) else None
     code = _of_wait(scene, truth, t, x, h)

@@ -7,6 +7,8 @@ import re
 from typing import TYPE_CHECKING
 
 from course.authoring.exercises.build import digest
+from course.authoring.exercises.confusion import FILE as CONFUSION
+from course.authoring.exercises.confusion import read_confusion
 from course.authoring.exercises.source import parse
 from course.authoring.exercises.variants import exercise_graders, solutions_folder
 from course.catalog.reading import read_text
@@ -43,6 +45,15 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
             "stale",
             "it was made from other questions, hypotheses, mutants or solutions than there are now.",
             f"Run `course author build {exercise.id}`.",
+        )
+    kept = read_confusion(catalog, exercise)
+    if kept is None or kept.made_from != table.made_from:
+        findings.add(
+            solutions_folder(catalog, exercise) / CONFUSION,
+            None,
+            "stale",
+            "what known wrong programs are told is not of these programs.",
+            f"Run `course author build {exercise.id} --confusion`.",
         )
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}
     given = set(_literals(catalog, exercise))

@@ -264,8 +264,8 @@ def exact_plane(rng, gap):
 
 
 def gap(rng):
-    """Millimetres that somebody may take for a touch, in m."""
-    return float(10 ** rng.uniform(-3.3, -1.3))
+    """Less than a millimetre, which every margin takes for a touch; in m."""
+    return float(10 ** rng.uniform(-3.7, -3.1))
 
 
 def slow(rng, d):

@@ -52,6 +52,8 @@ def _score(effective: Effective | None) -> tuple[float | None, str] | None:
     remarks = []
     if effective.override is not None:
         remarks.append("by hand")
+    elif effective.missing:
+        remarks.append("missing")
     elif effective.score is None:
         remarks.append("fault of the grader")
     elif effective.verdict.state != "graded":

@@ -58,13 +58,15 @@ class _Shown:
     @property
     def points(self) -> str:
         item = self.effective
-        score = "none yet" if item.score is None else number(item.score)
+        score = "none" if item.missing else "none yet" if item.score is None else number(item.score)
         return f"{score} of {number(item.max_score)}"
 
     @property
     def outcome(self) -> str:
         """How it ended, in a few words."""
         item = self.effective
+        if item.missing:
+            return "nothing was handed in"
         if item.score is None:
             return "to be graded again"
         passed = "passed" if item.passed else "not passed"

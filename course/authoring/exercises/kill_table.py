@@ -74,8 +74,8 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
     lines = [
         "",
         "What known wrong programs are told, by `course author build --confusion`: the right formula with",
-        "one of its terms, or with two, in another form. *Named* is a mistake that the program has; *general*",
-        "says what is broken and not by what; *otherwise* is a mistake that it has not.",
+        "one of its terms, or with two, in another form. *Named*: a mistake that the program has. *General*:",
+        "what is broken and not by what. *Otherwise*: a mistake that it has not.",
         "",
         "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",
         "|---|---|---|---|---|---|---|",

@@ -89,13 +89,15 @@ def _same(wanted, value):
 
 
 def _unmoved(task, calls, values):
-    """Whether bodies that run into each other keep their velocities."""
-    if task == "impulse_1d":
-        return "NO_RESPONSE" if all(value == 0 for value in values) else None
-    if not task.startswith("resolve"):
+    """Whether bodies that run into each other keep their velocities, in two cases at least."""
+    if task != "impulse_1d" and not task.startswith("resolve"):
         return None
-    kept = (_same((call[2], call[3]), value) for call, value in zip(calls, values, strict=True))
-    return "NO_RESPONSE" if all(kept) else None
+    struck = [(call, value) for call, value in zip(calls, values, strict=True) if _closing(task, call) > 0]
+    if task == "impulse_1d":
+        kept = [value == 0 for _, value in struck]
+    else:
+        kept = [_same((call[2], call[3]), value) for call, value in struck]
+    return "NO_RESPONSE" if len(kept) > 1 and all(kept) else None
 
 
 def _by_law(task, calls, values, truth):
@@ -256,8 +258,6 @@ def _of_speeds(scene, v):
                 return code
     if energy(*scene.m, *v[-1]) > energy(*scene.m, *scene.v0) * (1 + 1e-9):
         return "ENERGY_CREATED"
-    if len(blows) > 1:
-        return "IMPULSE_ON_SEPARATING"
     return None if kept else "MOMENTUM_LOST"
 
 

@@ -6,6 +6,7 @@ The table is kept with the solution, and the page about the graders shows it.
 
 from __future__ import annotations
 
+import hashlib
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ import msgspec
 
 from course.authoring.exercises.build import digest, hypotheses_of
 from course.authoring.exercises.unprotected import LocalSubmission
-from course.authoring.exercises.variants import solution_path, solutions_folder
+from course.authoring.exercises.variants import exercise_graders, solution_path, solutions_folder
 from course.scoring.companions import words
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import read_table
@@ -30,7 +31,17 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["FILE", "Confusion", "Tally", "Told", "confusion_of", "read_confusion", "tally", "write_confusion"]
+__all__ = [
+    "FILE",
+    "Confusion",
+    "Tally",
+    "Told",
+    "confusion_of",
+    "made_from",
+    "read_confusion",
+    "tally",
+    "write_confusion",
+]
 
 FILE = "confusion.json"
 #: Of the programs with two mistakes every so many-th is tried: there are thousands.
@@ -87,7 +98,18 @@ def confusion_of(
             if on_progress:
                 on_progress(done, len(scopes) * len(chosen), exercise.id)
         rows[scope] = tuple(Told(*key, count) for key, count in sorted(counts.items()))
-    return Confusion(made_from=digest(catalog, exercise), rows=rows)
+    return Confusion(made_from=made_from(catalog, exercise), rows=rows)
+
+
+def made_from(catalog: Catalog, exercise: Exercise) -> str:
+    """Over all that decides what a wrong program is told."""
+    found = hashlib.sha256(digest(catalog, exercise).encode())
+    for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
+        for path in sorted(
+            [*folder.glob("*.py"), *folder.glob("diagnoses.toml"), *folder.glob("hypotheses.json")]
+        ):
+            found.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return found.hexdigest()[:16]
 
 
 def _tried(

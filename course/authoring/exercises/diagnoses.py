@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from course.authoring.exercises.build import digest
 from course.authoring.exercises.confusion import FILE as CONFUSION
-from course.authoring.exercises.confusion import read_confusion
+from course.authoring.exercises.confusion import made_from, read_confusion
 from course.authoring.exercises.source import parse
 from course.authoring.exercises.variants import exercise_graders, solutions_folder
 from course.catalog.reading import read_text
@@ -47,7 +47,7 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
             f"Run `course author build {exercise.id}`.",
         )
     kept = read_confusion(catalog, exercise)
-    if kept is None or kept.made_from != table.made_from:
+    if kept is None or kept.made_from != made_from(catalog, exercise):
         findings.add(
             solutions_folder(catalog, exercise) / CONFUSION,
             None,

@@ -2,7 +2,8 @@
 
 ``FIXED`` has the inputs of each public check; a grading run draws others of the same kind. ``QUESTIONS`` are
 calls that a task with a failed check is asked besides, at home and in a grading run: every mistake that the
-exercise knows shows in one of them. What they should give is not here.
+exercise knows shows in one of them. No mass is infinite there: a formula that a wall turns into nan may have
+another mistake besides, which is then told first. What they should give is not here.
 """
 
 from __future__ import annotations
@@ -164,8 +165,6 @@ QUESTIONS = {
         (1.1, 0.4, -1.5, 2.5, 0.7),
         (0.8, 1.7, 3.0, 4.5, 0.45),
         *((1.3, 2.9, speed, -speed, 0.6) for speed in (0.35, 0.15, 0.08, 0.03, 0.015, 0.006, 0.001)),
-        (2.0, math.inf, 3.0, 0.5, 0.5),
-        (math.inf, 0.5, 1.0, -2.0, 0.8),
     ],
     "resolve": [
         *_calls(
@@ -177,10 +176,6 @@ QUESTIONS = {
         ),
         *_calls(
             *((1.3, 2.9, [v, 1], [-v, 0], [1, 0], 0.6) for v in (0.35, 0.15, 0.08, 0.03, 0.015, 0.006, 0.002))
-        ),
-        *_calls(
-            (2.0, math.inf, [3.1, 1.2], [0.4, 0.3], [0.6, 0.8], 0.5),
-            (math.inf, 0.5, [1.0, 0.3], [-2.0, 1.1], [0.6, 0.8], 0.8),
         ),
     ],
     "resolve_with_friction": [
@@ -200,8 +195,6 @@ QUESTIONS = {
             )
         ),
         *_calls(
-            (2.0, math.inf, [3.1, 1.2], [0.4, 0.3], [0.6, 0.8], 0.5, 0.2),
-            (math.inf, 0.5, [1.0, 0.3], [-2.0, 1.1], [0.6, 0.8], 0.8, 0.4),
             (1.3, 2.9, [2.0, 1.0], [-1.0, 1.0], [1, 0], 0.6, 0.4),
         ),
     ],
@@ -223,7 +216,7 @@ QUESTIONS = {
         paths.HeadOn(m, x0, v0, radius, e).args(t_end, h)
         for m, x0, v0, radius, e, t_end, h in (
             ((1.3, 2.9), (-1.2, 1.4), (2.1, -1.6), 0.25, 0.6, 1.8, 0.1),
-            ((2.0, math.inf), (-1.2, 0.9), (1.7, 0.0), 0.2, 0.45, 2.1, 0.1),
+            ((2.0, 1.1), (-1.2, 0.9), (1.7, 0.0), 0.2, 0.45, 2.1, 0.1),
             ((0.6, 1.9), (-1.1, 1.3), (2.9, 0.8), 0.15, 0.8, 2.4, 0.08),
             ((0.6, 1.9), (-1.1, 1.3), (0.9, 1.7), 0.15, 0.8, 1.0, 0.1),
             ((1.3, 2.9), (-0.3, 0.31), (2.1, -1.6), 0.25, 0.6, 0.29, 0.01),

@@ -65,11 +65,7 @@ def tell(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Stor
     if shared:
         return Story(told(shared, words), True, own)
     if not all(failure.finite for failure in left):
-        origin = sorted(
-            (guess for guess in guesses if words.kind(guess.code) == "nan"),
-            key=lambda guess: guess.code in NOT_FINITE,  # where it comes from says more than that it is there
-        )
-        return Story(origin[0] if origin else None, False, own)
+        return Story(_origin(left, words), False, own)
     for kind in ("cause", "nan", "consequence"):
         said = [guess for guess in guesses if words.kind(guess.code) == kind]
         if said:
@@ -100,6 +96,18 @@ def told(codes: Sequence[str], words: Words) -> Diagnosis:
     looks = " And another: ".join(part.looks_like for part in parts)
     advice = " And: ".join(part.advice for part in parts)
     return Diagnosis(parts[0].code, f"Two mistakes at once. {looks}", advice)
+
+
+def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
+    """Where a nan comes from, if all checks that met one say the same; else no more than that it is there."""
+    said = {
+        f.guess.code: f.guess
+        for f in failures
+        if not f.finite and f.guess and words.kind(f.guess.code) == "nan"
+    }
+    if len(said) == 1:
+        return next(iter(said.values()))
+    return next((guess for code, guess in said.items() if code in NOT_FINITE), None)
 
 
 def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:

@@ -137,7 +137,8 @@ def test_of_several_causes_the_one_that_most_checks_name_is_told_and_of_as_many_
 
 def test_where_a_value_is_nan_only_what_makes_it_nan_is_told() -> None:
     assert told("SIGN_FLIPPED", "NOT_A_NUMBER", finite=False) == "NOT_A_NUMBER"
-    assert told("NOT_A_NUMBER", "ZERO_LENGTH", finite=False) == "ZERO_LENGTH"
+    assert told("ZERO_LENGTH", "ZERO_LENGTH", finite=False) == "ZERO_LENGTH"
+    assert told("ZERO_LENGTH", "NOT_A_NUMBER", finite=False) == "NOT_A_NUMBER"
     assert told("SIGN_FLIPPED", finite=False) is None
 
 

@@ -231,7 +231,9 @@ def test_head_on_mended(submission, draw):
 def test_head_on_arguments(submission, draw):
     """simulate_head_on leaves its arguments as they are (no points here, judged in the grading run)"""
     scene, _, h = bundles.asked("head_on_mended", draw)[1]
-    bundles.expect_kept(submission, bundles.HEAD_ON, scene.args(20 * h, h))
+    value = bundles.expect_kept(submission, bundles.HEAD_ON, scene.args(20 * h, h))
+    # A program that is not mended yet leaves them alone as well, and has its samples wrong.
+    bundles.samples(value, 20 * h, h, ("t", "x", "v"), scene.shown(20 * h, h), 2)
 
 
 @pytest.mark.task(bundles.HEAD_ON)

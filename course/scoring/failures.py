@@ -11,7 +11,8 @@ import builtins
 import traceback
 from pathlib import Path
 
-from course.isolation.failures import FailureKind, StudentFailure, printable
+from course.isolation.failures import FailureKind, StudentFailure
+from course.printable import one_line
 from course.scoring.explain.words import Diagnosis
 from course.scoring.places import Places
 from course.scoring.verdict import Finding
@@ -50,7 +51,7 @@ def broke_at(error: BaseException) -> str:
     """An exception of a check's own and the place it comes from, in one line for the check's author."""
     frames = traceback.extract_tb(error.__traceback__)
     try:
-        said = f"{type(error).__name__}: {printable(str(error), 200)}"
+        said = f"{type(error).__name__}: {one_line(str(error), 200)}"
     except Exception:  # noqa: BLE001 - an exception may carry a value that cannot even be printed
         said = type(error).__name__
     return f"{said} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else said

@@ -10,6 +10,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from course.authoring.exercises.diagnoses import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
 from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources
 from course.authoring.exercises.proofs import Proof, Prover, plan
@@ -137,6 +138,7 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
             exercise = catalog.read_exercise(exercise_id)
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
+            audit_diagnoses(catalog, exercise, own)
             proofs = plan(catalog, exercise, own)
             # Checks that lack a marker would only fail again, all at once and less clearly.
             if not own.of("check"):

@@ -58,13 +58,14 @@ class CollectedChecks:
 
     Args:
         files: check files with the visibility of what is in them, public first.
+        draws: public checks draw their inputs too, as in a grading run.
 
     Raises:
         ContentError: a file cannot be imported, or a check lacks its marks.
     """
 
-    def __init__(self, files: list[tuple[Path, Visibility]]) -> None:
-        self._plugin = CheckPlugin()
+    def __init__(self, files: list[tuple[Path, Visibility]], *, draws: bool = False) -> None:
+        self._plugin = CheckPlugin(draws=draws)
         self._session, items = _collect([path for path, _ in files], self._plugin)
         visibility = {path.resolve(): kind for path, kind in files}
         self._items: dict[str, pytest.Item] = {}

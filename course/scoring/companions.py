@@ -1,4 +1,4 @@
-"""Modules that the checks of an exercise share, loaded by path from the course in use."""
+"""What the checks of an exercise share, from the course in use: modules, known answers, words."""
 
 from __future__ import annotations
 
@@ -6,14 +6,20 @@ import functools
 import importlib.util
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from course.catalog.locate import content
+from course.scoring.explain.table import FILE as TABLE
+from course.scoring.explain.table import read_table
+from course.scoring.explain.words import FILE as WORDS
+from course.scoring.explain.words import Words, read_words
 
 if TYPE_CHECKING:
     from types import ModuleType
 
-__all__ = ["companion", "sibling"]
+__all__ = ["companion", "known_answers", "reference", "sibling", "words"]
 
 
 def companion(exercise_id: str, module: str) -> ModuleType:
@@ -25,6 +31,32 @@ def companion(exercise_id: str, module: str) -> ModuleType:
         FileNotFoundError: the exercise has no such file.
     """
     return _load(content().exercises / exercise_id / f"{module}.py", f"{exercise_id}_{module}")
+
+
+def reference(exercise_id: str, module: str) -> ModuleType | None:
+    """A module that answers for the student, ``solutions/<id>/<module>.py``; None at home, which has none."""
+    solutions = content().solutions
+    if solutions is None:
+        return None
+    return _load(solutions / exercise_id / f"{module}.py", f"{exercise_id}_{module}_right")
+
+
+def known_answers(exercise_id: str, check: str) -> list[Any]:
+    """What a public check with fixed inputs expects where there is no reference, in the order it asks."""
+    return [_known(value) for value in read_table(content().exercises / exercise_id / TABLE).answers[check]]
+
+
+def _known(value: Any) -> Any:
+    """A known answer as it was: "inf" a number, and lists of numbers arrays."""
+    if isinstance(value, list):
+        items = [_known(item) for item in value]
+        return np.array(items) if items and all(isinstance(item, float) for item in items) else items
+    return float(value) if isinstance(value, str) else value
+
+
+def words(exercise_id: str) -> Words:
+    """The diagnoses of an exercise by their codes, from its ``diagnoses.toml``."""
+    return read_words(content().exercises / exercise_id / WORDS)
 
 
 def sibling(file: str, module: str) -> ModuleType:

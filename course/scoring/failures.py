@@ -8,38 +8,53 @@ any other exception out of a check is.
 from __future__ import annotations
 
 import builtins
-from dataclasses import dataclass
+import traceback
+from pathlib import Path
 
 from course.isolation.failures import FailureKind, StudentFailure
+from course.printable import one_line
+from course.scoring.explain.words import Diagnosis
 from course.scoring.places import Places
-from course.scoring.verdict import Divergence, Finding
+from course.scoring.verdict import Finding
 
-__all__ = ["CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "finding_of"]
-
-
-@dataclass(frozen=True, slots=True)
-class Diagnosis:
-    """Which mistake a failure looks like.
-
-    Attributes:
-        code: stable name, upper case with underscores.
-        looks_like: one sentence, without values, that says what the student's code seems to do.
-        advice: what to change, without values.
-        divergence: where the trajectory first left the reference, if that was looked for.
-    """
-
-    code: str
-    looks_like: str
-    advice: str
-    divergence: Divergence | None = None
+__all__ = ["OURS", "CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "broke_at", "finding_of"]
 
 
 class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
-    """A check found something wrong; ``finding`` says what."""
+    """A check found something wrong; ``finding`` says what.
 
-    def __init__(self, finding: Finding) -> None:
+    Attributes:
+        bare: message and advice of the check itself, without what its probe thinks.
+        guess: the mistake that its probe thinks it is.
+        broke: where the probe raised, for the check's author; empty if it did not.
+    """
+
+    def __init__(
+        self,
+        finding: Finding,
+        broke: str = "",
+        bare: tuple[str, str] | None = None,
+        guess: Diagnosis | None = None,
+    ) -> None:
         super().__init__(finding.message)
         self.finding = finding
+        self.bare = bare or (finding.message, finding.help)
+        self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
+        self.broke = broke
+
+
+#: Begins the traceback of a result whose check, or its search for the mistake, raised on a student's value.
+OURS = "In the check's own code: "
+
+
+def broke_at(error: BaseException) -> str:
+    """An exception of a check's own and the place it comes from, in one line for the check's author."""
+    frames = traceback.extract_tb(error.__traceback__)
+    try:
+        said = f"{type(error).__name__}: {one_line(str(error), 200)}"
+    except Exception:  # noqa: BLE001 - an exception may carry a value that cannot even be printed
+        said = type(error).__name__
+    return f"{said} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else said
 
 
 def finding_of(failure: StudentFailure) -> Finding:

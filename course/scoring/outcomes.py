@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from course.scoring.values import plain
+from course.scoring.values import kind_of, plain
 from course.scoring.verdict import CheckResult, Finding, Problem, Status
 
 if TYPE_CHECKING:
@@ -13,7 +13,10 @@ if TYPE_CHECKING:
     from course.scoring.collected import Check
     from course.scoring.places import Places
 
-__all__ = ["found", "load_problem", "no_functions", "result", "skipped"]
+__all__ = ["NOT_JUDGED", "found", "load_problem", "no_functions", "result", "skipped", "unjudged"]
+
+#: Diagnosis of a check that broke on a student's value and not on the model solution's.
+NOT_JUDGED = "NOT_JUDGED"
 
 
 def result(check: Check, status: Status, **fields: Any) -> CheckResult:
@@ -55,6 +58,26 @@ def skipped(check: Check, blocking: str) -> CheckResult:
         message="Not run: it builds on a check that did not pass.",
         help="Repair that one first.",
     )
+
+
+def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
+    """What a student reads where the check's own code failed on what the submission returned.
+
+    Args:
+        returned: name and value of the function that returned last; None if none did.
+        proven: the same check passes the model solution, so it is the value that is out of the ordinary.
+    """
+    what = f"what `{returned[0]}` returned: {kind_of(returned[1])}" if returned else "this submission"
+    doubt = (
+        "" if proven else " There is no model solution here to tell whether the value or the check is wrong."
+    )
+    advice = (
+        "The README's contract says what to return, and what each part is. Call the function yourself and "
+        "print the result: is every number finite, and of an ordinary size?"
+    )
+    if not proven:
+        advice += " If all is as the README says, report the check to whoever teaches the course."
+    return Finding(message=f"This check could not judge {what}.{doubt}", help=advice, diagnosis=NOT_JUDGED)
 
 
 def load_problem(refused: LoadRefusedError, places: Places) -> Problem:

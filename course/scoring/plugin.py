@@ -1,4 +1,4 @@
-"""The pytest side of a check: markers, the ``submission`` and ``rng`` fixtures, and light reports.
+"""The pytest side of a check: markers, the fixtures ``submission``, ``rng`` and ``draw``, and light reports.
 
 Checks are ordinary pytest functions. What pytest would print about them is of no use here, so the report
 hook keeps the exception and builds no traceback text; the verdict is made from what the exception says.
@@ -25,9 +25,14 @@ MARKERS = (
 
 
 class CheckPlugin:
-    """Hands the submission at hand to the checks and remembers how each one ended."""
+    """Hands the submission at hand to the checks and remembers how each one ended.
 
-    def __init__(self) -> None:
+    Args:
+        draws: public checks are to draw their inputs, as in a grading run.
+    """
+
+    def __init__(self, *, draws: bool = False) -> None:
+        self.draws = draws
         self.submission: RemoteSubmission | None = None
         self.outcome: BaseException | None = None
         self.called = False
@@ -50,6 +55,11 @@ class CheckPlugin:
         """Random numbers of this check in this grading run: the same again in a regrade."""
         assert self.submission is not None
         return np.random.default_rng([self.submission.seed, zlib.crc32(request.node.name.encode())])
+
+    @pytest.fixture
+    def draw(self, rng: np.random.Generator) -> np.random.Generator | None:
+        """``rng`` in a grading run, where public checks draw their inputs too; None at home."""
+        return rng if self.draws else None
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> pytest.TestReport:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from course.isolation.spawn import Spawner
+
+T = TypeVar("T")
 
 __all__ = ["BUDGET_S", "RemoteSubmission"]
 
@@ -35,6 +37,9 @@ class RemoteSubmission:
         timeout: seconds of CPU time per check.
         seed: seed of the grading run.
         places: how its lines are told; failures carry it.
+
+    Attributes:
+        returned: name and value of the last function of the student's that returned in this check.
 
     Raises:
         LoadRefusedError: it cannot be loaded.
@@ -60,6 +65,7 @@ class RemoteSubmission:
         self._deadline = Deadline(min(timeout, self._cpu_left))
         self._printed_before = 0
         self._task = ""
+        self.returned: tuple[str, Any] | None = None
         self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
@@ -84,12 +90,13 @@ class RemoteSubmission:
             CheckFailed: a function given to it refused its arguments.
         """
         with self._asking() as worker:
-            return worker.call(name, *args, **kwargs)
+            return self._told(name, worker.call(name, *args, **kwargs))
 
     def call_inspect(self, name: str, *args: Any) -> Inspected:
         """Call it, and say what became of the arguments."""
         with self._asking() as worker:
             value, after, shared = worker.inspect(name, *args)
+        self._told(name, value)
         return Inspected(value, after, shared)
 
     def ref(self, name: str) -> Any:
@@ -125,7 +132,7 @@ class RemoteSubmission:
         """
         sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
         with self._asking() as worker:
-            values = worker.march(step_name, sent)
+            values = self._told(step_name, worker.march(step_name, sent))
         return [
             (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
             for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
@@ -138,7 +145,7 @@ class RemoteSubmission:
             StudentFailure: one of the calls gave no value; the later ones were not made.
         """
         with self._asking() as worker:
-            return worker.each(name, [list(args) for args in calls])
+            return self._told(name, worker.each(name, [list(args) for args in calls]))
 
     def fold(
         self,
@@ -163,7 +170,12 @@ class RemoteSubmission:
         """
         kept = None if keep is None else list(keep)
         with self._asking() as worker:
-            return worker.fold(name, state, [list(args) for args in calls], carry, kept)
+            states = worker.fold(name, state, [list(args) for args in calls], carry, kept)
+        return self._told(name, states)
+
+    def _told(self, name: str, value: T) -> T:
+        self.returned = name, value
+        return value
 
     # -- for the grader -------------------------------------------------------------------------------
 
@@ -182,6 +194,7 @@ class RemoteSubmission:
         left = min(self._left.setdefault(task, self._cpu_left / 2), self._cpu_left)
         self._task = task
         self._deadline = Deadline(min(self._timeout, left), min(WALL * self._timeout, self._wall_left))
+        self.returned = None
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import random
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
@@ -21,8 +22,10 @@ from course.isolation.probe import open_spawner
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.collected import Check, CollectedChecks
-from course.scoring.failures import CheckFailed, finding_of
-from course.scoring.outcomes import found, load_problem, no_functions, result, skipped
+from course.scoring.companions import companion
+from course.scoring.explaining import Explainer
+from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
+from course.scoring.outcomes import found, load_problem, no_functions, result, skipped, unjudged
 from course.scoring.places import Places
 from course.scoring.remote import RemoteSubmission
 from course.scoring.submission import Submission
@@ -31,7 +34,6 @@ from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibi
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
@@ -81,7 +83,11 @@ class GradingSession:
         self._processor = _choose(processor)
         if scope == "full":
             keep_private()
-        self._checks = CollectedChecks(check_files(exercise, catalog, scope))
+        self._catalog = catalog
+        self._failed: dict[str, CheckFailed] = {}  # of the submission at hand
+        self._explainer = _explainer(exercise)
+        self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
+        self._checks = CollectedChecks(check_files(exercise, catalog, scope), draws=scope == "full")
         with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, terms)
         self.level: str = self._spawner.level.value
@@ -124,7 +130,7 @@ class GradingSession:
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._ungradable(no_functions(self.exercise))
-            results = self._run(remote, only, self._places(submission))
+            results = self._run(remote, only, submission)
         except IsolationError as error:
             return self._grader_error(str(error))
         finally:
@@ -166,17 +172,22 @@ class GradingSession:
     def _places(self, submission: Submission) -> Places:
         return submission.places or Places(module=self.exercise.module)
 
-    def _run(self, remote: RemoteSubmission, only: str | None, places: Places) -> list[CheckResult]:
+    def _run(self, remote: RemoteSubmission, only: str | None, submission: Submission) -> list[CheckResult]:
+        places = self._places(submission)
         ordered = self._checks.in_order()
         if only is not None:
             wanted = _with_required(only, ordered)
             ordered = [check for check in ordered if check.id in wanted]
         results: dict[str, CheckResult] = {}
+        self._failed.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
             )
             results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
+        if self._explainer is not None and self._failed:
+            source = submission.files[self.exercise.module]
+            self._explainer.explain(results, self._failed, remote, source)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
@@ -191,14 +202,39 @@ class GradingSession:
             case IsolationError():
                 raise outcome
             case CheckFailed():
-                return found(check, Status.FAIL, outcome.finding, duration_ms, stdout=printed)
+                self._failed[check.id] = outcome
+                ours = OURS + outcome.broke if outcome.broke else None
+                return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
                 status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
                 traceback = places.trace(outcome.traceback) or None
                 finding = finding_of(outcome)
                 return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
-        message = f"The check itself failed: {type(outcome).__name__}: {outcome}"
-        return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+        where = broke_at(outcome)
+        proven = self._passes_the_model(check)
+        if proven is False:
+            message = f"The check itself failed, on the model solution too: {where}"
+            return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
+        finding = unjudged(remote.returned, proven=bool(proven))
+        return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _passes_the_model(self, check: Check) -> bool | None:
+        """Whether a check that broke on a submission passes the model solution; None without one here."""
+        solutions = self._catalog.content.solutions
+        if solutions is None:
+            return None
+        if check.id not in self._sound:
+            source = (solutions / self.exercise.id / self.exercise.module).read_bytes()
+            try:
+                model = self._load(Submission({self.exercise.module: source}))
+            except LoadRefusedError:
+                return False
+            try:
+                model.begin_check(check.task)
+                self._sound[check.id] = self._checks.run(check, model) is None
+            finally:
+                model.close()
+        return self._sound[check.id]
 
     # -- verdicts -------------------------------------------------------------------------------------
 
@@ -265,6 +301,13 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
         if hidden.is_file():
             files.append((hidden, Visibility.HIDDEN))
     return files
+
+
+def _explainer(exercise: Exercise) -> Explainer | None:
+    """What explains failed checks, for an exercise whose words are data."""
+    if not (Path(exercise.folder) / "diagnoses.toml").is_file():
+        return None
+    return Explainer(Path(exercise.folder), companion(exercise.id, "questions").QUESTIONS)
 
 
 def _open(imports: tuple[str, ...], terms: Terms) -> Any:

@@ -18,7 +18,7 @@ from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -38,10 +38,15 @@ __all__ = [
     "as_text",
     "as_tuple",
     "as_vector",
+    "kind_of",
     "plain",
 ]
 
 _SHOWN = 24  # numbers of an array that a finding shows
+#: Verdicts travel and are kept with integers of 64 bits, sign included.
+_STORED_BITS = 63
+#: Beyond this a square overflows, so that sums of squares, energies and errors do.
+_HUGE = 1e150
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,20 +220,55 @@ def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per 
     """``value`` for a finding: numpy becomes lists and numbers, what is long or deep is cut, others named."""
     if isinstance(value, np.ndarray):
         return plain(value.tolist(), value.ndim) if value.size <= _SHOWN else f"array of shape {value.shape}"
+    if isinstance(value, np.longdouble | np.clongdouble):  # their item() is no Python number
+        value = complex(value) if isinstance(value, np.clongdouble) else float(value)
     if isinstance(value, np.generic):
         return plain(value.item())
     if isinstance(value, dict | list | tuple) and depth == 0:
         return f"({type(value).__name__} of {len(value)})"
     if isinstance(value, dict):
         shown = list(value.items())[:_SHOWN]
-        return {one_line(str(key), 80): plain(item, depth - 1) for key, item in shown}
+        return {one_line(str(plain(key)), 80): plain(item, depth - 1) for key, item in shown}
     if isinstance(value, list | tuple):
         more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
         return [plain(item, depth - 1) for item in value[:_SHOWN]] + more
+    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > _STORED_BITS:
+        return f"(a whole number of {value.bit_length()} bits)"
     if value is None or isinstance(value, bool | int | float):
         return value
     text = str(value) if isinstance(value, str | complex) else f"({type(value).__name__})"
     return one_line(text, 200)
+
+
+def kind_of(value: Any) -> str:
+    """What sort of value it is and what is odd in it, in words that give none of it away."""
+    odd = sorted({name for item in _leaves(value) if (name := _oddity(item))})
+    within = f" with {' and '.join(odd)} in it" if odd else ""
+    if isinstance(value, int | float | np.generic) and not isinstance(value, bool) and odd:
+        return odd[0]
+    return _kind(value) + ("" if value is None else within)
+
+
+def _leaves(value: Any, depth: int = 6) -> Iterator[Any]:
+    """Up to a few thousand of the plain values that it is made of."""
+    if isinstance(value, np.ndarray):
+        value = value.ravel()[:4096].tolist()
+    if isinstance(value, list | tuple | dict) and depth:
+        for item in list(value.values() if isinstance(value, dict) else value)[:4096]:
+            yield from _leaves(item, depth - 1)
+    else:
+        yield value
+
+
+def _oddity(item: Any) -> str:
+    """What may surprise a computation in one plain value; empty if nothing does."""
+    if isinstance(item, float):
+        if math.isnan(item):
+            return "nan"
+        return "infinite numbers" if math.isinf(item) else "huge numbers" if abs(item) > _HUGE else ""
+    if isinstance(item, int) and item.bit_length() > _STORED_BITS:
+        return "huge numbers"
+    return {type(None): "None", str: "text", complex: "complex numbers"}.get(type(item), "")
 
 
 def _real(value: Any) -> Array | None:

@@ -12,6 +12,8 @@ from typing import Any
 
 import msgspec
 
+from course.scoring.explain.words import Divergence
+
 __all__ = [
     "CheckResult",
     "Divergence",
@@ -51,14 +53,6 @@ class Tolerance(msgspec.Struct, frozen=True, omit_defaults=True):
     rel: float | None = None
     abs: float | None = None
     source: str = ""
-
-
-class Divergence(msgspec.Struct, frozen=True):
-    """The first place where a trajectory left the reference. ``t`` in s."""
-
-    t: float
-    step: int
-    quantity: str
 
 
 class Finding(msgspec.Struct, frozen=True):

@@ -14,15 +14,19 @@ __all__ = ["grader_version"]
 
 
 def grader_version(exercise: Exercise, catalog: Catalog) -> str:
-    """A digest of the exercise's checks and their helpers, and of the machinery that runs them."""
+    """A digest of the exercise's checks, their helpers and their reference, and of what runs them."""
     package = Path(__file__).resolve().parents[1]
     folders = [Path(exercise.folder), package / "scoring", package / "isolation", package / "physics"]
     if catalog.content.graders is not None:
         folders.append(catalog.content.graders / exercise.id)
+    if catalog.content.solutions is not None:
+        folders.append(catalog.content.solutions / exercise.id)
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*")):
-            if path.suffix in {".py", ".toml", ".ini"} and "__pycache__" not in path.parts:
+            if path.relative_to(folder).parts[0] in {"mutants", "accepted"}:
+                continue
+            if path.suffix in {".py", ".toml", ".ini", ".json"} and "__pycache__" not in path.parts:
                 digest.update(
                     path.relative_to(folder).as_posix().encode() + b"\0" + path.read_bytes() + b"\0"
                 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from course.grading import kit
 probes = kit.companion("collisions", "probes")
 paths = kit.companion("collisions", "paths")
 engine = kit.companion("collisions", "engine")
+_questions = kit.companion("collisions", "questions")
+named = kit.words("collisions")
 
 SPHERES, PLANE, IMPULSE = "detect_sphere_sphere", "detect_sphere_plane", "impulse_1d"
 RESOLVE, FRICTION, MOMENT = "resolve", "resolve_with_friction", "time_of_impact"
@@ -23,17 +25,59 @@ _NAMES = {
     RESOLVE: ("ma", "mb", "va", "vb", "normal", "restitution"),
     FRICTION: ("ma", "mb", "va", "vb", "normal", "restitution", "mu"),
     MOMENT: ("xa", "va", "ra", "xb", "vb", "rb", "dt"),
+    HEAD_ON: ("m", "x0", "v0", "radius", "restitution", "t_end", "h"),
+    DROP: ("z0", "v0", "radius", "restitution", "g", "t_end", "h"),
 }
 
 ROUNDING = "rounding: correct solutions were seen to use less than a hundredth of it"
 INSTANT = "the contract's 1e-9 s for the instant of each contact, times the speeds; and rounding"
 
+# -- what is asked, and what should come back -------------------------------------------------------------
+
+
+def asked(check, draw):
+    """The inputs of a public check: fixed ones at home (``draw`` is None), drawn ones in a grading run."""
+    if draw is None:
+        return _questions.FIXED[check]
+    return kit.reference("collisions", "draws").PUBLIC[check](draw)
+
+
+def right(task, calls, check=""):
+    """What the task gives for each of ``calls``; at home for the fixed inputs of ``check``."""
+    formulas = kit.reference("collisions", "formulas")
+    if formulas is not None:
+        return [formulas.RIGHT[task](*args) for args in calls]
+    return kit.known_answers("collisions", check)
+
+
+def meetings(cases, check=""):
+    """When the balls of each (scene, t_end, h) touch, and how they go on."""
+    motions = kit.reference("collisions", "motions")
+    if motions is not None:
+        return [motions.meeting(scene) for scene, _, _ in cases]
+    return [paths.Meeting(*known) for known in kit.known_answers("collisions", check)]
+
+
+def bounces(cases, check=""):
+    """The contacts of the ball of each (scene, t_end, h), a little beyond the end."""
+    motions = kit.reference("collisions", "motions")
+    if motions is not None:
+        return [motions.bounces(scene, t_end + h, h) for scene, t_end, h in cases]
+    return [paths.Bounces(*known) for known in kit.known_answers("collisions", check)]
+
+
+def known():
+    """What public checks expect for their fixed inputs, for ``course author build``."""
+    reckon = {HEAD_ON: meetings, DROP: bounces}
+    return {
+        check: reckon[task](_questions.FIXED[check])
+        if task in reckon
+        else right(task, _questions.FIXED[check])
+        for check, task in _questions.TASKS.items()
+    }
+
+
 # -- single calls ---------------------------------------------------------------------------------------
-
-
-def call(task, *args):
-    """One call's arguments, vectors as arrays."""
-    return tuple(np.array(a, dtype=float) if isinstance(a, list) else a for a in args)
 
 
 def shown(task, args):
@@ -63,16 +107,21 @@ def _parts(task, args, value):
     )
 
 
-def expect_formula(submission, task, calls, message, help=""):
+def expect_public(submission, task, check, draw, message, help=""):
+    """``expect_formula`` on the inputs of a public check."""
+    expect_formula(submission, task, asked(check, draw), message, help, check=check)
+
+
+def expect_formula(submission, task, calls, message, help="", check=""):
     """Every answer is what the contract's formula gives."""
     values, parts = answers(submission, task, calls)
+    truth = right(task, calls, check)
 
     def diagnose():
-        return probes.of_calls(task, calls, values)
+        return probes.of_calls(task, calls, values, truth)
 
-    for args, found in zip(calls, parts, strict=True):
+    for args, found, wanted in zip(calls, parts, truth, strict=True):
         finding = {"input": shown(task, args), "message": message, "help": help, "diagnose": diagnose}
-        wanted = probes.RIGHT[task](*args)
         if task in (SPHERES, PLANE):
             expect_contact(found, wanted, finding)
         elif task in (RESOLVE, FRICTION):
@@ -136,6 +185,34 @@ def _without(finding, name):
     return {key: value for key, value in finding.items() if key != name}
 
 
+def expect_walls(submission, task, check, draw):
+    """``expect_formula`` for bodies of infinite mass."""
+    expect_public(
+        submission,
+        task,
+        check,
+        draw,
+        "With a body of infinite mass (a wall) the result is wrong.",
+        "Write the formula with inverse masses; one over infinity is zero.",
+    )
+
+
+def expect_kept(submission, task, args):
+    """A call leaves its arguments as they were. Handing back the very arrays is allowed."""
+    inspected = submission.call_inspect(task, *args)
+    names = _NAMES[task]
+    kept = [name if isinstance(arg, np.ndarray) else "" for name, arg in zip(names, args, strict=True)]
+    kit.expect_untouched(
+        args,
+        replace(inspected, shared=False),
+        names=kept,
+        mutated=named("MUTATES_INPUT"),
+        shared=named("MUTATES_INPUT"),
+        input=shown(task, args),
+    )
+    return inspected.value
+
+
 # -- the head-on pair -----------------------------------------------------------------------------------
 
 
@@ -172,14 +249,14 @@ def samples(value, t_end, h, names, given, width=None):
 
 
 @np.errstate(all="ignore")  # a student may return anything
-def expect_head_on(scene, value, t_end, h, message, help=""):
-    """A head-on pair moves as the closed form says, at every sample."""
+def expect_head_on(scene, truth, value, t_end, h, message, help=""):
+    """A head-on pair moves as the closed form says, at every sample. truth: ``paths.Meeting``."""
     given = scene.shown(t_end, h)
     t, x, v = samples(value, t_end, h, ("t", "x", "v"), given, 2)
-    x_true, v_true = scene.at(t)
+    x_true, v_true = scene.at(t, truth.contact, truth.after)
     # On the instant of contact itself either velocity is right.
-    v_true = np.where(np.abs(t - scene.contact)[:, None] < 1e-7, v, v_true)
-    speeds = 1 + float(np.max(np.abs([scene.v0, scene.after()])))
+    v_true = np.where(np.abs(t - truth.contact)[:, None] < 1e-7, v, v_true)
+    speeds = 1 + float(np.max(np.abs([scene.v0, truth.after])))
     for actual, wanted, name, units in ((x, x_true, "x", "m"), (v, v_true, "v", "m/s")):
         kit.expect_array(
             actual,
@@ -193,7 +270,7 @@ def expect_head_on(scene, value, t_end, h, message, help=""):
             input=given,
             message=message,
             help=help,
-            diagnose=lambda: probes.of_head_on(scene, t, x, v, h),
+            diagnose=lambda: probes.of_head_on(scene, truth, t, x, v, h),
         )
     return t, x, v
 
@@ -202,18 +279,17 @@ def expect_head_on(scene, value, t_end, h, message, help=""):
 
 
 @np.errstate(all="ignore")  # a student may return anything
-def expect_drop(scene, value, t_end, h, message, help=""):
-    """A ball falls, bounces and rests as the closed form says, at every sample."""
+def expect_drop(scene, truth, value, t_end, h, message, help=""):
+    """A ball falls, bounces and rests as the closed form says, at every sample. truth: ``paths.Bounces``."""
     given = scene.shown(t_end, h)
     t, z, v = samples(value, t_end, h, ("t", "z", "v"), given)
-    z_true, v_true = scene.at(t, scene.g * h)
-    may, must = scene.settling(t_end + h, h)
-    contacts, _ = scene.contacts(t_end + h, scene.g * h)
+    z_true, v_true = scene.at(t, truth.times, truth.speeds)
+    contacts = np.array(truth.times)
     near = np.any(np.abs(t[:, None] - contacts) < 1e-7, axis=1)
     # Between the two readings of the rule both the floor and a last hop below g h²/2 are right.
-    hop = (t > may - 1e-7) & (t <= must) & (z > scene.radius - 1e-9)
+    hop = (t > truth.may - 1e-7) & (t <= truth.must) & (z > scene.radius - 1e-9)
     hop &= (z < scene.radius + 0.51 * scene.g * h * h) & (np.abs(v) < 1.01 * scene.g * h)
-    speed = 1 + math.sqrt(scene.v0**2 + 2 * scene.g * (scene.z0 - scene.radius))
+    speed = 1 + scene.fastest
     for actual, wanted, free, name, units in (
         (z, z_true, hop, "z", "m"),
         (v, v_true, hop | near, "v", "m/s"),
@@ -229,6 +305,6 @@ def expect_drop(scene, value, t_end, h, message, help=""):
             input=given,
             message=message,
             help=help,
-            diagnose=lambda: probes.of_drop(scene, t, z, v, h),
+            diagnose=lambda: probes.of_drop(scene, truth, t, z, v, h),
         )
     return t, z, v

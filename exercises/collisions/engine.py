@@ -52,9 +52,9 @@ def drop(scene, t_end, h):
     return _run(space, t_end, h, lambda: [ball.position.y])
 
 
-def head_on_error(scene, h):
+def head_on_error(scene, after, h):
     """How far each ball may be off in pymunk, m: its change of velocity, one step late."""
-    return [abs(new - old) * h + ROUNDING for old, new in zip(scene.v0, scene.after(), strict=True)]
+    return [abs(new - old) * h + ROUNDING for old, new in zip(scene.v0, after, strict=True)]
 
 
 def drop_error(scene, h):
@@ -63,8 +63,7 @@ def drop_error(scene, h):
     The change of velocity at the first contact, half a step late by the fall and one by the detection. The
     rebound is faster by what gravity adds in that time, which the factor two covers.
     """
-    speed = math.sqrt(scene.v0**2 + 2 * scene.g * (scene.z0 - scene.radius))
-    return 2 * (1 + scene.restitution) * speed * h
+    return 2 * (1 + scene.restitution) * scene.fastest * h
 
 
 def _space(pymunk, gravity):

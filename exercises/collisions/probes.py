@@ -1,65 +1,47 @@
-"""Finding out which mistake a failed check looks like, for the exercise ``collisions``.
+"""What a failed check of ``collisions`` shows of the mistake behind it.
 
-Answers to a batch of calls are compared with what the wrong formulas of ``formulas.py`` give for the same
-arguments: the one that explains every answer is named. Nothing is called again. Paths of the two simulations
-are recognised by what they do: when they bend, how fast they go on, and how they end.
+Each probe looks for a property that a family of mistakes has: which law is broken, where a nan comes from,
+when a path bends and how fast it goes on. Which known program it is, ``hypotheses.json`` tells; a probe
+speaks where none of them fits.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from course.grading import kit
 
-_diagnosis = kit.companion("collisions", "diagnosis")
-_formulas = kit.companion("collisions", "formulas")
-_paths = kit.companion("collisions", "paths")
-named = _diagnosis.named
-RIGHT, WRONG = _formulas.RIGHT, _formulas.WRONG
+named = kit.words("collisions")
+
+#: What restitution may have become, as a share of the speed of approach.
+_PARTINGS = (
+    ("RESTITUTION_SQUARED", lambda e: e * e),
+    ("RESTITUTION_AS_ENERGY", math.sqrt),
+    ("RESTITUTION_IGNORED", lambda e: 1.0),
+    ("RESTITUTION_IGNORED", lambda e: 0.0),
+    ("ONLY_THE_REBOUND", lambda e: e - 1),
+    ("RESTITUTION_SIGN_FLIPPED", lambda e: -e),
+)
 
 # -- single calls ---------------------------------------------------------------------------------------
 
 
 @np.errstate(all="ignore")
-def of_calls(task, calls, values):
-    """The mistake that explains what a task returned for each of ``calls``, or None."""
-    special = _not_a_number(task, calls, values)
-    if special:
-        return named(special)
-    if _all_agree(RIGHT[task], calls, values):
-        return None
-    if task == "time_of_impact" and all(value is None for value in values):
-        return named("NEVER_FINDS_A_CONTACT")
-    for code, wrong in WRONG[task]:
-        if _all_agree(wrong, calls, values):
-            return named(code)
-    special = (
-        _moment(task, calls, values)
-        or _part(task, calls, values)
-        or _unmoved(task, calls, values)
-        or _by_law(task, calls, values)
-    )
-    return named(special) if special else None
+def of_calls(task, calls, values, truth):
+    """What the answers of a task to ``calls`` show, beside the right ones (``truth``); or None."""
+    code = _not_a_number(task, calls, values, truth)
+    if not code and not all(map(_same, truth, values)):
+        code = (
+            _moment(task, calls, values, truth)
+            or _unmoved(task, calls, values)
+            or _by_law(task, calls, values, truth)
+        )
+    return named(code) if code else None
 
 
-def _part(task, calls, values):
-    """With two mistakes in one answer: the formula that explains the first part that is wrong."""
-    if not task.startswith("detect"):
-        return None
-    for part in (1, 2, 0):  # the normal, the depth, touching
-
-        def agrees(formula, part=part):
-            return all(_same(formula(*c)[part], v[part]) for c, v in zip(calls, values, strict=True))
-
-        if not agrees(RIGHT[task]):
-            return next((code for code, wrong in WRONG[task] if agrees(wrong)), None)
-    return None
-
-
-def _not_a_number(task, calls, values):
+def _not_a_number(task, calls, values, truth):
     """Where nan comes from: coinciding centres, infinite masses, no slip, no relative motion."""
     spoiled = [call for call, value in zip(calls, values, strict=True) if _has_nan(value)]
     if not spoiled:
@@ -67,7 +49,7 @@ def _not_a_number(task, calls, values):
     if task == "detect_sphere_sphere":
         return "NORMAL_UNDEFINED"
     if task == "time_of_impact":
-        return _moment_not_a_number(calls, values)
+        return _moment_not_a_number(calls, values, truth)
     if task in ("impulse_1d", "resolve", "resolve_with_friction"):
         if all(math.inf in call[:2] for call in spoiled):
             return "INFINITE_MASS_NAN"
@@ -76,12 +58,12 @@ def _not_a_number(task, calls, values):
     return None
 
 
-def _moment_not_a_number(calls, values):
+def _moment_not_a_number(calls, values, truth):
     """Which division or root gives nan, if nan is what is wrong with the first answer that is."""
-    for call, value in zip(calls, values, strict=True):
+    for call, value, right in zip(calls, values, truth, strict=True):
         if _has_nan(value):
             return "NO_RELATIVE_MOTION" if np.array_equal(call[1], call[4]) else "ROOT_OF_A_NEGATIVE"
-        if not _agrees(RIGHT["time_of_impact"], call, value):
+        if not _same(right, value):
             return None
     return None
 
@@ -90,17 +72,6 @@ def _has_nan(value):
     if isinstance(value, list | tuple):
         return any(map(_has_nan, value))
     return isinstance(value, float | np.ndarray) and bool(np.any(np.isnan(value)))
-
-
-def _all_agree(formula, calls, values):
-    return all(_agrees(formula, call, value) for call, value in zip(calls, values, strict=True))
-
-
-def _agrees(formula, call, value):
-    try:
-        return _same(formula(*call), value)
-    except (ZeroDivisionError, ValueError, OverflowError):
-        return False
 
 
 def _same(wanted, value):
@@ -118,19 +89,21 @@ def _same(wanted, value):
 
 
 def _unmoved(task, calls, values):
-    """Whether bodies that run into each other keep their velocities."""
-    if task == "impulse_1d":
-        return "NO_RESPONSE" if all(value == 0 for value in values) else None
-    if not task.startswith("resolve"):
+    """Whether bodies that run into each other keep their velocities, in two cases at least."""
+    if task != "impulse_1d" and not task.startswith("resolve"):
         return None
-    kept = (_same((call[2], call[3]), value) for call, value in zip(calls, values, strict=True))
-    return "NO_RESPONSE" if all(kept) else None
+    struck = [(call, value) for call, value in zip(calls, values, strict=True) if _closing(task, call) > 0]
+    if task == "impulse_1d":
+        kept = [value == 0 for _, value in struck]
+    else:
+        kept = [_same((call[2], call[3]), value) for call, value in struck]
+    return "NO_RESPONSE" if len(kept) > 1 and all(kept) else None
 
 
-def _by_law(task, calls, values):
-    """Which law is broken, where no formula is recognised."""
+def _by_law(task, calls, values, truth):
+    """Which law is broken."""
     if task == "time_of_impact":
-        return _coarse(calls, values)
+        return _coarse(calls, values, truth)
     if task.startswith("detect"):
         return None
     struck = [pair for pair in zip(calls, values, strict=True) if _closing(task, pair[0]) > 0]
@@ -167,27 +140,43 @@ def _momentum_lost(call, value):
     return np.abs(off).max() > 1e-8 * (1 + momentum(*call[:2], *map(np.abs, call[2:4])).max())
 
 
-def _moment(task, calls, values):
-    """With several mistakes in a time of impact: the one that spoils the first answer that is wrong."""
+def _moment(task, calls, values, truth):
+    """With a time of impact: the mistake that spoils the first answer that is wrong."""
     if task != "time_of_impact":
         return None
-    for call, value in zip(calls, values, strict=True):
-        right = RIGHT[task](*call)
-        if value is None or _has_nan(value) or _same(right, value):
+    if all(value is None for value in values):
+        return "NEVER_FINDS_A_CONTACT"
+    misses = [value for value, right in zip(values, truth, strict=True) if right is None]
+    if len(misses) > 1 and misses[0] is not None and all(value == misses[0] for value in misses):
+        return "MISS_IS_A_NUMBER"
+    for call, value, right in zip(calls, values, truth, strict=True):
+        if value is None or _same(right, value):
             continue
-        if value < 0.0:
-            return "IMPACT_IN_THE_PAST"
         if right is None:
-            return "IMPACT_BEYOND_STEP" if value > call[-1] else None
-        # The later root may lie beyond the step, where the formula of the mistake alone gives None.
-        late = _formulas.later_root(*call)
-        return "TIME_OF_IMPACT_LATE_ROOT" if _same(late, value) else None
+            # Only a time at which they do touch is a contact that was, or one that is to come.
+            touches = _apart(call, value) < 1e-6
+            return ("IMPACT_IN_THE_PAST" if value < 0.0 else _beyond(call, value)) if touches else None
+        # The other root of the quadratic lies as far beyond the closest approach as this one before it.
+        dx, dv = call[3] - call[0], call[4] - call[1]
+        late = -2 * float(dx @ dv) / float(dv @ dv) - right
+        return "TIME_OF_IMPACT_LATE_ROOT" if right > 0.0 and _same(late, value) else None
     return None
 
 
-def _coarse(calls, values):
+def _beyond(call, value):
+    return "IMPACT_BEYOND_STEP" if value > call[-1] else None
+
+
+def _apart(call, t):
+    """By how much the surfaces of two spheres are apart, or overlap, at time t, as a share of the radii."""
+    xa, va, ra, xb, vb, rb, _ = call
+    x = xb - xa + t * (vb - va)
+    return abs(float(np.sqrt(x @ x)) - ra - rb) / (ra + rb)
+
+
+def _coarse(calls, values, truth):
     """Contacts that are missed, or found at about the right time."""
-    pairs = [(RIGHT["time_of_impact"](*call), v, call[-1]) for call, v in zip(calls, values, strict=True)]
+    pairs = [(right, value, call[-1]) for call, value, right in zip(calls, values, truth, strict=True)]
     if any(right is None and value is not None for right, value, _ in pairs):
         return (
             "CONTACTS_MISSED"
@@ -220,120 +209,118 @@ def energy(ma, mb, va, vb):
 
 
 @np.errstate(all="ignore")
-def of_head_on(scene, t, x, v, h):
-    """What a head-on path of the right length does instead. x, v: shape (n, 2)."""
+def of_head_on(scene, truth, t, x, v, h):
+    """What a head-on path of the right length does instead. truth: ``paths.Meeting``; x, v: shape (n, 2)."""
+    if np.isnan(x).any() or np.isnan(v).any():
+        return named("INFINITE_MASS_NAN") if math.inf in scene.m else None
     if not np.allclose(x[0], scene.x0, atol=1e-9) or not np.allclose(v[0], scene.v0, atol=1e-9):
         return named("INITIAL_STATE_MISSING")
-    straight, _ = scene.at(t, contact=math.inf)
-    if np.allclose(x, straight, atol=1e-9) and scene.contact < t[-1]:
+    straight, _ = scene.at(t, math.inf, None)
+    if np.allclose(x, straight, atol=1e-9) and truth.contact < t[-1]:
         met = np.any(np.abs(straight[:, 1] - straight[:, 0]) <= 2 * scene.radius)
+        if truth.contact < h:
+            return named("FIRST_STEP_MISSED")  # scenes that meet later come before, and were right
         return named("PASSES_THROUGH" if met else "TUNNELS")
-    if scene.contact == math.inf:  # they part from the start
+    if truth.contact == math.inf:  # they part from the start
         return named("IMPULSE_ON_SEPARATING") if np.any(v != v[0]) else None
-    for code, contact, after, wait in _head_on_mistakes(scene, h):
+    code = _of_wait(scene, truth, t, x, h)
+    if not code and not np.allclose(v[-1], truth.after, atol=1e-8):
+        code = _of_speeds(scene, v)
+    elif not code:
+        code = _of_timing(truth, v, h)
+    return named(code) if code else None
+
+
+def _of_wait(scene, truth, t, x, h):
+    """Whether all is right but that the bodies stand still after the blow until the next sample."""
+    lost = math.ceil(truth.contact / h - 1e-9) * h - truth.contact
+    for wait in (lost, lost + h):  # a whole step where the contact falls on a sample
         # Where the blow itself falls on a sample, the two sides of it are a matter of taste.
-        away = np.abs(t - contact) > 1e-9
-        path = scene.at(t, contact, after, wait)[0]
-        if np.allclose(x[away], path[away], rtol=1e-9, atol=1e-8):
-            return named(code)
-    if not np.allclose(v[-1], scene.after(), atol=1e-8):
-        return _of_speeds(scene, v)
-    return _of_timing(scene, x, v, h)
-
-
-def _head_on_mistakes(scene, h):
-    """Code, time of contact, velocities after it, pause."""
-    exact = scene.contact
-    for code, factor in _formulas.FACTORS:
-        yield code, exact, scene.after(factor=factor), 0.0
-    for code, give in _formulas.GIVES:
-        yield code, exact, scene.after(give=give), 0.0
-    lost = math.ceil(exact / h - 1e-9) * h - exact
-    yield "REST_OF_STEP_LOST", exact, None, lost
-    yield "REST_OF_STEP_LOST", exact, None, lost + h  # where the contact falls on a sample
-    room = scene.x0[1] - scene.x0[0]
-    yield "RADIUS_IGNORED", room / scene.closing, None, 0.0
-    yield "ONE_RADIUS_ONLY", (room - scene.radius) / scene.closing, None, 0.0
+        away = np.abs(t - truth.contact) > 1e-9
+        path = scene.at(t, truth.contact, truth.after, wait)[0]
+        if wait > 1e-9 and np.allclose(x[away], path[away], rtol=1e-9, atol=1e-8):
+            return "REST_OF_STEP_LOST"
+    return None
 
 
 def _of_speeds(scene, v):
     """The velocities at the end are wrong ones: which?"""
     blows = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
     if len(blows) > 1 and v[blows[1], 0] <= v[blows[1], 1]:  # the second one while they move apart
-        return named("IMPULSE_ON_SEPARATING")
-    for code, factor in _formulas.FACTORS:
-        if np.allclose(v[-1], scene.after(factor=factor), atol=1e-8):
-            return named(code)
-    for code, give in _formulas.GIVES:
-        if np.allclose(v[-1], scene.after(give=give), atol=1e-8):
-            return named(code)
-    if np.isnan(v).any():
-        return named("INFINITE_MASS_NAN") if math.inf in scene.m else None
-    if math.inf not in scene.m and energy(*scene.m, *v[-1]) > energy(*scene.m, *scene.v0) * (1 + 1e-9):
-        return named("ENERGY_CREATED")
-    return named("IMPULSE_ON_SEPARATING") if len(blows) > 1 else None
+        return "IMPULSE_ON_SEPARATING"
+    if math.inf in scene.m:
+        return None
+    kept = abs(float(np.dot(scene.m, v[-1] - scene.v0))) < 1e-8 * float(np.dot(scene.m, np.abs(scene.v0)))
+    if kept:
+        parting = (v[-1, 1] - v[-1, 0]) / (scene.v0[0] - scene.v0[1])
+        for code, becomes in _PARTINGS:
+            if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9):
+                return code
+    if energy(*scene.m, *v[-1]) > energy(*scene.m, *scene.v0) * (1 + 1e-9):
+        return "ENERGY_CREATED"
+    return None if kept else "MOMENTUM_LOST"
 
 
-def _of_timing(scene, x, v, h):
+def _of_timing(truth, v, h):
     """The velocities are right in the end: does the blow come at a sample?"""
     struck = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
-    late = len(struck) and (struck[0] + 1) * h >= scene.contact - 1e-9
-    return named("IMPACT_AT_SAMPLE") if late else None
+    late = len(struck) and (struck[0] + 1) * h >= truth.contact - 1e-9
+    return "IMPACT_AT_SAMPLE" if late else None
 
 
 # -- the drop -------------------------------------------------------------------------------------------
 
 
 @np.errstate(all="ignore")
-def of_drop(scene, t, z, v, h):
-    """What a path of the right length does instead. z, v: shape (n,)."""
+def of_drop(scene, truth, t, z, v, h):
+    """What a path of the right length does instead. truth: ``paths.Bounces``; z, v: shape (n,)."""
+    if not np.all(np.isfinite(z)) or not np.all(np.isfinite(v)):
+        return None
     if not math.isclose(z[0], scene.z0, abs_tol=1e-9) or not math.isclose(v[0], scene.v0, abs_tol=1e-9):
         return named("INITIAL_STATE_MISSING")
-    first = scene.contacts(t[-1], scene.g * h)[0]
-    before = t < (first[0] if len(first) else math.inf)
+    before = t < (truth.times[0] if truth.times else math.inf)
     fall = scene.z0 + scene.v0 * t - scene.g * t * t / 2
     off = z - fall
     if before.sum() > 2 and not np.allclose(off[before], 0.0, atol=1e-8):
+        if scene.v0 > 0 and scene.z0 == scene.radius and np.all(z[before] <= scene.radius + 1e-9):
+            return named("LAUNCH_IGNORED")
         drift = np.abs(np.abs(off) - scene.g * h * t / 2)
         return named("EULER_IN_FLIGHT") if np.all(drift[before] < 1e-6) else None
     if np.allclose(z, fall, rtol=1e-9, atol=1e-8):
         return named("PASSES_THROUGH")
-    code = _drop_formula(scene, t, z, h) or _drop_end(scene, t, z, v, h) or _drop_blow(scene, t, z, v, h)
+    code = (
+        _drop_rebound(scene, truth, t, z, v)
+        or _drop_end(scene, truth, t, z, v)
+        or _drop_blow(scene, truth, t, z, v)
+    )
     return named(code) if code else None
 
 
-def _drop_formula(scene, t, z, h):
-    """The wrong restitution or radius that leads exactly this way up to the time of rest."""
+def _drop_rebound(scene, truth, t, z, v):
+    """The share of its speed with which the ball leaves its first contact, if that is a known wrong one."""
+    if len(truth.times) < 1 or not truth.speeds[0]:
+        return None
+    speed = truth.speeds[0]
+    k = int(np.searchsorted(t, truth.times[0]))
+    if k >= len(t) or z[k] < scene.radius - 1e-9:
+        return None
+    rebound = math.sqrt(max(v[k] ** 2 + 2 * scene.g * (z[k] - scene.radius), 0.0)) / scene.fastest
+    if math.isclose(rebound * scene.fastest, speed, rel_tol=1e-8):
+        return None
     e = scene.restitution
-    others = (
-        ("RADIUS_IGNORED", replace(scene, radius=0.0)),
-        ("RESTITUTION_SQUARED", replace(scene, restitution=e * e)),
-        ("RESTITUTION_AS_ENERGY", replace(scene, restitution=math.sqrt(e))),
-        ("RESTITUTION_IGNORED", replace(scene, restitution=1.0)),
-        ("RESTITUTION_IGNORED", replace(scene, restitution=0.0)),
-    )
-    first = scene.contacts(t[-1], scene.g * h)[0][:1]
-    for code, other in others:
-        if other == scene:
-            continue
-        # Up to where it may rest; a ball that stops dead at its first contact is followed to the end.
-        early = t < (other.settling(t[-1], h)[0] if other.restitution else math.inf)
-        bounced = np.any(t[early] > first) if len(first) else False
-        if bounced and np.allclose(z[early], other.at(t, scene.g * h)[0][early], atol=1e-8):
-            return code
-    return None
+    names = (code for code, becomes in _PARTINGS[:3] if math.isclose(rebound, becomes(e), rel_tol=1e-8))
+    return next(names, None)
 
 
-def _drop_end(scene, t, z, v, h):
+def _drop_end(scene, truth, t, z, v):
     """How it ends, if it goes right until it may rest."""
-    may, must = scene.settling(t[-1], h)
-    true = scene.at(t, scene.g * h)[0]
-    wrong = np.flatnonzero(np.abs(z - true) > 1e-8)
+    path = scene.at(t, truth.times, truth.speeds)[0]
+    wrong = np.flatnonzero(np.abs(z - path) > 1e-8)
     rests = np.abs(z - scene.radius) < 1e-9
-    if len(wrong) and t[wrong[0]] < may:
+    if len(wrong) and t[wrong[0]] < truth.may:
         still = rests[wrong[0] :].all() and np.all(v[wrong[0] :] == 0.0)
         return "RESTS_TOO_EARLY" if still else None
-    late = t > must
+    late = t > truth.must
     if not late.any():
         return None
     if np.any(z[late] < scene.radius - 1e-9) and z[-1] < scene.radius - 1e-6:
@@ -341,16 +328,15 @@ def _drop_end(scene, t, z, v, h):
     return "RESTING_JITTER" if np.any(~rests[late]) or np.any(v[late] != 0.0) else None
 
 
-def _drop_blow(scene, t, z, v, h):
+def _drop_blow(scene, truth, t, z, v):
     """What happens around the first contact, if the flight before it is right."""
-    times, speeds = scene.contacts(t[-1], scene.g * h)
-    if not len(times):
+    if not truth.times:
         return None
-    k = int(np.searchsorted(t, times[0]))  # the first sample at or after the contact
+    k = int(np.searchsorted(t, truth.times[0]))  # the first sample at or after the contact
     if k >= len(t):
         return None
     stuck = math.isclose(z[k], scene.radius, abs_tol=1e-9)
-    if stuck and abs(v[k] - speeds[0]) < 1e-8:
+    if stuck and abs(v[k] - truth.speeds[0]) < 1e-8:
         return "REST_OF_STEP_LOST"
     total = scene.g * z + v * v / 2
     start = scene.g * scene.z0 + scene.v0**2 / 2

@@ -9,9 +9,7 @@ import numpy as np
 from course.grading import kit
 
 bundles = kit.companion("collisions", "bundles")
-paths, engine = bundles.paths, bundles.engine
-
-_RESTITUTIONS = (1.0, 0.5, 0.0)
+engine = bundles.engine
 
 
 def report(submission):
@@ -55,11 +53,12 @@ def _drop_samples(submission, scene, t_end, h):
 def _head_on(submission, title):
     t_end, h = 5.0, 0.01
     panels, rows = [], []
-    for e in _RESTITUTIONS:
-        scene = paths.HeadOn((1.0, 1.0), (-5.0, 5.0), (2.0, -2.0), 0.5, e)
+    cases = bundles.asked("head_on_mended", None)
+    for (scene, _, _), truth in zip(cases, bundles.meetings(cases, "head_on_mended"), strict=True):
+        e = scene.restitution
         t, x, v = _as_it_comes(submission.call(bundles.HEAD_ON, *scene.args(t_end, h)))
         exact = np.linspace(0.0, t_end, 501)
-        true, _ = scene.at(exact)
+        true, _ = scene.at(exact, truth.contact, truth.after)
         legend = e == 0.0  # in the panel that has room for it
         panels.append(
             kit.Panel(
@@ -104,12 +103,12 @@ def _head_on(submission, title):
 
 
 def _drop(submission, title):
-    t_end, h = 4.0, 0.01
-    scene = paths.Drop(1.0, 0.0, 0.1, 0.7)
+    cases = bundles.asked("drop_bounces", None)
+    (scene, t_end, h), truth = cases[0], bundles.bounces(cases, "drop_bounces")[0]
     t, z, v = _drop_samples(submission, scene, t_end, h)
     fine = np.linspace(0.0, t_end, 2001)
-    true, _ = scene.at(fine, scene.g * h)
-    contacts, speeds = scene.contacts(t_end, scene.g * h)
+    true, _ = scene.at(fine, truth.times, truth.speeds)
+    contacts, speeds = truth.times, truth.speeds
     rows = []
     for hop, (start, speed) in enumerate(zip(contacts[:5], speeds[:5], strict=True), 1):
         flight = (t > start) & (t < start + 2 * speed / scene.g)
@@ -149,16 +148,16 @@ def _drop(submission, title):
 
 
 def _pymunk_head_on(submission, title):
-    scene = paths.HeadOn((1.0, 3.0), (-5.0, 5.0), (2.0, -2.0), 0.5, 0.6)
+    cases = bundles.asked("head_on_pymunk", None)
+    (scene, t_end, _), truth = cases[0], bundles.meetings(cases, "head_on_pymunk")[0]
     series, rows, seen = [], [], []
     for h in (0.02, 0.008, 0.004):
-        t_end = 4.8
         t, x, _ = _head_on_samples(submission, scene, t_end, h)
         off = engine.head_on(scene, t_end, h)[:, 0] - x[:, 0]
-        late = math.ceil(scene.contact / h - 1e-9) * h - scene.contact
-        change = scene.v0[0] - scene.after()[0]
+        late = math.ceil(truth.contact / h - 1e-9) * h - truth.contact
+        change = scene.v0[0] - truth.after[0]
         seen.append(
-            f"{1000 * h:g} ms: at most {1000 * np.max(np.abs(off[t < scene.contact])):.2f} mm up to the "
+            f"{1000 * h:g} ms: at most {1000 * np.max(np.abs(off[t < truth.contact])):.2f} mm up to the "
             f"contact, {1000 * np.max(np.abs(off)):.2f} mm over all, {1000 * off[-1]:.2f} mm at the end"
         )
         series.append(kit.Series(f"h = {1000 * h:g} ms", t, 1000 * off))
@@ -191,9 +190,9 @@ def _pymunk_head_on(submission, title):
 
 
 def _pymunk_drop(submission, title):
-    scene = paths.Drop(1.0, 0.0, 0.1, 0.7)
-    t_end, rows, series, seen = 0.9, [], [], []
-    first = float(scene.contacts(t_end, 0.0)[0][0])
+    cases = bundles.asked("drop_pymunk", None)
+    (scene, t_end, _), first = cases[0], bundles.bounces(cases, "drop_pymunk")[0].times[0]
+    rows, series, seen = [], [], []
     for h in (0.008, 0.004, 0.002):
         n = round(t_end / h)
         t, z, _ = _drop_samples(submission, scene, n * h, h)

@@ -13,12 +13,22 @@ from course.physics import invariants, systems
 probes = kit.companion("integrators", "probes")
 
 
+def _signed(draw, low, high, d=1):
+    """Numbers of either sign, never near zero."""
+    return draw.uniform(low, high, d) * draw.choice([-1.0, 1.0], d)
+
+
 @pytest.mark.task("explicit_euler_step")
 @pytest.mark.points(5)
-def test_explicit_euler_growth(submission):
+def test_explicit_euler_growth(submission, draw):
     """Explicit Euler gains energy on a spring at the rate theory says"""
-    task, spring, h, n = "explicit_euler_step", systems.Oscillator(omega=2.0), 0.05, 40
-    _, q, v = submission.march(task, spring, [1.0], [0.6], h, n)
+    task, omega, h, n = "explicit_euler_step", 2.0, 0.05, 40
+    q0, v0 = [1.0], [0.6]
+    if draw is not None:
+        omega, q0 = float(draw.uniform(0.8, 4.0)), _signed(draw, 0.5, 1.5).tolist()
+        h, v0 = float(draw.uniform(0.06, 0.14)) / omega, (omega * _signed(draw, 0.3, 0.9)).tolist()
+    spring = systems.Oscillator(omega=omega)
+    _, q, v = submission.march(task, spring, q0, v0, h, n)
     energy = invariants.energy(spring, q, v)
     factor = _mean_factor(energy)
     kit.expect_close(
@@ -27,83 +37,93 @@ def test_explicit_euler_growth(submission):
         rel=1e-6,
         source="exact for a linear spring: only rounding is allowed",
         quantity="energy factor per step",
-        input={"omega": 2.0, "h": h, "steps": n, "q0": [1.0], "v0": [0.6]},
+        input={"omega": omega, "h": h, "steps": n, "q0": q0, "v0": v0},
         message="On a spring, explicit Euler multiplies the energy by 1 + (h*omega)**2 in every step; yours "
         "does not.",
         help="Both new values come from the old state alone.",
         diagnose=lambda: probes.of_energy(
-            submission, task, factor - 1, (h * spring.omega) ** 2, (spring, [1.0], [0.6], h, n, 0.0)
+            submission, task, factor - 1, (h * spring.omega) ** 2, (spring, q0, v0, h, n, 0.0)
         ),
     )
 
 
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(5)
-def test_semi_implicit_energy(submission):
+def test_semi_implicit_energy(submission, draw):
     """Semi-implicit Euler's energy on a spring swings within its bound and never drifts"""
-    task, spring, h, n = "semi_implicit_euler_step", systems.Oscillator(omega=2.0), 0.27, 400
-    _, q, v = submission.march(task, spring, [1.0], [0.0], h, n)
+    # At this z 400 samples come near the extreme, whatever the spring and the amplitude.
+    task, omega, z, n, q0 = "semi_implicit_euler_step", 2.0, 0.54, 400, [1.0]
+    if draw is not None:
+        omega, q0 = float(draw.uniform(0.8, 4.0)), _signed(draw, 0.5, 1.5).tolist()
+    spring, h = systems.Oscillator(omega=omega), z / omega
+    _, q, v = submission.march(task, spring, q0, [0.0], h, n)
     swing = _largest_change(invariants.energy(spring, q, v))
-    z = h * spring.omega
     kit.expect_close(
         swing,
         z / (2 - z),
         rel=0.01,
         source="closed form from rest; 400 samples come within 0.1 % of the extreme",
         quantity="max |dE|/E0",
-        input={"omega": 2.0, "h": h, "steps": n, "q0": [1.0], "v0": [0.0]},
+        input={"omega": omega, "h": h, "steps": n, "q0": q0, "v0": [0.0]},
         message="From rest on a spring, semi-implicit Euler's energy swings by z/(2 - z) with z = h*omega; "
         "yours does not.",
         help="One half of the state moves with the other half's new value.",
         diagnose=lambda: probes.of_swing(
-            submission, task, swing, z / (2 - z), (spring, [1.0], [0.0], h, n, 0.0)
+            submission, task, swing, z / (2 - z), (spring, q0, [0.0], h, n, 0.0)
         ),
     )
 
 
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(6)
-def test_verlet_order(submission):
+def test_verlet_order(submission, draw):
     """Halving the step divides velocity Verlet's error by four, on a driven spring"""
-    _expect_order(submission, "velocity_verlet_step", [16, 32, 64], 0.1)
+    _expect_order(submission, "velocity_verlet_step", [16, 32, 64], 0.1, draw)
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(5)
-def test_rk4_order(submission):
+def test_rk4_order(submission, draw):
     """Halving the step divides RK4's error by sixteen, on a driven spring"""
-    _expect_order(submission, "rk4_step", [8, 16, 32], 0.3)
+    _expect_order(submission, "rk4_step", [8, 16, 32], 0.3, draw)
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(2)
-def test_rk4_evaluations(submission):
+def test_rk4_evaluations(submission, draw):
     """RK4 evaluates the acceleration four times a step"""
     pendulum = systems.Pendulum(g=9.81, length=1.0)
     accel = kit.acceleration(pendulum, 1)
-    accel.during(lambda: submission.call("rk4_step", accel, 0.0, np.array([0.8]), np.array([-0.3]), 0.1))
+    q, v = np.array([0.8]), np.array([-0.3])
+    if draw is not None:
+        q, v = _signed(draw, 0.4, 1.2), _signed(draw, 0.4, 1.2)
+    accel.during(lambda: submission.call("rk4_step", accel, 0.0, q, v, 0.1))
     kit.expect_evaluations(
         accel.count,
         [4],
-        input={**pendulum.params(), "q": [0.8], "v": [-0.3], "h": 0.1},
+        input={**pendulum.params(), "q": q, "v": v, "h": 0.1},
         message="A step of RK4 does not take four evaluations of accel.",
         diagnose=lambda: probes.of_evaluations(accel.count, [4]),
     )
 
 
-#: A rotation by 0.4 rad that also shrinks a little: where it leads is known at every step.
-_SPIRAL = systems.LinearStep(
-    [0.98 * math.cos(0.4)], [0.98 * math.sin(0.4)], [-0.98 * math.sin(0.4)], [0.98 * math.cos(0.4)]
-)
+def _spiral(angle, shrink):
+    """A rotation (rad) that also shrinks a little: where it leads is known at every step."""
+    c, s = shrink * math.cos(angle), shrink * math.sin(angle)
+    return systems.LinearStep([c], [s], [-s], [c])
 
 
 @pytest.mark.task("integrate")
 @pytest.mark.points(4)
-def test_integrate_samples(submission):
+def test_integrate_samples(submission, draw):
     """integrate returns N + 1 samples, the initial state first, and carries the state along"""
-    h, n, omega = 0.25, 8, 2.0
+    h, n, omega, angle, shrink = 0.25, 8, 2.0, 0.4, 0.98
     q0, v0 = np.array([1.0, -0.5]), np.array([0.5, 2.0])
-    value = submission.call("integrate", _SPIRAL, systems.Oscillator(omega), q0, v0, n * h, h)
+    if draw is not None:
+        n, angle = int(draw.integers(6, 14)), float(draw.uniform(0.3, 0.6))
+        q0, v0 = _signed(draw, 0.5, 1.5, 2), _signed(draw, 0.5, 2.0, 2)
+    step = _spiral(angle, shrink)
+    value = submission.call("integrate", step, systems.Oscillator(omega), q0, v0, n * h, h)
     given = {"step": "a known linear map", "q0": q0, "v0": v0, "t_end": n * h, "h": h}
     t, q, v = kit.as_tuple(value, ("t", "q", "v"))
     t = kit.as_vector(t, None, "t")
@@ -116,10 +136,10 @@ def test_integrate_samples(submission):
         diagnose=lambda: probes.of_count(submission),
     )
     q, v = kit.as_array(q, (n + 1, 2), "q"), kit.as_array(v, (n + 1, 2), "v")
-    angle, shrink = 0.4 * np.arange(n + 1)[:, None], 0.98 ** np.arange(n + 1)[:, None]
+    turned, left = angle * np.arange(n + 1)[:, None], shrink ** np.arange(n + 1)[:, None]
     p0 = v0 / omega
-    q_true = shrink * (np.cos(angle) * q0 + np.sin(angle) * p0)
-    v_true = omega * shrink * (np.cos(angle) * p0 - np.sin(angle) * q0)
+    q_true = left * (np.cos(turned) * q0 + np.sin(turned) * p0)
+    v_true = omega * left * (np.cos(turned) * p0 - np.sin(turned) * q0)
     times = h * np.arange(n + 1)
     for actual, expected, quantity, units in (
         (t, times, "t", "s"),
@@ -143,13 +163,17 @@ def test_integrate_samples(submission):
 
 @pytest.mark.task("integrate")
 @pytest.mark.points(4)
-def test_integrate_counts(submission):
+def test_integrate_counts(submission, draw):
     """integrate takes the right number of steps where t_end/h is not exact in floating point"""
-    for t_end, h, n in ((0.29, 0.01, 29), (0.8, 0.1, 8), (0.0, 0.1, 0)):
+    step = _spiral(0.4, 0.98)
+    durations = ((0.29, 0.01, 29), (0.8, 0.1, 8), (0.0, 0.1, 0))
+    if draw is not None:
+        durations = (*_awkward(draw), (0.0, float(draw.uniform(0.05, 0.2)), 0))
+    for t_end, h, n in durations:
         given = {"q0": [1.0], "v0": [0.0], "t_end": t_end, "h": h}
         value = kit.expect_accepts(
             lambda t_end=t_end, h=h: submission.call(
-                "integrate", _SPIRAL, systems.Oscillator(1.0), np.array([1.0]), np.array([0.0]), t_end, h
+                "integrate", step, systems.Oscillator(1.0), np.array([1.0]), np.array([0.0]), t_end, h
             ),
             "ValueError",
             input=given,
@@ -169,14 +193,28 @@ def test_integrate_counts(submission):
             )
 
 
+def _awkward(draw):
+    """Two durations whose quotient misses a whole number: from below, and where a running sum of h does."""
+    found = []
+    while len(found) < 2:
+        n, h = int(draw.integers(8, 60)), int(draw.integers(7, 400)) / 1000
+        t_end, t = round(n * h, 3), 0.0
+        while t < t_end:
+            t += h
+        falls = t_end / h < n if not found else t - t_end > h / 2
+        found += [(t_end, h, n)] * falls
+    return found
+
+
 @pytest.mark.task("observed_order")
 @pytest.mark.points(4)
-def test_observed_order_slope(submission):
+def test_observed_order_slope(submission, draw):
     """observed_order finds the power that errors were made with"""
-    hs = [0.1, 0.05, 0.025, 0.0125]
-    cases = [
-        (order, [factor * h**order for h in hs]) for factor, order in ((3.0, 1.0), (0.2, 2.0), (7.0, 4.0))
-    ]
+    hs, orders = [0.1, 0.05, 0.025, 0.0125], ((3.0, 1.0), (0.2, 2.0), (7.0, 4.0))
+    if draw is not None:
+        hs = (0.3 * np.cumprod(draw.uniform(0.4, 0.7, 4))).tolist()
+        orders = [(float(draw.uniform(0.1, 10.0)), float(draw.uniform(0.8, 4.5))) for _ in range(3)]
+    cases = [(order, [factor * h**order for h in hs]) for factor, order in orders]
     values = submission.call_each("observed_order", [(np.array(hs), np.array(errors)) for _, errors in cases])
     for value, (order, errors) in zip(values, cases, strict=True):
         kit.expect_close(
@@ -194,10 +232,12 @@ def test_observed_order_slope(submission):
 
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(5)
-def test_stable_step_verlet(submission):
+def test_stable_step_verlet(submission, draw):
     """max_stable_step finds velocity Verlet's limit, h*omega = 2, for any omega"""
     verlet = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
-    omegas = (1.0, 3.7, 0.2)
+    omegas = (
+        (1.0, 3.7, 0.2) if draw is None else tuple(draw.uniform((0.8, 3.0, 0.1), (1.2, 9.0, 0.3)).tolist())
+    )
     values = submission.call_each("max_stable_step", [(verlet, omega) for omega in omegas])
     for value, omega in zip(values, omegas, strict=True):
         kit.expect_close(
@@ -216,6 +256,122 @@ def test_stable_step_verlet(submission):
         )
 
 
+@pytest.mark.task("explicit_euler_step")
+@pytest.mark.points(0)
+def test_explicit_euler_arguments(submission):
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "explicit_euler_step")
+
+
+@pytest.mark.task("semi_implicit_euler_step")
+@pytest.mark.points(0)
+def test_semi_implicit_arguments(submission):
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "semi_implicit_euler_step")
+
+
+@pytest.mark.task("velocity_verlet_step")
+@pytest.mark.points(0)
+def test_verlet_arguments(submission):
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "velocity_verlet_step")
+
+
+@pytest.mark.task("rk4_step")
+@pytest.mark.points(0)
+def test_rk4_arguments(submission):
+    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    _expect_clean(submission, "rk4_step")
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(0)
+def test_integrate_arguments(submission):
+    """integrate leaves q0 and v0 alone and takes whole numbers (no points here, two in the grading run)"""
+    q0, v0, h, n = np.array([2, -1]), np.array([1, 3]), 0.25, 4
+    args = [_spiral(0.4, 0.98), systems.Oscillator(2.0), q0, v0, n * h, h]
+    given = {"q0": q0, "v0": v0, "t_end": n * h, "h": h}
+    inspected = kit.expect_accepts(
+        lambda: submission.call_inspect("integrate", *args),
+        "TypeError",
+        input=given,
+        message="integrate fails on an initial state of whole numbers.",
+        diagnose=lambda: probes.named("INTEGER_STATE"),
+    )
+    _, q, _ = kit.as_tuple(inspected.value, ("t", "q", "v"))
+    q = kit.as_array(q, (n + 1, 2), "q")
+    kit.expect_true(
+        not np.array_equal(q, np.trunc(q)),
+        "From whole numbers, integrate goes through whole numbers only.",
+        input=given,
+        diagnose=lambda: probes.named("INTEGER_STATE"),
+    )
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["", "", "q0", "v0", "", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input=given,
+    )
+
+
+def _expect_clean(submission, task):
+    """A step changes none of its arguments, returns arrays of its own and takes whole numbers."""
+    system, t, h = systems.Oscillator(2.0), 0.5, 0.2
+    whole = np.array([2, -1]), np.array([1, 3])
+    args = [system, t, *(part.astype(float) for part in whole), h]
+    given = {"omega": 2.0, "t": t, "q": whole[0], "v": whole[1], "h": h}
+    inspected = submission.call_inspect(task, *args)
+    wanted = kit.as_pair(inspected.value, 2)
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["", "", "q", "v", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input=given,
+    )
+    result = kit.expect_accepts(
+        lambda: submission.call(task, system, t, *whole, h),
+        "TypeError",
+        input=given,
+        message="The step fails on a state of whole numbers.",
+        diagnose=lambda: probes.of_whole_numbers(submission, task),
+    )
+    for actual, expected, name in zip(kit.as_pair(result, 2), wanted, ("q_next", "v_next"), strict=True):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            source="the same step from the same state as floats",
+            quantity=name,
+            input=given,
+            message="From whole numbers the step gives something else than from the same state as floats.",
+            diagnose=lambda: probes.of_whole_numbers(submission, task),
+        )
+
+
+#: Numbers of steps for drawn springs: at these the slopes of correct methods keep within the same limits.
+DRAWN_COUNTS = {"velocity_verlet_step": (24, 48, 96), "rk4_step": (32, 48, 72)}
+
+
+def _driven_spring(draw):
+    rate = float(draw.uniform(0.8, 3.0))
+    spring = systems.ForcedOscillator(
+        rate, rate**2 * float(draw.uniform(0.6, 1.4)), rate * float(draw.uniform(1.3, 1.8))
+    )
+    return kit.Problem(
+        "driven spring",
+        spring,
+        _signed(draw, 0.5, 1.2).tolist(),
+        (rate * _signed(draw, 0.3, 0.9)).tolist(),
+        rate=rate,
+        span=float(draw.uniform(1.2, 1.9)) / rate,
+        t0=float(draw.uniform(0.2, 2.0)),
+    )
+
+
 def _mean_factor(energy):
     """By what factor the energy changes per step, on average."""
     with np.errstate(all="ignore"):
@@ -227,11 +383,13 @@ def _largest_change(energy):
         return float(np.max(np.abs(invariants.relative_change(energy))))
 
 
-def _expect_order(submission, task, counts, within):
+def _expect_order(submission, task, counts, within, draw):
     """The slope of log error over log step on one driven spring."""
     problem = kit.Problem(
         "driven spring", systems.ForcedOscillator(2.0, 1.5, 3.1), [0.8], [-0.9], rate=2.0, span=0.9, t0=0.4
     )
+    if draw is not None:
+        problem, counts = _driven_spring(draw), DRAWN_COUNTS[task]
     hs, errors = kit.march_errors(submission, task, problem, counts)
     kit.expect_order(
         hs,

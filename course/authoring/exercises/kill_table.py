@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from course.authoring.exercises.confusion import read_confusion, tally
 from course.authoring.exercises.variants import accepted_files
 
 if TYPE_CHECKING:
@@ -61,7 +62,40 @@ def _section(catalog: Catalog, exercise: Exercise) -> str:
         lines.append(f"| {' | '.join(cells)} |")
     lines += ["", "Accepted although unusual:", ""]
     lines += [f"- `{path.name}`: {_cell(_about(path))}" for path in accepted]
+    lines += _confusion(catalog, exercise)
     return "\n".join([*lines, ""])
+
+
+def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
+    """What known wrong programs are told, by task, and each that is told something else."""
+    table = read_confusion(catalog, exercise)
+    if table is None:
+        return []
+    lines = [
+        "",
+        "What known wrong programs are told, by `course author build --confusion`: the right formula with",
+        "one of its terms, or with two, in another form. *Named*: a mistake that the program has. *General*:",
+        "what is broken and not by what. *Otherwise*: a mistake that it has not.",
+        "",
+        "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    wheres = {"public": "at home", "full": "in a run"}
+    for task in exercise.task:
+        for number in (1, 2):
+            for scope, where in wheres.items():
+                rows = tuple(r for r in table.rows[scope] if r.task == task.id and len(r.codes) == number)
+                if rows:
+                    t = tally(exercise, rows)
+                    cells = (f"`{task.id}`", number, where, t.named, t.general, t.otherwise, t.survived)
+                    lines.append(f"| {' | '.join(map(str, cells))} |")
+    off = [
+        f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} is told `{row.said}` ({where})"
+        for scope, where in wheres.items()
+        for row in table.rows[scope]
+        if tally(exercise, (row,)).otherwise
+    ]
+    return [*lines, "", *(["Told otherwise:", "", *off] if off else [])]
 
 
 def _about(path: Path) -> str:

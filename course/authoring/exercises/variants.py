@@ -17,7 +17,15 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["accepted_files", "compose", "instructors", "mutant_files", "solution_path", "solutions_folder"]
+__all__ = [
+    "accepted_files",
+    "compose",
+    "exercise_graders",
+    "instructors",
+    "mutant_files",
+    "solution_path",
+    "solutions_folder",
+]
 
 
 def instructors(catalog: Catalog) -> tuple[Path, Path]:
@@ -39,6 +47,11 @@ def instructors(catalog: Catalog) -> tuple[Path, Path]:
 def solutions_folder(catalog: Catalog, exercise: Exercise) -> Path:
     """Where the solutions of an exercise lie."""
     return instructors(catalog)[0] / exercise.id
+
+
+def exercise_graders(catalog: Catalog, exercise: Exercise) -> Path:
+    """Where the hidden checks of an exercise lie."""
+    return instructors(catalog)[1] / exercise.id
 
 
 def solution_path(catalog: Catalog, exercise: Exercise) -> Path:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "app",
+    "build",
     "check",
     "coverage",
     "mutants",
@@ -246,6 +247,52 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
             problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in report.problems),
         )
     )
+
+
+@app.command(epilog="Example: course author build collisions")
+def build(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
+        ),
+    ] = None,
+    confusion: Annotated[
+        bool,
+        typer.Option("--confusion", help="Try every wrong program too, and keep what each is told. Minutes."),
+    ] = False,
+) -> int:
+    """Compute what is shipped so that a diagnosis works at home, where there are no solutions.
+
+    Writes `hypotheses.json` into each exercise that has hypotheses: what every known wrong program answers to
+    the exercise's questions, as fingerprints. `course author check` refuses one that is out of date. With
+    --confusion each is graded, at home and as in a grading run, and what it is told is kept beside the
+    solution for docs/graders.md.
+    """
+    from course.authoring.exercises import build as desk
+    from course.authoring.exercises.variants import instructors
+    from course.cli.author.replies import AuthorBuild
+
+    console, catalog = current(), load_catalog()
+    instructors(catalog)
+    chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
+    written = [shown(path, catalog) for exercise in chosen if (path := desk.build(catalog, exercise))]
+    if confusion:
+        from course.authoring.exercises.confusion import confusion_of, write_confusion
+        from course.scoring.explain.table import read_table
+
+        read_table.cache_clear()  # it was just written anew
+        for exercise in chosen:
+            if exercise.readme_path.with_name("diagnoses.toml").is_file():
+                with meter(console) as on_progress:
+                    table = confusion_of(catalog, exercise, on_progress=on_progress)
+                written.append(shown(write_confusion(catalog, exercise, table), catalog))
+    for file in written:
+        console.line(f"Wrote {file}")
+    if not written:
+        console.note("None of these exercises has hypotheses.")
+    console.emit(AuthorBuild(files=tuple(written)))
+    return 0
 
 
 @app.command(epilog="Example: course author mutants integrators")

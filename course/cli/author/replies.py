@@ -8,6 +8,7 @@ from course.catalog.models import CourseRef
 from course.cli.frame.replies import Envelope
 
 __all__ = [
+    "AuthorBuild",
     "AuthorCheck",
     "AuthorCoverage",
     "AuthorMutants",
@@ -34,6 +35,12 @@ class AuthorNew(Envelope, tag="course.author-new/1", frozen=True, kw_only=True):
 
     kind: str
     id: str
+    files: tuple[str, ...]
+
+
+class AuthorBuild(Envelope, tag="course.author-build/1", frozen=True, kw_only=True):
+    """The files that were computed, relative to the course."""
+
     files: tuple[str, ...]
 
 

@@ -28,6 +28,7 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     unrecognised: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     strangers: tuple[str, ...] = ()
+    unjudged: tuple[str, ...] = ()
 
 
 class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):

@@ -23,7 +23,7 @@ from course.scoring.numbers import LARGEST_SEED, format_points
 from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
     from course.catalog.load import Catalog
@@ -258,6 +258,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
                 out=str(out),
                 troubled=tuple(summary.troubled),
                 unrecognised=tuple(summary.unrecognised),
+                unjudged=tuple(_unjudged(summary)),
             )
         )
         return
@@ -275,6 +276,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
     _show_people(console, summary)
+    _show_unjudged(console, list(_unjudged(summary)))
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))
@@ -284,6 +286,18 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
         console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
     files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
     console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
+
+
+def _show_unjudged(console: Console, sentences: list[str]) -> None:
+    if sentences:
+        console.line(("Checks whose own code broke on a submission (its result stands):", "bold"))
+    for sentence in sentences[:_MOST_TROUBLED]:
+        console.line(sentence, indent=2)
+
+
+def _unjudged(summary: Summary) -> Iterator[str]:
+    for (exercise, check, where), count in summary.unjudged.most_common():
+        yield f"{exercise} {check}, {count} of the results: {where}"
 
 
 def _show_result(console: Console, catalog: Catalog, found: Effective, history: list[Result]) -> None:

@@ -24,6 +24,7 @@ from course.grading.results.effective import Results
 from course.grading.running.batch import grade_all
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
+from course.scoring.failures import OURS
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version
 
@@ -93,6 +94,7 @@ class Summary:
         missing: who is enrolled and handed in nothing at all; empty without a roster.
         strangers: who handed in something and has no row of their own in the roster.
         unrecognised: what in the class folder belongs to nobody, one sentence each.
+        unjudged: how often a check broke on what a submission returned: (exercise, check, where).
         elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
     """
@@ -106,6 +108,7 @@ class Summary:
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
+    unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     seed: int = 0
     elapsed_s: float = 0.0
     write_s: float = 0.0
@@ -130,6 +133,9 @@ class Summary:
             self.passed += effective.passed
             if verdict.isolation:
                 self.levels[verdict.isolation] += 1
+            for check in verdict.checks:
+                if (check.traceback or "").startswith(OURS):
+                    self.unjudged[effective.exercise, check.id, str(check.traceback)] += 1
             if verdict.error is not None and not settled:
                 error = verdict.error
                 self.troubled.append(

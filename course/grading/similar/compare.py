@@ -136,8 +136,9 @@ def _submissions(results: Results, exercise: Exercise, parse: Parser, found: Sim
 
 
 def _own(catalog: Catalog, exercise: Exercise, parse: Parser) -> list[Document]:
-    """The model solution, and the textbook code that every student has."""
+    """The model solution, and what every student has: the textbook code, and the exercise's other files."""
     paths = sorted((Path(__file__).resolve().parents[2] / "physics").glob("*.py"))
+    paths += sorted(path for path in Path(exercise.folder).glob("*.py") if path != exercise.stub_path)
     if catalog.content.solutions is not None:
         paths.insert(0, catalog.content.solutions / exercise.id / exercise.module)
     documents = []
@@ -145,7 +146,11 @@ def _own(catalog: Catalog, exercise: Exercise, parse: Parser) -> list[Document]:
         if path.is_file() and path.name != "__init__.py":
             source = path.read_bytes()
             prints = parse(source)
-            label = "course.physics." + path.stem if path.parent.name == "physics" else "the model solution"
+            label = "the model solution"
+            if path.parent.name == "physics":
+                label = "course.physics." + path.stem
+            elif path.name != exercise.module:
+                label = f"the exercise's {path.name}"
             if prints is not None:
                 documents.append(Document(label, source.decode("utf-8"), prints, own=True))
     return documents

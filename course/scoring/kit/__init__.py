@@ -12,7 +12,8 @@ This side is trusted: nothing here runs in the process that holds the student's 
 """
 
 from course.figures.described import Panel, Plot, Series
-from course.scoring.companions import companion, sibling
+from course.scoring.companions import companion, known_answers, reference, sibling, words
+from course.scoring.explain.words import Words
 from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, finding_of
 from course.scoring.kit.callbacks import Counted, acceleration, black_box, counted, first_divergence
 from course.scoring.kit.expectations import (
@@ -68,6 +69,7 @@ __all__ = [
     "Series",
     "StudentFailure",
     "Tolerance",
+    "Words",
     "acceleration",
     "as_array",
     "as_bool",
@@ -101,8 +103,11 @@ __all__ = [
     "finding_of",
     "first_divergence",
     "guarded_section",
+    "known_answers",
     "march_all_errors",
     "march_errors",
     "plain",
+    "reference",
     "sibling",
+    "words",
 ]

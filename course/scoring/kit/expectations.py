@@ -20,8 +20,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+from course.isolation.failures import IsolationError
 from course.physics.invariants import convergence_order
-from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure
+from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, broke_at
 from course.scoring.values import as_array, as_list, as_number, as_vector, plain
 from course.scoring.verdict import Divergence, Finding, Tolerance
 
@@ -72,7 +73,8 @@ def fail(
     first_divergence: Divergence | None = None,
 ) -> NoReturn:
     """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
-    found = attempt(diagnose) if callable(diagnose) else diagnose
+    found, broke = _explained(diagnose)
+    bare = message, help
     code: str | None = found if isinstance(found, str) else None
     if isinstance(found, Diagnosis):
         code = found.code
@@ -90,8 +92,23 @@ def fail(
             units=units,
             tolerance=tolerance,
             first_divergence=first_divergence,
-        )
+        ),
+        broke,
+        bare,
+        found if isinstance(found, Diagnosis) else None,
     )
+
+
+def _explained(diagnose: Diagnose) -> tuple[Diagnosis | str | None, str]:
+    """The diagnosis, and where looking for it broke: the check has failed all the same, as it says."""
+    if not callable(diagnose):
+        return diagnose, ""
+    try:
+        return attempt(diagnose), ""
+    except IsolationError:
+        raise
+    except Exception as error:  # noqa: BLE001 - a student's value may break any computation; the author is told
+        return None, broke_at(error)
 
 
 def _or_not_finite(number: float, diagnose: Diagnose) -> Diagnose:

@@ -13,9 +13,9 @@ import pytest
 from course.grading import kit
 
 bundles = kit.companion("collisions", "bundles")
-draws = kit.sibling(__file__, "draws")
+draws = kit.reference("collisions", "draws")
 laws = kit.sibling(__file__, "laws")
-paths, probes = bundles.paths, bundles.probes
+probes = bundles.probes
 
 # -- detection ------------------------------------------------------------------------------------------
 
@@ -27,10 +27,14 @@ def test_sphere_contact_drawn(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.SPHERES,
-        [draws.spheres(rng, d, share) for d in (1, 2, 3) for share in (0.4, 0.9, 1.1, 2.5)],
+        [
+            *(draws.spheres(rng, d, share) for d in (1, 2, 3) for share in (0.4, 0.9, 1.1, 2.5)),
+            *(draws.exact_spheres(rng, gap) for gap in (0.0, draws.gap(rng), -draws.gap(rng))),
+        ],
         "Touching, normal or depth of two spheres is wrong.",
         "Work with the vector from a to b and with its length; nothing else about the places matters.",
     )
+    bundles.expect_kept(submission, bundles.SPHERES, draws.spheres(rng, 3, 0.8))
 
 
 @pytest.mark.task(bundles.SPHERES)
@@ -45,7 +49,9 @@ def test_sphere_same_centre(submission, rng):
             "input": bundles.shown(bundles.SPHERES, args),
             "message": "Where two centres coincide, the result is wrong.",
             "help": "Any unit vector will do for the normal; the depth is the sum of the radii.",
-            "diagnose": lambda: probes.of_calls(bundles.SPHERES, calls, values),
+            "diagnose": lambda: probes.of_calls(
+                bundles.SPHERES, calls, values, bundles.right(bundles.SPHERES, calls)
+            ),
         }
         length = float(np.sqrt(normal @ normal))
         kit.expect_close(
@@ -61,10 +67,14 @@ def test_plane_contact_drawn(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.PLANE,
-        [draws.plane(rng, d, height) for d in (2, 3) for height in (0.3, 0.95, 1.05, 3.0)],
+        [
+            *(draws.plane(rng, d, height) for d in (1, 2, 3) for height in (0.3, 0.95, 1.05, 3.0)),
+            *(draws.exact_plane(rng, gap) for gap in (0.0, draws.gap(rng), -draws.gap(rng))),
+        ],
         "Touching, normal or depth of a sphere above a tilted plane is wrong.",
         "Only the height above the plane counts: the part of x - point along the normal.",
     )
+    bundles.expect_kept(submission, bundles.PLANE, draws.plane(rng, 3, 0.8))
 
 
 @pytest.mark.task(bundles.PLANE)
@@ -90,7 +100,7 @@ def test_impulse_drawn(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.IMPULSE,
-        [draws.line(rng) for _ in range(8)],
+        [*(draws.line(rng) for _ in range(8)), *(draws.slow_line(rng) for _ in range(3))],
         "The impulse of two bodies on a line is wrong.",
         "Test it yourself: momentum kept, and the speed of parting e times the speed of approach.",
     )
@@ -134,7 +144,8 @@ def test_resolve_momentum(submission, rng):
 @pytest.mark.points(2)
 def test_resolve_parting(submission, rng):
     """Bodies part at e times the speed of approach, and slide past each other as before"""
-    laws.expect_parting(submission, [draws.blow(rng, d) for d in (1, 2, 3, 3, 3)])
+    calls = [*(draws.blow(rng, d) for d in (1, 2, 3, 3, 3)), *(draws.slow(rng, 3) for _ in range(3))]
+    laws.expect_parting(submission, calls)
 
 
 @pytest.mark.task(bundles.RESOLVE)
@@ -175,7 +186,11 @@ def test_friction_cone(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.FRICTION,
-        [draws.rub(rng, d, share) for d in (2, 3, 3) for share in (0.3, 0.8, 1.3, 4.0)],
+        [
+            *(draws.rub(rng, d, share) for d in (2, 3, 3) for share in (0.3, 0.8, 1.3, 4.0)),
+            draws.rough(rng),
+            (*draws.slow(rng, 3), 0.3),
+        ],
         "The velocities after a blow with friction are wrong.",
         "Find the tangential part of the relative velocity as a vector; its length decides which "
         "limit holds.",
@@ -238,6 +253,7 @@ def test_moment_oblique(submission, rng):
         "Off centre they touch later than head on; past a sum of radii from the line they do not "
         "touch at all.",
     )
+    bundles.expect_kept(submission, bundles.MOMENT, draws.passing(rng, 3, 0.6))
 
 
 @pytest.mark.task(bundles.MOMENT)
@@ -274,12 +290,14 @@ def test_moment_symmetries(submission, rng):
 @pytest.mark.points(3)
 def test_head_on_drawn(submission, rng):
     """Balls of any masses meet at the right instant and part as they should; those that part do not meet"""
-    scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "part")]
+    scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "slow", "part")]
     h, n = rng.uniform(0.01, 0.03), 120
     values = submission.call_each(bundles.HEAD_ON, [scene.args(n * h, h) for scene in scenes])
-    for scene, value in zip(scenes, values, strict=True):
+    truths = bundles.meetings([(scene, n * h, h) for scene in scenes])
+    for scene, truth, value in zip(scenes, truths, values, strict=True):
         bundles.expect_head_on(
             scene,
+            truth,
             value,
             n * h,
             h,
@@ -292,11 +310,12 @@ def test_head_on_drawn(submission, rng):
 @pytest.mark.points(2)
 def test_head_on_large_steps(submission, rng):
     """However fast the balls and however long the step, they do not pass through each other"""
-    cases = [draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)]
+    cases = [*(draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)), draws.early(rng)]
     values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
-    for (scene, t_end, h), value in zip(cases, values, strict=True):
+    for (scene, t_end, h), truth, value in zip(cases, bundles.meetings(cases), values, strict=True):
         bundles.expect_head_on(
             scene,
+            truth,
             value,
             t_end,
             h,
@@ -316,6 +335,7 @@ def test_head_on_samples(submission, rng):
     inspected = submission.call_inspect(bundles.HEAD_ON, *args)
     bundles.expect_head_on(
         scene,
+        bundles.meetings([(scene, t_end, h)])[0],
         inspected.value,
         t_end,
         h,
@@ -326,8 +346,8 @@ def test_head_on_samples(submission, rng):
         args,
         inspected,
         names=["m", "x0", "v0", "", "", "", ""],
-        mutated=probes.named("MUTATES_INPUT"),
-        shared=probes.named("MUTATES_INPUT"),
+        mutated=bundles.named("MUTATES_INPUT"),
+        shared=bundles.named("MUTATES_INPUT"),
     )
 
 
@@ -335,11 +355,12 @@ def test_head_on_samples(submission, rng):
 @pytest.mark.points(3)
 def test_drop_drawn(submission, rng):
     """Balls dropped and thrown, on this planet and others, bounce as they should"""
-    cases = [draws.drop(rng, up) for up in (0.0, 1.0, -1.0)]
+    cases = [*(draws.drop(rng, up) for up in (0.0, 1.0, -1.0)), draws.launched(rng)]
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
-    for (scene, t_end, h), value in zip(cases, values, strict=True):
+    for (scene, t_end, h), truth, value in zip(cases, bundles.bounces(cases), values, strict=True):
         bundles.expect_drop(
             scene,
+            truth,
             value,
             t_end,
             h,
@@ -354,9 +375,10 @@ def test_drop_rest(submission, rng):
     """In the end the ball lies still on the floor, and one that lies there stays"""
     cases = [draws.settling(rng, e) for e in (rng.uniform(0.2, 0.6), 0.0)] + [draws.lying(rng)]
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
-    for (scene, t_end, h), value in zip(cases, values, strict=True):
+    for (scene, t_end, h), truth, value in zip(cases, bundles.bounces(cases), values, strict=True):
         bundles.expect_drop(
             scene,
+            truth,
             value,
             t_end,
             h,
@@ -373,6 +395,7 @@ def test_drop_elastic(submission, rng):
     value = submission.call(bundles.DROP, *scene.args(t_end, h))
     bundles.expect_drop(
         scene,
+        bundles.bounces([(scene, t_end, h)])[0],
         value,
         t_end,
         h,

@@ -9,14 +9,14 @@ import numpy as np
 from course.grading import kit
 
 bundles = kit.companion("collisions", "bundles")
-draws = kit.sibling(__file__, "draws")
+draws = kit.reference("collisions", "draws")
 probes = bundles.probes
 
 
 def _blows(submission, task, calls):
     """Answers to ``calls``, and a function that looks for the mistake behind all of them."""
     values, parts = bundles.answers(submission, task, calls)
-    return parts, lambda: probes.of_calls(task, calls, values)
+    return parts, lambda: probes.of_calls(task, calls, values, bundles.right(task, calls))
 
 
 def _speeds(args):
@@ -195,7 +195,8 @@ def expect_line_symmetries(submission, rng):
         "With the two masses exchanged the impulse of a blow is another one.",
     )
     values, parts = bundles.answers(submission, task, calls)
-    base = probes.RIGHT[task](*calls[0])
+    truth = bundles.right(task, calls)
+    base = truth[0]
     for args, found, message in zip(calls, parts, names, strict=True):
         kit.expect_close(
             found[0],
@@ -207,7 +208,9 @@ def expect_line_symmetries(submission, rng):
             input=bundles.shown(task, args),
             message=message or "The impulse of a blow on a line is wrong.",
             help="Only the difference of the velocities may enter, and both masses in the same way.",
-            diagnose=lambda: probes.of_calls(task, calls, values) or probes.named("DEPENDS_ON_THE_FRAME"),
+            diagnose=lambda: (
+                probes.of_calls(task, calls, values, truth) or bundles.named("DEPENDS_ON_THE_FRAME")
+            ),
         )
 
 
@@ -227,7 +230,7 @@ def expect_symmetries(submission, task, rng):
         (ma, mb, mirror @ va, mirror @ vb, mirror @ n, *rest),
         (mb, ma, vb, va, -n, *rest),
     ]
-    a, b = probes.RIGHT[task](*args)
+    a, b = bundles.right(task, [args])[0]
     wanted = [(a, b), (a + train, b + train), (turn @ a, turn @ b), (mirror @ a, mirror @ b), (b, a)]
     words = (
         ("The velocities after a blow are wrong.", None),
@@ -240,7 +243,7 @@ def expect_symmetries(submission, task, rng):
     for given, found, true, (message, code) in zip(calls, parts, wanted, words, strict=True):
 
         def look(code=code):
-            return diagnose() or (code and probes.named(code))
+            return diagnose() or (code and bundles.named(code))
 
         finding = _finding(
             task,
@@ -276,10 +279,11 @@ def expect_clean(submission, task, rng):
     inspected = submission.call_inspect(task, *args)
     given = {"input": bundles.shown(task, args)}
     found = kit.as_pair(inspected.value, 3, ("va_next", "vb_next"))
-    diagnose = lambda: probes.of_calls(task, [args], [tuple(found)])  # noqa: E731 - one look
+    truth = bundles.right(task, [args])
+    diagnose = lambda: probes.of_calls(task, [args], [tuple(found)], truth)  # noqa: E731 - one look
     finding = given | {"message": "The velocities after a blow are wrong.", "diagnose": diagnose}
-    bundles.expect_velocities(found, probes.RIGHT[task](*args), finding, _speeds(args))
-    touched = probes.named("MUTATES_INPUT")
+    bundles.expect_velocities(found, truth[0], finding, _speeds(args))
+    touched = bundles.named("MUTATES_INPUT")
     # Handing back the very arrays is right where nothing changes, and everything changes here.
     names = ["", "", "va", "vb", "normal", *[""] * (len(args) - 5)]
     kit.expect_untouched(args, inspected, names=names, mutated=touched, shared=touched, **given)

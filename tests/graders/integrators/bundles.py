@@ -15,6 +15,7 @@ from course.grading import kit
 from course.physics import invariants, systems
 
 probes = kit.companion("integrators", "probes")
+formulas = kit.reference("integrators", "formulas")
 
 EXPLICIT, SEMI, VERLET, RK4 = (
     "explicit_euler_step",
@@ -151,7 +152,7 @@ def expect_one_evaluation(accel, submission, task):
 def expect_formula(submission, task, result, accel, t, q, v, h):
     """The result of a step is one of the forms that the method has."""
     q_next, v_next = kit.as_pair(result, len(q))
-    forms = [right(accel, t, q, v, h) for right in probes.RIGHT[task]]
+    forms = [right(accel, t, q, v, h) for right in formulas.RIGHT[task]]
     q_true, v_true = min(forms, key=lambda form: abs(form[0] - q_next).max() + abs(form[1] - v_next).max())
     for actual, expected, name, units in ((q_next, q_true, "q_next", "m"), (v_next, v_true, "v_next", "m/s")):
         kit.expect_array(

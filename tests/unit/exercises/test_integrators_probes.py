@@ -1,4 +1,4 @@
-"""The diagnosis of ``integrators``: every wrong formula is recognised as itself and none as another."""
+"""The probes of ``integrators``: what they say is what the step, the loop or the instrument does."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from course.grading import kit
 from course.physics import systems
 
 probes = kit.companion("integrators", "probes")
-formulas = kit.companion("integrators", "formulas")
-words = kit.companion("integrators", "diagnosis").WORDS
+formulas = kit.reference("integrators", "formulas")
 
 
 class Fake:
@@ -37,51 +36,24 @@ class Fake:
         return [self.march(name, *march) for march in marches]
 
 
-CASES = [(task, code, step) for task, wrong in formulas.WRONG.items() for code, step in wrong]
-
-
-@pytest.mark.parametrize(
-    ("task", "code", "step"), CASES, ids=lambda value: value if isinstance(value, str) else ""
-)
-def test_each_wrong_formula_is_given_its_own_code(task, code, step):
-    damping = 0.0 if task == "velocity_verlet_step" else 0.7
-    run = (systems.DrivenPendulum(3.1, damping, 1.9, 2.3), [0.7], [0.3], 0.1, 12, 0.6)
-    diagnosis = probes.of_step(Fake(**{task: step}), task, run)
-    assert diagnosis.code == code
-    assert diagnosis.divergence.step == 1
-
-
 @pytest.mark.parametrize("task", formulas.RIGHT)
 def test_a_right_formula_is_given_no_code(task):
     for step in formulas.RIGHT[task]:
         assert probes.of_step(Fake(**{task: step}), task) is None
 
 
-@pytest.mark.parametrize("task", formulas.RIGHT)
-def test_no_two_codes_of_a_task_stand_for_the_same_step(task):
-    system = systems.DrivenPendulum(3.1, 0.0 if task == "velocity_verlet_step" else 0.7, 1.9, 2.3)
-    q, v = np.array([0.7, -0.4]), np.array([0.3, 1.1])
-    for (first, a), (second, b) in itertools.combinations(formulas.WRONG[task], 2):
-        if first != second:
-            ends = [np.concatenate(step(system, 0.6, q, v, 0.31)) for step in (a, b)]
-            assert np.abs(ends[0] - ends[1]).max() > 1e-4, (first, second)
+@pytest.mark.parametrize("divisor", [1, 2, 3, 4, 5, 7, 8, 12])
+def test_weights_that_do_not_add_up_are_recognised_whatever_they_are(divisor):
+    step = formulas._runge_kutta(weights=tuple(w / divisor for w in (1, 2, 2, 1)))
+    assert probes.of_step(Fake(rk4_step=step), "rk4_step").code == "WEIGHTS_DO_NOT_ADD_UP"
 
 
 @pytest.mark.parametrize("task", formulas.RIGHT)
-@pytest.mark.parametrize(
-    ("code", "slip"),
-    [
-        ("RETURNS_SWAPPED", lambda right, *args: right(*args)[::-1]),
-        ("RETURNS_INCREMENT", lambda right, a, t, q, v, h: np.subtract(right(a, t, q, v, h), (q, v))),
-        ("WRONG_SIGN", lambda right, a, *rest: right(lambda *state: -a(*state), *rest)),
-        ("STEP_SIZE_MISSING", lambda right, a, t, q, v, h: right(a, t, q, v, 1.0)),
-        ("STATE_NOT_ADVANCED", lambda right, a, t, q, v, h: (q, v)),
-    ],
-)
-def test_a_slip_around_a_right_formula_is_recognised(task, code, slip):
-    for right in formulas.RIGHT[task]:
-        fake = Fake(**{task: lambda *args, right=right: slip(right, *args)})
-        assert probes.of_step(fake, task).code == code
+def test_of_a_step_that_gives_nan_nothing_else_is_said(task):
+    def step(accel, t, q, v, h):
+        return np.full(np.shape(q), np.nan), v
+
+    assert probes.of_step(Fake(**{task: step}), task) is None
 
 
 def test_frozen_times_are_recognised_in_a_runge_kutta_method_of_another_form():
@@ -129,18 +101,11 @@ def test_arguments_of_the_acceleration_in_another_order_are_recognised(task, ord
         assert probes.of_energy(Fake(**{task: step}), task, 0.1, 0.2).code == "ACCEL_ARGUMENTS_MIXED"
 
 
-@pytest.mark.parametrize(
-    ("code", "wrong"),
-    [
-        ("USES_NEW_ACCELERATION", formulas._verlet(0.5, 0, 1)),
-        ("USES_OLD_ACCELERATION", formulas._verlet(0.5, 1, 0)),
-        ("SECOND_KICK_MISSING", formulas._verlet(0.5, 0.5, 0)),
-    ],
-)
-def test_where_the_position_is_right_the_path_leaves_in_the_velocity(code, wrong):
+def test_a_named_mistake_says_where_the_path_leaves_the_right_one():
     problem = (systems.ForcedOscillator(2.0, 1.5, 3.1), [0.8], [-0.9], 0.9 / 16, 16, 0.4)
-    found = probes.of_step(Fake(velocity_verlet_step=wrong), "velocity_verlet_step", problem)
-    assert found.code == code
+    frozen = formulas._at(formulas.RIGHT["velocity_verlet_step"][0], 0)
+    found = probes.of_step(Fake(velocity_verlet_step=frozen), "velocity_verlet_step", problem)
+    assert found.code == "STAGE_TIMES_FROZEN"
     assert (found.divergence.quantity, found.divergence.step) == ("v[0]", 1)
 
 
@@ -178,11 +143,8 @@ def test_of_an_energy_that_is_not_a_number_nothing_is_said():
 
 COUNTING = {
     "TRUNCATED_STEP_COUNT": lambda t_end, h: int(t_end / h),
-    "STEP_COUNT_ROUNDED_UP": lambda t_end, h: math.ceil(t_end / h),
     "OFF_BY_ONE_SAMPLE": lambda t_end, h: round(t_end / h) - 1,
-    "TIME_ACCUMULATES": lambda t_end, h: len(np.arange(0, t_end + h, h)) - 1,
-    "TRUNCATED_AND_SHORT": lambda t_end, h: int(t_end / h) - 1,
-    None: lambda t_end, h: round(t_end / h),
+    None: lambda t_end, h: round(t_end / h) + 3,
 }
 
 
@@ -241,19 +203,15 @@ X, Y = np.log(HS), np.log(ERRORS)
 @pytest.mark.parametrize(
     ("code", "value"),
     [
-        ("ORDER_SLOPE_INVERTED", np.polyfit(Y, X, 1)[0]),
         ("ORDER_SIGN_FLIPPED", -np.polyfit(X, Y, 1)[0]),
-        ("LOGARITHM_MISSING", np.polyfit(HS, ERRORS, 1)[0]),
-        ("LOGARITHM_MISSING", np.polyfit(X, ERRORS, 1)[0]),
-        ("LOGARITHMS_MIXED", np.polyfit(X, np.log10(ERRORS), 1)[0]),
-        ("ORDER_FROM_ENDS", (Y[0] - Y[-1]) / (X[0] - X[-1])),
-        ("ORDER_THROUGH_ORIGIN", X @ Y / (X @ X)),
-        ("ORDER_MEAN_OF_PAIRS", np.mean(np.diff(Y) / np.diff(X))),
         ("ORDER_ROUNDED", float(round(np.polyfit(X, Y, 1)[0]))),
+        (None, 1.234),
+        (None, math.nan),
     ],
 )
-def test_a_wrong_slope_is_recognised(code, value):
-    assert probes.of_order(float(value), HS, ERRORS).code == code
+def test_a_wrong_slope_shows_what_it_shows(code, value):
+    found = probes.of_order(float(value), HS, ERRORS)
+    assert (found and found.code) == code
 
 
 def search(size, dz=0.01, zero=0.0, infinity=math.inf):
@@ -279,17 +237,8 @@ CALM = systems.LinearStep([0.5], [0.1], [0.0], [0.4])
     [
         ("RETURNS_Z", lambda step, omega: search(RADIUS)(step, 1.0), SHEARED, 2.0),
         ("ASSUMES_ITS_LIMIT", lambda step, omega: 1.7 / omega, SHEARED, 2.0),
-        ("STABILITY_BY_NORM", search(lambda m: np.linalg.norm(m, 2, axis=(-2, -1))), SHEARED, 2.0),
-        ("STABILITY_BY_DETERMINANT", search(lambda m: abs(np.linalg.det(m))), SHEARED, 2.0),
-        (
-            "EIGENVALUES_WITHOUT_MODULUS",
-            search(lambda m: np.linalg.eigvals(m).real.max(axis=-1)),
-            SHEARED,
-            2.0,
-        ),
         ("NO_ZERO", search(RADIUS, zero=0.05), EULER, 0.0),
         ("NO_INFINITY", search(RADIUS, infinity=10.0), CALM, math.inf),
-        ("TOLERANCE_TOO_TIGHT", search(lambda m: RADIUS(m) + 2e-8), SHEARED, 2.0),
         ("SEARCH_TOO_COARSE", search(RADIUS, dz=0.5), SHEARED, 2.0),
     ],
 )
@@ -297,11 +246,3 @@ def test_a_wrong_stability_search_is_recognised(code, function, step, limit):
     omega = 3.0
     fake = Fake(max_stable_step=function)
     assert probes.of_stability(fake, function(step, omega), step, omega, limit).code == code
-
-
-def test_every_code_that_the_probes_can_name_has_a_sentence_and_advice():
-    for code, (looks_like, advice) in words.items():
-        assert code == code.upper()
-        assert looks_like.endswith(".")
-        assert advice.endswith((".", ")."))
-        assert len(advice) > 20

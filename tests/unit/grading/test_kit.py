@@ -254,9 +254,11 @@ def test_a_diagnosis_that_student_code_breaks_leaves_the_finding_as_it_was():
         assert (finding.message, finding.help, finding.diagnosis) == ("It is wrong.", "Mend it.", None)
 
 
-def test_a_bug_in_a_diagnosis_is_ours_and_is_not_hidden():
-    with pytest.raises(ZeroDivisionError):
+def test_a_bug_in_a_diagnosis_leaves_the_finding_and_is_told_to_the_author():
+    with pytest.raises(kit.CheckFailed) as failed:
         kit.fail("It is wrong.", diagnose=lambda: 1 / 0)
+    assert (failed.value.finding.message, failed.value.finding.diagnosis) == ("It is wrong.", None)
+    assert failed.value.broke.startswith("ZeroDivisionError: division by zero (test_kit.py, line")
 
 
 def test_a_diagnosis_is_not_looked_for_while_all_is_well():

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 import pytest
 
 from course.errors import ContentError, MissingCapabilityError
+from course.grading import kit
 from course.scoring.session import GradingSession, Submission
 from course.scoring.terms import Terms
-from course.scoring.verdict import Status, for_student
+from course.scoring.values import plain
+from course.scoring.verdict import Status, finite, for_student
 from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
@@ -19,6 +23,8 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.scoring.collected import Check
+    from course.scoring.remote import RemoteSubmission
     from course.scoring.verdict import CheckResult, Verdict
 
 
@@ -317,6 +323,83 @@ def test_the_graders_version_follows_what_decides_a_score(catalog: Catalog, doub
     first = grader_version(doubling, catalog)
     assert first == grader_version(doubling, catalog)
     assert first != grader_version(catalog.exercise("halving"), catalog)
+
+
+def breaks_on_wrong_results(check: Check, remote: RemoteSubmission) -> BaseException | None:
+    """A check whose own code cannot stand what a wrong submission returns."""
+    value = remote.call("double", 3.0)
+    return None if value == 6.0 else ZeroDivisionError("in the check")
+
+
+def test_a_check_that_breaks_on_a_students_value_only_is_failed_and_told_to_its_author(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session._checks, "run", breaks_on_wrong_results)
+    session._sound.clear()
+    verdict = grade(session, solution + b"\ndef double(x):\n    return float('nan')\n")
+    session._sound.clear()
+    assert verdict.state == "graded"
+    first = verdict.checks[0]
+    assert (first.status, first.points, first.diagnosis) == (Status.FAIL, 0.0, "NOT_JUDGED")
+    assert "`double`" in first.message
+    assert "nan" in first.message
+    assert first.traceback == "In the check's own code: ZeroDivisionError: in the check"
+    assert grade(session, solution).all_pass
+
+
+def test_at_home_a_check_that_breaks_says_that_nothing_tells_whose_fault_it_is(
+    catalog: Catalog, doubling: Exercise, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(catalog, "content", replace(catalog.content, solutions=None, graders=None))
+    with GradingSession(doubling, catalog, terms=Terms(timeout=1.0)) as home:
+        monkeypatch.setattr(home._checks, "run", breaks_on_wrong_results)
+        verdict = grade(home, solution + b"\ndef double(x):\n    return [x, None]\n")
+    assert verdict.state == "graded"
+    assert "no model solution here" in verdict.checks[0].message
+    assert "a list with None in it" in verdict.checks[0].message
+
+
+def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kit.companion("doubling", "diagnosis"), "of_double", lambda _: 1 / 0)
+    verdict = grade(session, solution + b"\ndef double(x):\n    return x\n")
+    check = next(check for check in verdict.checks if check.id == "double_of_three")
+    assert (verdict.state, check.status, check.diagnosis) == ("graded", Status.FAIL, None)
+    assert check.message == "The result is not twice the number."
+    assert str(check.traceback).startswith("In the check's own code: ZeroDivisionError")
+
+
+@pytest.mark.parametrize(
+    "returned",
+    ["10**400", "2**63", "-2**64", "1e300", "np.uint64(2**64 - 1)", "{2: 10**5000}", "[2**70]"],
+)
+def test_no_number_is_too_large_for_a_verdict(
+    session: GradingSession, solution: bytes, returned: str
+) -> None:
+    verdict = grade(
+        session, solution + f"\nimport numpy as np\ndef double(x):\n    return {returned}\n".encode()
+    )
+    assert verdict.state == "graded"
+    msgspec.msgpack.encode(verdict)
+    msgspec.json.encode(finite(msgspec.to_builtins(verdict)))
+
+
+def test_a_finding_holds_whole_numbers_of_any_size() -> None:
+    class Odd(int):
+        pass
+
+    for value in (
+        10**30,
+        -(10**30),
+        [2**64],
+        {10**5000: 2**80},
+        np.array([2**64 - 1], dtype=np.uint64),
+        Odd(2**70),
+    ):
+        msgspec.msgpack.encode(plain(value))
+    assert plain(2**63 - 1) == 2**63 - 1
+    assert plain(np.longdouble(2.5)) == 2.5
 
 
 def test_a_check_that_pytest_never_called_is_no_pass(

@@ -145,6 +145,21 @@ def test_many_copies_of_one_file_are_all_found_without_all_pairs(tmp_path: Path,
     assert len(found.pairs) == 59
 
 
+def test_what_an_exercise_ships_beside_its_stub_is_recognised(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from course.catalog.load import Catalog
+
+    shutil.copytree(MINI, tmp_path / "course")
+    (tmp_path / "course" / "exercises" / "doubling" / "helper.py").write_text(ORIGINAL, "utf-8")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    with class_of(tmp_path / "out", {"ada": ORIGINAL + "x = 1\n", "cy": OTHER}) as book:
+        found = compare(Results(book), Catalog(), (), at_least=0.6)
+    assert [(pair.first.label, pair.second.label) for pair in found.pairs] == [
+        ("ada", "the exercise's helper.py")
+    ]
+
+
 def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog) -> None:
     """Of a few copies, too, each is listed with the first; and that one with whoever is nearly the same."""
     sources = {f"a {number}": ORIGINAL + f"# {number}\n" for number in range(8)}

@@ -1,18 +1,21 @@
-"""Scenes for the hidden graders of ``collisions``, drawn from a seed.
+"""Scenes of a grading run of ``collisions``, drawn from a seed: for the hidden checks, and in ``PUBLIC`` for
+the public ones.
 
-Exact grazes are never drawn: depths and misses keep a share of the radii between themselves and zero.
+Exact grazes are never drawn, save where whole numbers make them exact: depths and misses keep a share of the
+radii between themselves and zero.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from course.grading import kit
 
-bundles = kit.companion("collisions", "bundles")
-paths = bundles.paths
+paths = kit.companion("collisions", "paths")
+motions = kit.sibling(__file__, "motions")
 
 
 def unit(rng, d):
@@ -58,7 +61,8 @@ def plane(rng, d, height):
     """A sphere whose centre is ``height`` radii above a tilted plane."""
     r, n = rng.uniform(0.2, 2.0), unit(rng, d)
     point = rng.uniform(-5.0, 5.0, d)
-    return point + height * r * n + rng.uniform(1.0, 4.0) * across(rng, n), r, point, n
+    slide = rng.uniform(1.0, 4.0) * across(rng, n) if d > 1 else 0.0
+    return point + height * r * n + slide, r, point, n
 
 
 # -- blows ----------------------------------------------------------------------------------------------
@@ -144,10 +148,12 @@ def same_meeting(rng, share):
 
 
 def head_on(rng, kind):
-    """A pair that meets between 0.3 and 0.8 s, one with a wall, one that chases, or one that never meets."""
+    """A pair that meets between 0.3 and 0.8 s: plainly, with a wall, chasing, at mm/s; or one that parts."""
     m, radius = masses(rng), rng.uniform(0.1, 0.5)
     va = rng.uniform(0.5, 3.0)
     vb = {"chase": 0.3 * va, "part": 1.7 * va}.get(kind, -rng.uniform(0.5, 3.0))
+    if kind == "slow":
+        va, vb = 1e-3 * va, 1e-3 * vb
     if kind == "wall":
         m = (m[0], math.inf)
     gap = abs(va - vb) * rng.uniform(0.3, 0.8)
@@ -188,7 +194,7 @@ def drop(rng, up):
     z0 = radius + rng.uniform(0.5, 3.0)
     v0 = up * rng.uniform(1.0, 4.0)
     scene = paths.Drop(float(z0), float(v0), radius, float(rng.uniform(0.45, 0.85)), g)
-    first = float(scene.contacts(1e3, 1e-3)[0][0])
+    first = float(motions.contacts(scene, 1e3, 1e-3)[0][0])
     h, n = float(rng.uniform(0.008, 0.012)) * first, 300
     return scene, n * h, h
 
@@ -198,7 +204,7 @@ def settling(rng, e):
     radius = float(rng.uniform(0.05, 0.3))
     scene = paths.Drop(radius + float(rng.uniform(0.3, 1.0)), float(rng.uniform(-1.0, 1.0)), radius, float(e))
     h = float(rng.uniform(0.008, 0.012))
-    times, _ = scene.contacts(1e3, scene.g * h)
+    times, _ = motions.contacts(scene, 1e3, scene.g * h)
     return scene, round(float(times[-1]) / h + 60) * h, h
 
 
@@ -214,3 +220,167 @@ def elastic(rng):
     scene = paths.Drop(radius + float(rng.uniform(0.3, 1.0)), 0.0, radius, 1.0)
     h = float(rng.uniform(0.01, 0.02))
     return scene, 500 * h, h
+
+
+def launched(rng):
+    """A ball thrown upwards from the floor on which it lies; scene, t_end and h."""
+    radius, v0 = float(rng.uniform(0.05, 0.3)), float(rng.uniform(1.5, 4.0))
+    scene = paths.Drop(radius, v0, radius, float(rng.uniform(0.45, 0.85)), float(rng.uniform(4.0, 15.0)))
+    h = float(rng.uniform(0.008, 0.012)) * 2 * v0 / scene.g
+    return scene, 250 * h, h
+
+
+def early(rng):
+    """A pair that meets within the first step."""
+    h, radius, va, vb = (
+        float(rng.uniform(0.02, 0.05)),
+        *rng.uniform((0.1, 0.5, -2.0), (0.5, 2.0, -0.5)).tolist(),
+    )
+    left = float(rng.uniform(-4.0, 4.0))
+    gap = (va - vb) * h * float(rng.uniform(0.2, 0.8))
+    places = left, left + 2 * radius + gap
+    return paths.HeadOn(masses(rng), places, (va, vb), radius, float(rng.uniform(0.2, 0.8))), 40 * h, h
+
+
+# -- exact and slow, where limits show ------------------------------------------------------------------
+
+
+def exact_spheres(rng, gap):
+    """Two spheres that touch exactly, in whole numbers (3-4-5); or with a gap of so many metres."""
+    xa = rng.integers(-5, 6, 3).astype(float)
+    apart = rng.permutation([3.0, 4.0, 0.0]) * rng.choice([-1.0, 1.0], 3)
+    ra = float(rng.integers(1, 5))
+    return xa, ra, xa + apart, 5.0 - ra - gap
+
+
+def exact_plane(rng, gap):
+    """A sphere that touches a plane along an axis exactly; or with a gap of so many metres."""
+    axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
+    n = side * np.eye(3)[axis]
+    point, r = rng.integers(-5, 6, 3).astype(float), float(rng.integers(1, 5)) / 2
+    slide = rng.integers(-3, 4, 3).astype(float)
+    slide[axis] = 0.0
+    return point + slide + r * n, r - gap, point, n
+
+
+def gap(rng):
+    """Less than a millimetre, which every margin takes for a touch; in m."""
+    return float(10 ** rng.uniform(-3.7, -3.1))
+
+
+def slow(rng, d):
+    """Two bodies that approach at a few mm/s: below every limit at which engines drop the rebound."""
+    ma, mb, va, _, n, e = blow(rng, d)
+    speed = 10 ** rng.uniform(-2.7, -2.2)
+    return ma, mb, va, va - speed * n, n, e
+
+
+def slow_line(rng):
+    """The same on a line."""
+    ma, mb, va, _, e = line(rng)
+    return ma, mb, va, va - float(10 ** rng.uniform(-2.7, -2.2)), e
+
+
+def parting(args):
+    """The same two bodies, moving apart."""
+    ma, mb, va, vb, *rest = args
+    return ma, mb, vb, va, *rest
+
+
+def wall(args, side):
+    """The same blow with one mass infinite."""
+    return (math.inf, *args[1:]) if side else (args[0], math.inf, *args[2:])
+
+
+def rough(rng):
+    """A blow on a surface so rough (mu above one) that it still slides."""
+    ma, mb, va, vb, n, e = blow(rng, 3, 0.3)
+    closing, mu = float((va - vb) @ n), float(rng.uniform(1.5, 3.0))
+    slip = float(rng.uniform(1.5, 3.0)) * mu * (1 + e) * closing * across(rng, n)
+    return ma, mb, va, va - closing * n + slip, n, e, mu
+
+
+def _never(rng):
+    meets = passing(rng, 3, 0.4)
+    xa, va, ra, xb, vb, rb, dt = meets
+    overlaps = [overlap(rng, approach) for approach in (True, False)]
+    return [
+        passing(rng, 3, 1.5),
+        (xa, vb, ra, xb, va, rb, dt),
+        (xa, va, ra, xb, va, rb, dt),
+        (xa, va, ra, xb, vb, rb, 0.1 * dt),
+        meets,
+        (xa, va, ra, xb, vb, rb, 3 * dt),
+        *overlaps,
+    ]
+
+
+def _no_rub(rng):
+    smooth = (*blow(rng, 3), 0.0)
+    # Along an axis and in whole numbers the slip is exactly zero.
+    axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
+    n, va = side * np.eye(3)[axis], rng.integers(-4, 5, 3).astype(float)
+    straight = (*masses(rng), va, va - float(rng.integers(1, 6)) * n, n, float(rng.uniform(0.2, 0.8)), 0.4)
+    return [smooth, straight, parting(rub(rng, 3, 0.6)), rub(rng, 3, 0.6)]
+
+
+def _mended(rng):
+    some = [(head_on(rng, "meet"), float(rng.uniform(0.006, 0.02))) for _ in range(3)]
+    ends = (1.0, some[1][0].restitution, 0.0)
+    pairs = [(replace(scene, restitution=e), h) for (scene, h), e in zip(some, ends, strict=True)]
+    return [*((scene, 150 * h, h) for scene, h in pairs), early(rng)]
+
+
+def _beside_pymunk(rng):
+    scene, h = head_on(rng, "meet"), float(rng.uniform(0.004, 0.01))
+    return [(scene, 200 * h, h)]
+
+
+def _fall_beside_pymunk(rng):
+    scene, h = paths.Drop(float(rng.uniform(0.8, 1.5)), 0.0, 0.1, float(rng.uniform(0.5, 0.8))), 0.002
+    first, second = motions.contacts(scene, 10.0, 0.5)[0][:2]
+    return [(scene, int((0.3 * first + 0.7 * second) / h) * h, h)]
+
+
+def _decimal(rng):
+    n, h = awkward(rng)
+    scene = drop(rng, 0.0)[0]
+    return scene, round(n * h, 3), h
+
+
+#: What each public check asks in a grading run.
+PUBLIC = {
+    "sphere_contact": lambda rng: [
+        *(spheres(rng, d, share) for d, share in ((3, 0.6), (3, 1.8), (2, 0.85))),
+        exact_spheres(rng, 0.0),
+        exact_spheres(rng, gap(rng)),
+    ],
+    "plane_contact": lambda rng: [
+        *(plane(rng, d, height) for d, height in ((3, 0.6), (3, 2.5), (3, -0.8), (2, 0.5))),
+        exact_plane(rng, 0.0),
+        exact_plane(rng, gap(rng)),
+    ],
+    "impulse_value": lambda rng: [*(line(rng) for _ in range(4)), slow_line(rng)],
+    "impulse_separating": lambda rng: [*(parting(line(rng)) for _ in range(3)), line(rng)],
+    "impulse_walls": lambda rng: [wall(line(rng), side) for side in (0, 1)],
+    "resolve_oblique": lambda rng: [*(blow(rng, d) for d in (3, 3, 2)), slow(rng, 2)],
+    "resolve_separating": lambda rng: [parting(blow(rng, 3)), parting(blow(rng, 2)), blow(rng, 3)],
+    "resolve_walls": lambda rng: [wall(blow(rng, d), side) for d, side in ((2, 0), (3, 1))],
+    "friction_regimes": lambda rng: [
+        *(rub(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
+        rough(rng),
+    ],
+    "friction_absent": _no_rub,
+    "friction_walls": lambda rng: [wall(rub(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))],
+    "moment_of_contact": lambda rng: [
+        passing(rng, 3, 0.05),
+        shot(rng, 300.0),
+        passing(rng, 3, 0.6),
+        passing(rng, 2, 0.4),
+    ],
+    "moment_never": _never,
+    "head_on_mended": _mended,
+    "head_on_pymunk": _beside_pymunk,
+    "drop_bounces": lambda rng: [drop(rng, 0.0), drop(rng, 1.0), launched(rng), _decimal(rng)],
+    "drop_pymunk": _fall_beside_pymunk,
+}

@@ -1,0 +1,209 @@
+"""What every known wrong program is told: hypothesis by diagnosis, at home and in a grading run.
+
+The programs are the course's own, so they run unprotected and fast, each against the checks of its own task.
+The table is kept with the solution, and the page about the graders shows it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from course.authoring.exercises.build import digest, hypotheses_of
+from course.authoring.exercises.unprotected import LocalSubmission
+from course.authoring.exercises.variants import exercise_graders, solution_path, solutions_folder
+from course.scoring.companions import words
+from course.scoring.explain.table import FILE as TABLE
+from course.scoring.explain.table import read_table
+from course.scoring.session import GradingSession, Scope, Submission
+from course.scoring.terms import Terms
+from course.scoring.verdict import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from course.authoring.report import Progress
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+__all__ = [
+    "FILE",
+    "Confusion",
+    "Tally",
+    "Told",
+    "confusion_of",
+    "made_from",
+    "read_confusion",
+    "tally",
+    "write_confusion",
+]
+
+FILE = "confusion.json"
+#: Of the programs with two mistakes every so many-th is tried: there are thousands.
+_EVERY = 100
+
+
+class Told(msgspec.Struct, frozen=True, array_like=True):
+    """How often programs with these mistakes are told so.
+
+    Attributes:
+        codes: what is wrong in them.
+        said: diagnosis, "" for none, "survives" where no check fails.
+    """
+
+    task: str
+    codes: tuple[str, ...]
+    said: str
+    count: int
+
+
+class Confusion(msgspec.Struct, frozen=True, kw_only=True):
+    """``confusion.json``: rows at home ("public") and in a grading run ("full")."""
+
+    made_from: str
+    rows: dict[str, tuple[Told, ...]]
+
+
+class _Rehearsal(GradingSession):
+    """A session over one wrong program after the other, run in this process."""
+
+    program: tuple[str, Callable[..., Any]]
+    source: str
+
+    def _load(self, submission: Submission) -> Any:  # noqa: ARG002 - the program is at hand
+        task, function = self.program
+        return LocalSubmission(self.source, self._terms.seed, {task: function})
+
+
+def confusion_of(
+    catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None, every: int = _EVERY
+) -> Confusion:
+    """Try every known wrong program with one mistake, and every ``every``-th with two."""
+    known = list(hypotheses_of(catalog, exercise))
+    chosen = [item for item in known if len(item[1]) == 1] + [item for item in known if len(item[1]) > 1][
+        ::every
+    ]
+    rows: dict[str, tuple[Told, ...]] = {}
+    done, scopes = 0, ("public", "full")
+    for scope in scopes:
+        counts: Counter[tuple[str, tuple[str, ...], str]] = Counter()
+        for task, codes, said in _tried(catalog, exercise, scope, chosen):  # type: ignore[arg-type]
+            counts[task, codes, said] += 1
+            done += 1
+            if on_progress:
+                on_progress(done, len(scopes) * len(chosen), exercise.id)
+        rows[scope] = tuple(Told(*key, count) for key, count in sorted(counts.items()))
+    return Confusion(made_from=made_from(catalog, exercise), rows=rows)
+
+
+def made_from(catalog: Catalog, exercise: Exercise) -> str:
+    """Over all that decides what a wrong program is told."""
+    found = hashlib.sha256(digest(catalog, exercise).encode())
+    for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
+        for path in sorted(
+            [*folder.glob("*.py"), *folder.glob("diagnoses.toml"), *folder.glob("hypotheses.json")]
+        ):
+            found.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return found.hexdigest()[:16]
+
+
+def _tried(
+    catalog: Catalog,
+    exercise: Exercise,
+    scope: Scope,
+    chosen: list[tuple[str, tuple[str, ...], Callable[..., Any]]],
+) -> Any:
+    source = solution_path(catalog, exercise).read_text(encoding="utf-8")
+    own = words(exercise.id)
+    with _Rehearsal(exercise, catalog, scope=scope, terms=Terms(timeout=60.0)) as session:
+        session.source = source
+        every = session._checks.in_order()
+        for task, codes, function in chosen:
+            session.program = task, function
+            session._checks.in_order = lambda task=task: [c for c in every if c.task == task]  # type: ignore[method-assign, misc]
+            verdict = session.grade(Submission({exercise.module: source.encode()}))
+            said = [check.diagnosis or "" for check in verdict.checks if check.status is not Status.PASS]
+            yield task, codes, _main(said, codes, own.kind) if said else "survives"
+
+
+def _main(said: list[str], codes: tuple[str, ...], kind: Callable[[str], str]) -> str:
+    """What a student with several failed checks is told: the one story, else the first cause, else a fact."""
+    if set(said) & set(codes):
+        wrong = [code for code in said if code and code not in codes and kind(code) == "cause"]
+        return wrong[0] if wrong else next(code for code in codes if code in said)
+    ranked = sorted(
+        filter(None, said), key=lambda code: ("cause", "nan", "consequence", "fact").index(kind(code))
+    )
+    return ranked[0] if ranked else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """How the programs of one task fare.
+
+    Attributes:
+        named: told a mistake that they have, under whichever of the names of the same program.
+        general: told what is broken and not by what, or that a value is of the wrong kind, or nothing.
+        otherwise: told a mistake that they have not.
+        survived: no check fails; a program with two mistakes may be right by chance.
+    """
+
+    named: int = 0
+    general: int = 0
+    otherwise: int = 0
+    survived: int = 0
+
+    def __add__(self, other: Tally) -> Tally:
+        return Tally(
+            self.named + other.named,
+            self.general + other.general,
+            self.otherwise + other.otherwise,
+            self.survived + other.survived,
+        )
+
+
+def tally(exercise: Exercise, rows: tuple[Told, ...]) -> Tally:
+    """How the programs of these rows fare."""
+    own, names = words(exercise.id), _names(exercise)
+    total = Tally()
+    for row in rows:
+        if row.said == "survives":
+            total += Tally(survived=row.count)
+        elif row.said in row.codes or any((row.task, code, row.said) in names for code in row.codes):
+            total += Tally(named=row.count)
+        elif not row.said or own.kind(row.said) != "cause":
+            total += Tally(general=row.count)
+        else:
+            total += Tally(otherwise=row.count)
+    return total
+
+
+def _names(exercise: Exercise) -> set[tuple[str, str, str]]:
+    """(task, code, code) of programs with one mistake that answer every question alike."""
+    found = set()
+    for task, rows in read_table(exercise.readme_path.with_name(TABLE)).rows.items():
+        same: dict[tuple[float, ...], set[str]] = {}
+        for row in rows:
+            if len(row.codes) == 1:
+                same.setdefault(row.sums, set()).add(row.codes[0])
+        found |= {(task, one, other) for codes in same.values() for one in codes for other in codes}
+    return found
+
+
+def write_confusion(catalog: Catalog, exercise: Exercise, table: Confusion) -> Path:
+    """Write the table beside the solution, one row a line."""
+    path = solutions_folder(catalog, exercise) / FILE
+    text = msgspec.json.encode(table).decode().replace("],[", "],\n[")
+    path.write_text(text + "\n", encoding="utf-8")
+    return path
+
+
+def read_confusion(catalog: Catalog, exercise: Exercise) -> Confusion | None:
+    """The table of an exercise; None if it has none."""
+    path = solutions_folder(catalog, exercise) / FILE
+    return msgspec.json.decode(path.read_bytes(), type=Confusion) if path.is_file() else None

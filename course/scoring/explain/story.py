@@ -1,0 +1,118 @@
+"""One function, one story: what all the failed checks of a task say together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from course.scoring.explain.words import NOT_FINITE, Diagnosis
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.scoring.explain.table import Row
+    from course.scoring.explain.words import Words
+
+__all__ = ["Failure", "Story", "tell"]
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """One failed check of a task.
+
+    Attributes:
+        check: its id.
+        guess: what its probe thinks; None if it thinks nothing.
+        finite: False if what it compared was nan or infinite.
+    """
+
+    check: str
+    guess: Diagnosis | None
+    finite: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Story:
+    """What a task's failed checks are told.
+
+    Attributes:
+        diagnosis: the mistake; None if none is recognised.
+        certain: True if a known wrong program answers every question as the student's does.
+        own: ids of checks that keep what they say themselves: facts that they saw directly.
+    """
+
+    diagnosis: Diagnosis | None
+    certain: bool
+    own: frozenset[str]
+
+
+def tell(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
+    """The story of a task.
+
+    A program that fits decides. Where none does, the probes speak: where a nan comes from before all else,
+    then causes, then consequences; of several causes the one that most checks name, and none where as many
+    name another.
+
+    Args:
+        failures: its failed checks, in order.
+        fits: known wrong programs that answer as the student's does.
+    """
+    own = frozenset(f.check for f in failures if f.guess and words.kind(f.guess.code) == "fact")
+    left = [failure for failure in failures if failure.check not in own]
+    guesses = [failure.guess for failure in left if failure.guess]
+    shared = common(fits, [guess.code for guess in guesses])
+    if shared:
+        return Story(told(shared, words), True, own)
+    if not all(failure.finite for failure in left):
+        return Story(_origin(left, words), False, own)
+    for kind in ("cause", "nan", "consequence"):
+        said = [guess for guess in guesses if words.kind(guess.code) == kind]
+        if said:
+            return Story(_most_named(said), False, own)
+    return Story(None, False, own)
+
+
+def common(fits: Sequence[Row], guesses: Sequence[str] = ()) -> tuple[str, ...]:
+    """The codes that all the fitting programs share, in the order of the first.
+
+    Programs with one mistake that answer every question alike are one program under two names, and each name
+    is true of it: the one that a probe says too, or else the first, which a mutant has.
+    """
+    if not fits:
+        return ()
+    if len(fits[0].codes) == 1:
+        names = [row.codes[0] for row in fits]
+        return (next((code for code in guesses if code in names), names[0]),)
+    shared = set(fits[0].codes).intersection(*(row.codes for row in fits[1:]))
+    return tuple(dict.fromkeys(code for code in fits[0].codes if code in shared))
+
+
+def told(codes: Sequence[str], words: Words) -> Diagnosis:
+    """One diagnosis of several mistakes, under the code of the first."""
+    parts = [words(code) for code in codes]
+    if len(parts) == 1:
+        return parts[0]
+    looks = " And another: ".join(part.looks_like for part in parts)
+    advice = " And: ".join(part.advice for part in parts)
+    return Diagnosis(parts[0].code, f"Two mistakes at once. {looks}", advice)
+
+
+def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
+    """Where a nan comes from, if all checks that met one say the same; else no more than that it is there."""
+    said = {
+        f.guess.code: f.guess
+        for f in failures
+        if not f.finite and f.guess and words.kind(f.guess.code) == "nan"
+    }
+    if len(said) == 1:
+        return next(iter(said.values()))
+    return next((guess for code, guess in said.items() if code in NOT_FINITE), None)
+
+
+def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:
+    votes = Counter(guess.code for guess in guesses).most_common(2)
+    if len(votes) > 1 and votes[0][1] == votes[1][1]:
+        return None
+    best = [guess for guess in guesses if guess.code == votes[0][0]]
+    return next((guess for guess in best if guess.divergence), best[0])

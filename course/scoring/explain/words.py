@@ -1,0 +1,98 @@
+"""The words of an exercise's diagnoses: ``diagnoses.toml``, one table for each code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Literal
+
+import msgspec
+
+from course.catalog.reading import read_document
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["FILE", "NOT_FINITE", "Diagnosis", "Divergence", "Entry", "Words", "read_words"]
+
+
+FILE = "diagnoses.toml"
+#: Codes of values that are nan or infinite where a number belongs, whatever made them so.
+NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
+
+
+class Divergence(msgspec.Struct, frozen=True):
+    """The first place where a trajectory left the reference. ``t`` in s."""
+
+    t: float
+    step: int
+    quantity: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """Which mistake a failure looks like.
+
+    Attributes:
+        code: stable name, upper case with underscores.
+        looks_like: one sentence, without values, that says what the student's code seems to do.
+        advice: what to change, without values.
+        divergence: where the trajectory first left the reference, if that was looked for.
+    """
+
+    code: str
+    looks_like: str
+    advice: str
+    divergence: Divergence | None = None
+
+
+class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One diagnosis in words.
+
+    Attributes:
+        looks_like, advice: as in ``Diagnosis``.
+        kind: "cause" of wrong values; "consequence", which says what is broken and not by what;
+            "fact", seen directly by the check that says it and true whatever else is wrong; "nan", where a
+            nan or an infinity comes from.
+    """
+
+    looks_like: str
+    advice: str
+    kind: Literal["cause", "consequence", "fact", "nan"] = "cause"
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    format_version: int
+    diagnosis: dict[str, Entry]
+
+
+class Words:
+    """The diagnoses of one exercise by their codes."""
+
+    def __init__(self, entries: dict[str, Entry]) -> None:
+        self.entries = entries
+
+    def __call__(self, code: str, divergence: Divergence | None = None) -> Diagnosis:
+        """The diagnosis of that code.
+
+        Raises:
+            KeyError: ``diagnoses.toml`` has no words for it.
+        """
+        entry = self.entries[code]
+        return Diagnosis(code, entry.looks_like, entry.advice, divergence)
+
+    def kind(self, code: str) -> str:
+        """Its kind; what has no words of the exercise's own is a fact that reading a value shows."""
+        if code in self.entries:
+            return self.entries[code].kind
+        return "nan" if code in NOT_FINITE else "fact"
+
+
+@cache
+def read_words(path: Path) -> Words:
+    """The words in a ``diagnoses.toml``.
+
+    Raises:
+        ContentError: the file is wrong; the message names the line.
+    """
+    return Words(read_document(path, _File).value.diagnosis)

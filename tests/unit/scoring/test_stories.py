@@ -1,0 +1,106 @@
+"""One function, one story: what a student of ``collisions`` reads, at home and in a grading run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.authoring.exercises.variants import solution_path
+from course.catalog.load import Catalog
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.scoring.verdict import CheckResult
+
+CATALOG = Catalog()
+EXERCISE = CATALOG.exercise("collisions")
+SOLUTION = solution_path(CATALOG, EXERCISE).read_text("utf-8")
+
+
+@pytest.fixture(scope="module", params=["public", "full"])
+def session(request: pytest.FixtureRequest) -> Iterator[GradingSession]:
+    with GradingSession(EXERCISE, CATALOG, scope=request.param, terms=Terms(timeout=20.0)) as opened:
+        yield opened
+
+
+def failed(session: GradingSession, more: str) -> dict[str, list[CheckResult]]:
+    """The failed checks of the solution with something put after it, by task."""
+    verdict = session.grade(Submission({EXERCISE.module: (SOLUTION + more).encode()}))
+    assert verdict.state == "graded", verdict.error
+    found: dict[str, list[CheckResult]] = {}
+    for check in verdict.checks:
+        if check.status != "pass":
+            found.setdefault(check.task, []).append(check)
+    return found
+
+
+def codes(checks: list[CheckResult]) -> set[Any]:
+    return {check.diagnosis for check in checks}
+
+
+def test_one_mistake_is_told_the_same_by_every_check_that_it_fails(session: GradingSession) -> None:
+    resolve = """
+def resolve(ma, mb, va, vb, normal, restitution):
+    va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
+    blow = (1 + restitution) * max((va - vb) @ n, 0.0) * ma / 2 * n
+    return va - blow / ma, vb + blow / mb
+"""
+    found = failed(session, resolve)
+    assert found.keys() == {"resolve"}
+    assert codes(found["resolve"]) == {"EQUAL_MASSES_ASSUMED"}
+
+
+def test_two_mistakes_at_once_are_both_told(session: GradingSession) -> None:
+    impulse = """
+def impulse_1d(ma, mb, va, vb, restitution):
+    return -(1 + restitution**2) * max(va - vb, 0.0) / (1 / ma + 1 / mb)
+"""
+    (checks,) = failed(session, impulse).values()
+    assert codes(checks) == {"RESTITUTION_SQUARED"}
+    assert all("Two mistakes at once" in check.message for check in checks)
+    assert all("wrong sign" in check.message for check in checks)
+
+
+REDUCED_MASS = """
+def impulse_1d(ma, mb, va, vb, restitution):
+    return (1 + restitution) * max(va - vb, 0.0) * ma * mb / (ma + mb)
+
+def _impulse(ma, mb, closing, restitution):
+    return impulse_1d(ma, mb, closing, 0.0, restitution)
+"""
+
+
+def test_the_textbooks_reduced_mass_is_graded_and_costs_the_walls_only(session: GradingSession) -> None:
+    found = failed(session, REDUCED_MASS)
+    assert codes(found["impulse_1d"]) == {"INFINITE_MASS_NAN"}
+    assert all(
+        "wall" in check.id or check.task == "simulate_head_on" for some in found.values() for check in some
+    )
+
+
+def test_what_calls_a_wrong_function_is_told_to_wait(session: GradingSession) -> None:
+    found = failed(session, REDUCED_MASS)
+    assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
+    for check in found["resolve"]:
+        assert "`resolve` calls your `impulse_1d`, which is wrong: mend that first." in check.message
+
+
+def test_arguments_changed_in_place_are_said_where_they_are_seen(session: GradingSession) -> None:
+    detect = """
+def detect_sphere_plane(x, r, point, normal):
+    x -= point
+    depth = r - float(x @ normal)
+    return depth >= 0, normal, depth
+"""
+    found = failed(session, detect)
+    assert found.keys() == {"detect_sphere_plane"}
+    assert codes(found["detect_sphere_plane"]) == {"MUTATES_INPUT"}
+
+
+def test_of_nan_only_its_origin_is_told(session: GradingSession) -> None:
+    found = failed(session, "\ndef impulse_1d(ma, mb, va, vb, restitution):\n    return float('nan')\n")
+    assert codes(found["impulse_1d"]) == {"NOT_A_NUMBER"}

@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from course.isolation.levels import Level, Spawner
     from course.reading.parts import Cell
 
-__all__ = ["DEADLINE_S", "CellRunner", "Gave"]
+__all__ = ["DEADLINE_S", "STOPPED", "CellRunner", "Gave"]
 
 #: A lesson's own cell takes under two seconds; one that was changed may take this long before it is stopped.
 DEADLINE_S = 60.0
 _MAIN = "lesson.py"
-_STOPPED = "Stopped."
+#: What a cell that was interrupted gave.
+STOPPED = "Stopped."
 
 #: What runs beside the cells. It prints what they print as it comes, so that a stopped cell shows how far it
 #: got, and gives back the traceback of the cell's own lines.
@@ -220,7 +221,7 @@ class CellRunner:
 
     def _why(self, failure: StudentFailure) -> str:
         if self._interrupted.is_set():
-            return _STOPPED
+            return STOPPED
         if failure.kind == "timeout":
             return f"Stopped after {DEADLINE_S:.0f} s."
         return f"The cell's process ended: {printable(failure.message)}."

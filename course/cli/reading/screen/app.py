@@ -378,10 +378,10 @@ class ReaderApp(App[None]):
     def _busy(self) -> tuple[str, str]:
         return self._bench.busy() if self._bench is not None else ("", "")
 
-    def _picture(self, figure_id: str, width: int) -> list[Text] | None:
+    def _picture(self, figure_id: str, width: int) -> list[Text]:
         if self._pictures is None:
-            return None
-        picture: list[Text] | None = self._pictures.rows(figure_id, width, self.page.room, self._drawn)
+            return []
+        picture: list[Text] = self._pictures.rows(figure_id, width, self.page.room, self._drawn)
         return picture
 
     def _drawn(self, figure_id: str) -> None:

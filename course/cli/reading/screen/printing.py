@@ -71,7 +71,7 @@ class ScreenPrinter(FancyPrinter):
         progress: the lesson, with what its reader did.
         width: columns there are.
         busy: the key of the cell that runs, with what to say of it; empty if none does.
-        picture: rows of a figure's picture for a width, or None while there is none.
+        picture: a figure's lines for a width: blank while it is being drawn, none if it stays described.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class ScreenPrinter(FancyPrinter):
         console: Console,
         width: int,
         busy: Callable[[], tuple[str, str]] = lambda: ("", ""),
-        picture: Callable[[str, int], list[Text] | None] = lambda *_: None,
+        picture: Callable[[str, int], list[Text]] = lambda *_: [],
     ) -> None:
         script = progress.script
         figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
@@ -292,9 +292,14 @@ class ScreenPrinter(FancyPrinter):
     def _figure(self, figure: b.Figure) -> RenderableType:
         number = self._figure_ids.index(figure.id) + 1
         caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
+        seen = Text.assemble(("To be seen: ", "bold"), figure.alt, style="dim")
         picture = self._picture(figure.id, self._prose)
-        if picture is None:
-            return Group(caption, Text.assemble(("To be seen: ", "bold"), figure.alt, style="dim"))
+        if not picture:
+            return Group(caption, seen)
+        if not any(picture):
+            # Its place, with what will be seen there.
+            words = seen.wrap(self._console, self._prose)[: len(picture)]
+            picture = [*words, *picture[len(words) :]]
         return Group(*picture, caption)
 
     def _link(self, target: str, children: b.Inlines) -> Text:

@@ -39,6 +39,7 @@ def read(catalog: Catalog, first: str, store: Store | None) -> tuple[InProgress,
         The lesson that was open last, and why something was not recorded ("" if all was).
     """
     from course.cli.reading.screen.app import ReaderApp
+    from course.cli.reading.screen.drawing import Drawer
 
     writer = Writer(store)
     troubles: list[str] = []
@@ -52,7 +53,7 @@ def read(catalog: Catalog, first: str, store: Store | None) -> tuple[InProgress,
             troubles.append(f"{error.message} {error.help}")
             return ()
 
-    app = ReaderApp(catalog, first, events=events, write=writer)
+    app = ReaderApp(catalog, first, events=events, write=writer, pictures=Drawer())
     try:
         with contextlib.suppress(KeyboardInterrupt):
             app.run()

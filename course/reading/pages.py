@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Layout", "Place", "Row"]
 
-#: A screen is cut short to keep something whole only if at least this much of it stays filled.
-_FILLED = 0.5
+#: A screen is cut short to keep something whole if at least this much of it stays filled, or this little
+#: where what is kept whole fits on the next screen.
+_FILLED, _LEAST = 0.5, 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +81,11 @@ class Layout:
         end = top + self.height
         if end >= len(self.rows):
             return len(self.rows)
-        for cut in range(end, top + int(self.height * _FILLED), -1):
+        for cut in range(end, top + int(self.height * _LEAST), -1):
             if not self.rows[cut].joined:
-                return cut
+                first, last = self._spans[self.rows[cut].block]
+                fits = last - first <= self.height + 1  # a blank line above it is left out
+                return cut if cut - top >= self.height * _FILLED or fits else end
         return end
 
     def next(self, top: int) -> int:

@@ -260,7 +260,8 @@ class ReaderApp(App[None]):
                 None,
             )
         if place is not None:
-            self.page.go(book.layout.row(place), paged=True)
+            # Not cut into screens anew: what was in sight stays, whatever grew.
+            self.page.go(book.layout.row(place), paged=False)
         self._settle(choose=self.page.item is None)
 
     def keep_place(self) -> None:
@@ -319,7 +320,8 @@ class ReaderApp(App[None]):
         layout = book.layout
         place = page.place() or Place()
         section = script.section_of(place.block) if place.block >= 0 else None
-        head = script.lesson.title + (f" · {section.title}" if section else "")
+        title = script.lesson.title
+        head = f"{title.partition(':')[0]} · {section.title}" if section else title
         head = _short(head, self._width - 2)
         end = page.end()
         share = end / max(1, len(layout))
@@ -663,10 +665,19 @@ class ReaderApp(App[None]):
             question = next((q for q in progress.script.questions if q.index < cell.index < q.end), None)
             answer = [question.answer] if question is not None and question.answer is not None else []
             self._rebuild(cell.index, *answer)
+            self._bring_to_sight(cell.index)
             if gave.earlier:
                 ran = ", ".join(map(str, gave.earlier))
                 self.say(f"Cell {ran} ran first." if len(gave.earlier) == 1 else f"Cells {ran} ran first.")
             self._say_round()
+
+    def _bring_to_sight(self, block: int) -> None:
+        """The end of a block on the screen: that is where a cell's output is."""
+        book = self.page.book
+        span = book.layout.span(block) if book is not None else None
+        if span is not None and not self.page.top < span[1] <= self.page.end():
+            self.page.go(max(0, span[1] - self.page.room), paged=False)
+            self._settle()
 
     def _end_cells(self) -> None:
         if self._bench is not None:

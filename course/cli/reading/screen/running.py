@@ -70,9 +70,18 @@ class Bench:
         """Stop what runs and end its process."""
         self.interrupt()
         if self._pool is not None:
-            self._pool.shutdown(wait=True, cancel_futures=True)
+            # In their own thread: the cells' process dies with the thread that started it.
+            self._pool.submit(self._end)
+            self._pool.shutdown(wait=True)
+            self._pool = None
+
+    def _end(self) -> None:
+        from course.isolation.failures import IsolationError
+
         if self._runner is not None:
-            self._runner.close()
+            with contextlib.suppress(IsolationError):  # it ended by itself
+                self._runner.close()
+            self._runner = None
 
     def _submit(self, what: Callable[..., None], *arguments: object) -> None:
         if self._pool is None:

@@ -185,6 +185,10 @@ class RemoteSubmission:
         """What the submission printed since the check began."""
         return self._connection.output()[self._printed_before :]
 
+    def give_up(self) -> None:
+        """From another thread: its time is over, for what is asked now and for all after it."""
+        self._end = self._deadline = self._connection.deadline = 0.0
+
     def close(self) -> None:
         """End the worker."""
         self._connection.close()

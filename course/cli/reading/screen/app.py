@@ -145,6 +145,7 @@ class ReaderApp(App[None]):
         self.progress: InProgress
         self.page = Page()
         self._width = 0
+        self._laid_for: Any = None
         self._trail: list[tuple[str, Place]] = []
         self._message = ("", 0.0)
         self._wanted = ""
@@ -202,15 +203,18 @@ class ReaderApp(App[None]):
 
     def on_resize(self, event: Any) -> None:
         """Reflow; the line at the top stays."""
-        if not self._opened:
-            return
+        if self._opened and event.size != self._laid_for:
+            self.call_after_refresh(self._reflow)
+
+    def _reflow(self) -> None:
+        # Asked for only now: keys may have come between the change and this.
         place = self.page.place()
-        self._width = event.size.width
-        if place is not None:
-            self.call_after_refresh(self._lay_out, place)
+        if place is not None and self.size != self._laid_for:
+            self._lay_out(place)
 
     def _lay_out(self, place: Place) -> None:
         """All blocks anew for this width, the place on the screen."""
+        self._laid_for = self.size
         width = self._width = self.size.width
         console = Console(
             width=width,
@@ -629,13 +633,33 @@ class ReaderApp(App[None]):
         """The cell at hand: the chosen one, or the first in sight."""
         item = self.page.item
         if item is None or item.kind != "cell":
-            item = next((one for one in self.page.items() if one.kind == "cell"), None)
+            item = next((one for one in self.page.items() if one.kind == "cell"), None) or self._cell_ahead()
         if item is None:
             question = self._open_question(self.page.item)
             self.say("Predict first: Enter, or s to skip." if question else "No cell in sight.")
             return None
         self.page.item = item
         return self.progress.script.cell_at(item.block)
+
+    def _cell_ahead(self) -> Item | None:
+        """The cell of the last prediction on the screen, where its answer is open but it is further down."""
+        book, script = self.page.book, self.progress.script
+        for item in reversed(self.page.items()):
+            question = script.question_at(item.block) if item.kind == "question" else None
+            if book is None or question is None or self.progress.prediction(question) is None:
+                continue
+            found = next(
+                (
+                    one
+                    for one in book.items
+                    if one.kind == "cell" and question.index < one.block < question.end
+                ),
+                None,
+            )
+            if found is not None:
+                self._show(book.layout.row(Place(found.block)))
+                return found
+        return None
 
     def action_run_cell(self) -> None:
         """Run the cell at hand."""

@@ -142,7 +142,7 @@ class ScreenPrinter(FancyPrinter):
         wide = self.wide and isinstance(block, b.CodeCell)
         options = self._console.options.update(width=_BESIDE if wide else self._prose, height=None)
         drawn = self._console.render_lines(shown, options, pad=False)
-        lines = [[Segment(text.replace(KEEP, " "), style) for text, style, _ in line] for line in drawn]
+        lines = [[self._segment(text, style) for text, style, _ in line] for line in drawn]
         lines = [[], *lines] if index >= 0 else lines
         whole = isinstance(block, b.CodeCell | b.Figure | b.Table | b.MathBlock | b.Diagram | b.Prediction)
         after_head = index > 0 and isinstance(self._script.blocks[index - 1], b.Heading)
@@ -154,6 +154,11 @@ class ScreenPrinter(FancyPrinter):
             rows.append(Row(index, blank, joined and not (number == 0 and not after_head)))
             items += self._links_in(line, index, number)
         return BlockRows(tuple(tuple(line) for line in lines), tuple(rows), tuple(items))
+
+    def _segment(self, text: str, style: Style | None) -> Segment:
+        if style is not None and self._console.no_color:
+            style = style.without_color
+        return Segment(text.replace(KEEP, " "), style)
 
     def _items(self, index: int) -> list[Item]:  # noqa: PLR0911 - one return per kind
         if index < 0:

@@ -177,14 +177,11 @@ class Adapter(Protocol):
         """Put a scene into the engine.
 
         Args:
-            options: empty for the engine as it comes; else what a ``Tuning`` of this adapter holds.
+            options: empty for the engine as it comes; else what ``settings.tuning`` gives.
 
         Raises:
             NotApplicableError: the engine cannot express the scene.
         """
-
-    def tuning(self, scenario: str) -> Tuning:
-        """The options a person who knows the engine would set for a scenario."""
 
 
 def energy(scene: Scene, motion: Motion) -> float:

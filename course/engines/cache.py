@@ -46,7 +46,8 @@ def cache_folder() -> Path:
 def code_digest() -> str:
     """A fingerprint of the code that builds and measures: a change of it makes old numbers strangers."""
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    here = Path(__file__).parent
+    for path in sorted((*here.rglob("*.py"), *here.rglob("*.toml"), here / "well_set.json")):
         digest.update(path.name.encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

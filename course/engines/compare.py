@@ -278,6 +278,7 @@ def _accuracy(run: _Run, process: EngineProcess, job: _Job) -> Row:
         value=statistics.median(values),
         options=reply["options"],
         why=tuple(reply["why"]),
+        samples=tuple(reply.get("samples", ())),
         details=reply["details"],
         repeats=len(values),
         spread=max(values) - min(values),

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import functools
+import math
 from importlib.resources import files
+from typing import Any
 
 import msgspec
 
-from course.engines.results import Comparison, Reference
+from course.engines.results import Comparison, Reference, Row, Setting
+from course.engines.scenarios import DT
 
-__all__ = ["FORMAT_VERSION", "load", "made_of"]
+__all__ = ["FORMAT_VERSION", "load", "made_of", "row"]
 
 FORMAT_VERSION = 1
 _RATES = ("steps_per_second", "slowest", "fastest", "pymunk_steps_per_second")
@@ -28,6 +31,20 @@ def load() -> Reference:
     return found
 
 
+def row(engine: str, scenario: str, setting: Setting, dt: float = DT) -> Row:
+    """One measurement of the reference.
+
+    Raises:
+        LookupError: it is not there.
+    """
+    for one in load().rows:
+        if (one.engine, one.scenario, one.setting) == (engine, scenario, setting) and math.isclose(
+            one.dt, dt
+        ):
+            return one
+    raise LookupError(f"The reference has no {engine}, {scenario}, {setting}, {dt}.")
+
+
 def made_of(comparison: Comparison, measured: str) -> bytes:
     """A comparison as the file that ``load`` reads: values only, and neither repeated words nor failures.
 
@@ -37,7 +54,9 @@ def made_of(comparison: Comparison, measured: str) -> bytes:
         measured: the day, YYYY-MM-DD.
     """
     rows = tuple(
-        msgspec.structs.replace(row, origin="reference", why=(), details=_rounded(row.details))
+        msgspec.structs.replace(
+            row, origin="reference", why=(), samples=_round(row.samples), details=_rounded(row.details)
+        )
         for row in comparison.rows
         if row.ok and row.origin != "reference"
     )
@@ -52,9 +71,9 @@ def _rounded(details: dict[str, object]) -> dict[str, object]:
     return {name: _round(value) for name, value in details.items() if name not in _RATES}
 
 
-def _round(value: object) -> object:
+def _round(value: Any) -> Any:
     if isinstance(value, float):
         return float(f"{value:.9g}")
     if isinstance(value, list | tuple):
-        return [_round(item) for item in value]
+        return type(value)(_round(item) for item in value)
     return value

@@ -21,7 +21,7 @@ class EngineInfo:
     """One engine.
 
     Attributes:
-        id: what ``--engine`` takes; the adapter is the module of this name in ``course.engines``.
+        id: what ``--engine`` takes; the adapter is the module of this name in ``course.engines.adapters``.
         name: on the screen.
         package: what is installed to have it.
         extra: the course's extra that brings it; empty for what the course needs anyway.
@@ -152,4 +152,4 @@ def load(engine_id: str) -> Adapter:
     """
     from importlib import import_module
 
-    return cast("Adapter", import_module(f"course.engines.{get(engine_id).id}").ADAPTER)
+    return cast("Adapter", import_module(f"course.engines.adapters.{get(engine_id).id}").ADAPTER)

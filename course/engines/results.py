@@ -33,6 +33,8 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
         measured: the day, YYYY-MM-DD.
         version: of the engine's package.
         options, why: what was set, and a reason for each.
+        samples: what the value is the mean or the median of, one for each phase of the step or each start;
+            empty where there is one run.
         repeats: how often it was measured; ``spread`` is the largest value less the smallest.
         details: what else was seen on the way.
     """
@@ -49,6 +51,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     version: str = ""
     options: dict[str, Any] = {}
     why: tuple[str, ...] = ()
+    samples: tuple[float, ...] = ()
     repeats: int = 1
     spread: float = 0.0
     details: dict[str, Any] = {}
@@ -57,6 +60,16 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     def ok(self) -> bool:
         """True if there is a value."""
         return self.status == OK
+
+    @property
+    def lowest(self) -> float:
+        """The least of the samples; the value where there are none."""
+        return min(self.samples, default=self.value or 0.0)
+
+    @property
+    def highest(self) -> float:
+        """The largest of the samples; the value where there are none."""
+        return max(self.samples, default=self.value or 0.0)
 
 
 class EngineState(msgspec.Struct, frozen=True, kw_only=True):

@@ -6,6 +6,7 @@ prints goes to standard error, where the parent finds the last words of one that
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import signal
@@ -13,11 +14,11 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from course.engines.base import AS_IT_COMES, EngineDivergedError, NotApplicableError
+from course.engines.base import AS_IT_COMES, EngineDivergedError, NotApplicableError, Tuning
 from course.errors import InternalError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from course.engines.base import Adapter, Scene, World
 
@@ -25,10 +26,15 @@ __all__ = ["Desk", "main"]
 
 
 class Desk:
-    """Does what it is asked with one engine."""
+    """Does what it is asked with one engine.
 
-    def __init__(self, adapter: Adapter) -> None:
+    Args:
+        tuning: the options of the engine well set, by scenario.
+    """
+
+    def __init__(self, adapter: Adapter, tuning: Callable[[str], Tuning]) -> None:
         self._adapter = adapter
+        self._tuning = tuning
         self._boxes: World | None = None
 
     def answer(self, job: Mapping[str, Any]) -> dict[str, Any]:
@@ -48,7 +54,10 @@ class Desk:
         if job["do"] == "chunk":
             return self._chunk(job["steps"])
         scenario = get(job["scenario"])
-        tuning = self._adapter.tuning(scenario.id) if job["setting"] == "tuned" else AS_IT_COMES
+        tuning = self._tuning(scenario.id) if job["setting"] == "tuned" else AS_IT_COMES
+        if "options" in job:
+            # While it is being found out which ones are best.
+            tuning = Tuning(job["options"])
         known = {"options": dict(tuning.options), "why": list(tuning.why)}
         if job["do"] == "options":
             return {"status": "ok", **known}
@@ -63,7 +72,8 @@ class Desk:
             self._boxes.step(round(0.25 / job["dt"]))
             return {"status": "ok", "contacts": self._boxes.contacts()[0], **known}
         outcome = scenario.run(build, job["dt"], job["quick"])
-        return {"status": "ok", "value": float(outcome.value), "details": outcome.details, **known}
+        seen = {"samples": outcome.samples, "details": outcome.details}
+        return {"status": "ok", "value": float(outcome.value), **seen, **known}
 
     def _chunk(self, steps: int) -> dict[str, Any]:
         if self._boxes is None:
@@ -86,9 +96,10 @@ def main(arguments: list[str]) -> int:
         replies.flush()
 
     try:
+        from course.engines import settings
         from course.engines.registry import load
 
-        desk = Desk(load(arguments[0]))
+        desk = Desk(load(arguments[0]), functools.partial(settings.tuning, arguments[0]))
     except Exception as error:  # noqa: BLE001 - an extension module may raise anything when it cannot load
         say({"status": "unavailable", "message": f"{type(error).__name__}: {error}"})
         return 0

@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.patheffects import withStroke
 
 from course.engines import reference
+from course.engines.compare import LADDER
 from course.engines.findings import slope
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
@@ -63,6 +64,8 @@ _FLOOR = 1e-11
 _ALIKE = 0.5
 #: From one line of small letters to the next, inches.
 _LINE_IN = 0.155
+#: So many small letters fit between the second of five points and the right edge.
+_LINE_LETTERS = 28
 
 
 def steps() -> Figure:
@@ -130,7 +133,7 @@ def _steps(rows: Sequence[Row]) -> Figure:
     for axes, test in zip(panels, tests, strict=True):
         _names(figure, axes, _alike(_ladders(rows, test)))
     panels[0].set_ylabel("error (%)")
-    title(figure, "The slope is the integrator: nearly all engines are first order")
+    title(figure, "The slope is the integrator: most engines are first order")
     return figure
 
 
@@ -169,25 +172,30 @@ def _shared(engines: list[str]) -> tuple[str, str, str]:
 
 
 def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[float, float]]]]) -> None:
-    """Whose each curve is: below it, to the right of its second point, where a rising curve leaves room.
+    """Whose each curve is: below it, from its second point on, where a rising curve leaves room.
 
-    Curves that lie closer together than their names are high have them in a block below the lowest.
+    A short ladder needs all of the width: there names begin at the first point, below the whole curve. Curves
+    that lie closer together than their names are high have them in a block below the lowest.
     """
     low, high = (math.log10(limit) for limit in axes.get_ylim())
     line = (high - low) * _LINE_IN / (axes.get_position().height * figure.get_figheight())  # decades
     blocks: list[tuple[float, list[tuple[str, str]]]] = []
-    for engines, points in sorted(groups, key=lambda group: -group[1][1][1]):
+    first = 1 if len(groups[0][1]) >= len(LADDER) else 0
+    lowest = {id(points): min(e for _, e in points[first:]) for _engines, points in groups}
+    for engines, points in sorted(groups, key=lambda group: -lowest[id(group[1])]):
         words = _wrapped([ENGINES[engine].name for engine in engines])
+        errors = [e for _, e in points]
         order = slope([(dt, e / 100.0) for dt, e in points], single=ENGINES[engines[0]].single)
-        if order is not None:
+        # Where a smaller step gives a larger error, rounding is seen and no method.
+        if order is not None and errors == sorted(errors):
             words += f": order {order:.1f}"
-        level = math.log10(max(points[1][1], _FLOOR))
+        level = math.log10(max(lowest[id(points)], _FLOOR))
         entry = (words, _shared(engines)[1])
         if blocks and level > blocks[-1][0] - line * _lines(blocks[-1][1]):
             blocks[-1] = (level, [*blocks[-1][1], entry])
         else:
             blocks.append((level, [entry]))
-    x = 1.06 * groups[0][1][1][0]
+    x = 1.06 * groups[0][1][first][0]
     for level, entries in blocks:
         top = level - 0.3 * line
         for words, ink in entries:
@@ -201,8 +209,13 @@ def _lines(entries: list[tuple[str, str]]) -> float:
 
 
 def _wrapped(names: list[str]) -> str:
-    """Names of a group, three to a line."""
-    lines = [", ".join(names[start : start + 3]) for start in range(0, len(names), 3)]
+    """Names of a group, as many to a line as fit beside a curve; none is broken."""
+    lines = [names[0]]
+    for name in names[1:]:
+        if len(lines[-1]) + len(name) > _LINE_LETTERS:
+            lines.append(name)
+        else:
+            lines[-1] += f", {name}"
     return ",\n".join(lines)
 
 

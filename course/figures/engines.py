@@ -1,18 +1,23 @@
-"""Figures of the lesson on physics engines, drawn from what was measured of eight of them."""
+"""The figure of the lesson on engines that shows what options do, drawn from the reference measurements."""
 
 from __future__ import annotations
 
-import tomllib
-from importlib.resources import files
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from course.engines import reference
+from course.engines.registry import ENGINES
+from course.engines.results import DEFAULT, TUNED
+from course.engines.scenarios import SCENARIOS
 from course.figures.style import PALETTE, new_figure, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["TESTS", "measured", "settings"]
+    from course.engines.results import Row, Setting
+
+__all__ = ["FLOOR", "LARGE", "TESTS", "Error", "error", "mended", "settings"]
 
 _DEFAULT: dict[str, Any] = {
     "marker": "o",
@@ -23,61 +28,87 @@ _DEFAULT: dict[str, Any] = {
 }
 _TUNED: dict[str, Any] = {"marker": "D", "markersize": 4, "color": PALETTE["blue"]}
 
-#: Column of the data -> what a panel is called.
+#: Scenario -> what a panel is called.
 TESTS = {
-    "fall": "free fall",
-    "rebound": "rebound",
-    "slope": "slope",
-    "pendulum": "pendulum",
+    "free-fall": "fall",
+    "bounce": "rebound",
+    "slide": "slope",
+    "double-pendulum": "pendulum",
     "clash": "clash",
 }
+#: Errors below this are drawn at it, per cent.
+FLOOR = 1e-3
+#: An error of this many per cent is one that anybody sees.
+LARGE = 10.0
 
 
-def measured() -> dict[str, Any]:
-    """What was measured, as ``course/lessons/data/engines.toml`` holds it."""
-    path = files("course").joinpath("lessons", "data", "engines.toml")
-    return tomllib.loads(path.read_text(encoding="utf-8"))
+@dataclass(frozen=True, slots=True)
+class Error:
+    """How far an engine is off, in per cent of the right value: the mean, and the worst phase or start."""
+
+    mean: float
+    worst: float
+
+
+def error(engine: str, test: str, setting: Setting) -> Error:
+    """One error, from the reference; nothing below ``FLOOR``."""
+    row: Row = reference.row(engine, test, setting)
+    scenario = SCENARIOS[test]
+    truth = scenario.truth or 0.0
+    # Where the truth is a height, errors are shares of it; elsewhere they come in per cent.
+    unit = 1.0 if scenario.unit == "%" else 100.0 / truth
+
+    def off(value: float) -> float:
+        return max(unit * abs(value - truth), FLOOR)
+
+    return Error(off(row.value or 0.0), max(off(row.lowest), off(row.highest)))
+
+
+def mended() -> tuple[int, int]:
+    """How many of the large errors are gone once options are set, and how many there are as engines come."""
+    large = [(e, t) for e in ENGINES for t in TESTS if error(e, t, DEFAULT).mean > LARGE]
+    return sum(error(e, t, TUNED).mean <= LARGE for e, t in large), len(large)
 
 
 def settings() -> Figure:
-    """Every engine's error in five tests, as it comes and with its options set."""
-    table = measured()
-    engines = table["engine"][::-1]
+    """Every engine's error in five tests, as it comes and well set, on logarithmic axes."""
+    engines = list(ENGINES)[::-1]
     figure, panels = new_figure(4.5, 1, len(TESTS), sharey=True)
-    figure.subplots_adjust(left=0.16, wspace=0.14)
+    figure.subplots_adjust(left=0.16, wspace=0.12)
     for axes, (test, name) in zip(panels, TESTS.items(), strict=True):
         for row, engine in enumerate(engines):
-            default = _error(engine["default"], test, table)
-            tuned = _error(engine.get("tuned", engine["default"]), test, table)
-            axes.plot([default, tuned], [row, row], color=PALETTE["grey"], linewidth=1.2)
-            axes.plot(default, row, **_DEFAULT)
-            axes.plot(tuned, row, **_TUNED)
+            default, tuned = (error(engine, test, setting) for setting in (DEFAULT, TUNED))
+            axes.plot([default.mean, tuned.mean], [row, row], color=PALETTE["grey"], linewidth=1.2)
+            if tuned.worst > tuned.mean:
+                axes.plot([tuned.mean, tuned.worst], [row - 0.28] * 2, color=PALETTE["blue"], linewidth=1.0)
+                axes.plot(tuned.worst, row - 0.28, marker="|", markersize=6, color=PALETTE["blue"])
+            axes.plot(default.mean, row, **_DEFAULT)
+            axes.plot(tuned.mean, row, **_TUNED)
         _frame(axes, name)
-    panels[0].set_yticks(range(len(engines)), [engine["name"] for engine in engines])
-    panels[2].set_xlabel("error (%)")
-    _key(panels[0])
-    title(figure, "Options moved one engine further than all well-set engines lie apart")
+    panels[0].set_yticks(range(len(engines)), [ENGINES[engine].name for engine in engines])
+    panels[2].set_xlabel("error (%), logarithmic; at the left edge 0.001 % or less")
+    _key(panels[0], panels[2], panels[4])
+    few, many = mended()
+    title(figure, f"Of {many} errors above {LARGE:.0f} %, {few} are gone once the options are set")
     return figure
 
 
-def _error(row: dict[str, float], test: str, table: dict[str, Any]) -> float:
-    """The error of one engine in one test, in per cent of the right value."""
-    true = table["rebound_true_m"]
-    share = row[test] / true - 1.0 if test == "rebound" else row[test]
-    return 100.0 * share
-
-
 def _frame(axes: Axes, name: str) -> None:
-    axes.axvline(0.0, color=PALETTE["black"], linewidth=0.8)
-    axes.set(xlim=(-118, 60), xticks=(-100, -50, 0, 50), ylim=(-1.9, 7.6))
-    axes.set_xticklabels(["-100", "", "0", ""])
+    axes.set_xscale("log")
+    axes.set(xlim=(0.4 * FLOOR, 600.0), xticks=(1e-3, 1e-1, 1e1), ylim=(-1.6, 7.6))
+    axes.set_xticklabels(["0.001", "0.1", "10"])
+    axes.minorticks_off()
+    axes.plot([LARGE, LARGE], [-0.6, 7.6], color=PALETTE["grey"], linewidth=0.8, linestyle=":")
     axes.set_title(name)
 
 
-def _key(axes: Axes) -> None:
-    for y, look, words, ink in (
-        (-0.95, _DEFAULT, "as it comes", "#B34F00"),
-        (-1.55, _TUNED, "well set", "#0072B2"),
+def _key(left: Axes, middle: Axes, right: Axes) -> None:
+    for axes, look, words, ink in (
+        (left, _DEFAULT, "as it comes", "#B34F00"),
+        (middle, _TUNED, "well set", "#0072B2"),
     ):
-        axes.plot(-106, y, **look)
-        axes.text(-92, y, words, color=ink, fontsize=8.5, va="center")
+        axes.plot(2.0 * FLOOR, -1.15, **look)
+        axes.text(6.0 * FLOOR, -1.15, words, color=ink, fontsize=8.5, va="center")
+    right.plot([1.2 * FLOOR, 8.0 * FLOOR], [-1.15] * 2, color=PALETTE["blue"], linewidth=1.0)
+    right.plot(8.0 * FLOOR, -1.15, marker="|", markersize=6, color=PALETTE["blue"])
+    right.text(14.0 * FLOOR, -1.15, "worst phase", color="#0072B2", fontsize=8.5, va="center")

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["chaos", "collision", "draw", "dynamics", "environment", "free_fall", "integrators", "projectile",
-           "render", "rotation", "solver_iterations", "substeps"]  # fmt: skip
+__all__ = ["chaos", "collision", "contact_models", "draw", "dynamics", "environment", "free_fall",
+           "integrators", "projectile", "render", "rotation", "solver_iterations", "substeps"]  # fmt: skip
 
 _DPI = 180
 #: Nothing in a file but the picture: no dates, no random ids.
@@ -65,6 +65,7 @@ def draw(result: Result) -> Figure:
         "solver-iterations": beyond.solver_iterations,
         "substeps": beyond.substeps,
         "environment": beyond.environment,
+        "contact-models": beyond.contact_models,
     }
     if result.simulation not in drawers:
         raise InternalError(f"The simulation {result.simulation} has no figure.")
@@ -128,6 +129,11 @@ def substeps() -> Figure:
 def environment() -> Figure:
     """Stopping distance over friction, and rebound over restitution."""
     return _of("environment")
+
+
+def contact_models() -> Figure:
+    """Rebound and kept energy over the phase of the step, for three ways to correct an overlap."""
+    return _of("contact-models")
 
 
 def _free_fall(result: Result) -> Figure:

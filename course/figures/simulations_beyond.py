@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from course.simulations.base import Result
 
-__all__ = ["chaos", "dynamics", "environment", "rotation", "solver_iterations", "substeps"]
+__all__ = ["chaos", "contact_models", "dynamics", "environment", "rotation", "solver_iterations", "substeps"]
 
 #: A curve that grows past this leaves the picture; matplotlib cannot scale to more. In shares.
 _TALLEST = 1e12
@@ -164,6 +164,29 @@ def environment(result: Result) -> Figure:
     left.set(xlabel="friction μ (no unit)", ylabel="distance slid (m)", title="A block slides to rest")
     _beside_theory(right, result, "rebound", "e² times the drop")
     right.set(xlabel="restitution e (no unit)", ylabel="height of the rebound (m)", title="A ball bounces")
+    figure.subplots_adjust(wspace=0.3)
+    return figure
+
+
+def contact_models(result: Result) -> Figure:
+    """Rebound and energy kept over the phase of the step, for three ways to correct an overlap."""
+    figure, (left, right) = new_figure(3.3, 1, 2)
+    phase = result.column("phase")
+    # Without correction and with split impulse the velocities are the same, unless a bounce is that slow.
+    looks = (("erp", "ERP in the velocity"), ("split", "split impulse"), ("none", "no correction"))
+    for (name, label), (color, line) in zip(
+        looks, (("vermillion", "--"), ("sky", "-"), ("blue", ":")), strict=True
+    ):
+        style: dict[str, Any] = {"color": PALETTE[color], "linestyle": line, "linewidth": 2.2, "label": label}
+        left.plot(phase, result.column(f"rebound_{name}"), **style)
+        right.plot(phase, result.column(f"kept_{name}"), **style)
+    left.axhline(float(result.settings["restitution"]) ** 2, color=PALETTE["black"], linewidth=1.0)
+    right.axhline(1.0, color=PALETTE["black"], linewidth=1.0)
+    left.set(xlabel="phase of the step (no unit)", ylabel="rebound (share)", title="A ball bounces")
+    right.set(xlabel="phase of the step (no unit)", ylabel="energy kept (share)", title="An elastic one")
+    left.set_ylim(bottom=0.0)
+    right.set_ylim(bottom=0.0)
+    right.legend(loc="lower right")
     figure.subplots_adjust(wspace=0.3)
     return figure
 

@@ -95,6 +95,6 @@ def following() -> Figure:
     lower.set_title("How fast does it go?")
     for axes in (upper, lower):
         axes.axvline(WEAR_AT, color=PALETTE["black"], linewidth=0.8)
-    note(lower, "the wheels begin to rub", (WEAR_AT, 0.62), (4, 0.615), PALETTE["black"])
+    note(lower, "the wheels begin to rub", (WEAR_AT, 0.8), (3, 0.65), PALETTE["black"])
     title(figure, "Measuring keeps a copy close; answering keeps the robot on course")
     return figure

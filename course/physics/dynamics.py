@@ -16,6 +16,7 @@ Algorithms, 2008, chapter 5.
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +59,9 @@ class TwoLinkArm:
         for name in ("length1", "length2", "mass1", "mass2"):
             if not 0 < getattr(self, name) < float("inf"):
                 raise ValueError(f"{name} must be a positive number.")
+        for name, value in asdict(self).items():
+            if not math.isfinite(value):
+                raise ValueError(f"{name} must be a finite number, not {value}.")
 
     @classmethod
     def double_pendulum(cls, length: float = 1.0, mass: float = 1.0, g: float = 9.81) -> TwoLinkArm:

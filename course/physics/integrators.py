@@ -23,6 +23,7 @@ Differential Equations I, 1993, section II.1 (Runge-Kutta).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, Self
 
@@ -185,7 +186,21 @@ def trajectory(stepper: Stepper, system: System, start: State, h: float, n: int)
     """Take n steps of h (s) and keep every state, the first included.
 
     Times are start.t + i h, not a running sum, so they do not drift.
+
+    Args:
+        h: negative to go back in time.
+
+    Raises:
+        ValueError: h is 0 or not finite, n is no whole number or negative, the start is not finite, or the
+            system's acceleration there is not a number. A method that blows up later is not stopped.
     """
+    if not (math.isfinite(h) and h != 0):
+        raise ValueError(f"A step must be a finite number of seconds and not 0; this one is {h}.")
+    if not isinstance(n, (int, np.integer)) or isinstance(n, bool) or n < 0:
+        raise ValueError(f"The number of steps must be a whole number, 0 or more; this one is {n!r}.")
+    for name, value in (("t", start.t), ("q", start.q), ("v", start.v)):
+        if not np.all(np.isfinite(value)):
+            raise ValueError(f"The start must be finite numbers; its {name} is {np.asarray(value).tolist()}.")
     t: Array = start.t + h * np.arange(n + 1, dtype=np.float64)
     q = np.empty((n + 1, *start.q.shape))
     v = np.empty((n + 1, *start.q.shape))
@@ -194,4 +209,9 @@ def trajectory(stepper: Stepper, system: System, start: State, h: float, n: int)
     for i in range(n):
         state = stepper.advance(system, State(float(t[i]), state.q, state.v), h)
         q[i + 1], v[i + 1] = state.q, state.v
+        if i == 0 and (np.isnan(state.q).any() or np.isnan(state.v).any()):
+            name = type(system).__name__
+            raise ValueError(
+                f"At the start the acceleration of {name} is not a number; check what it is given."
+            )
     return Trajectory(t, q, v)

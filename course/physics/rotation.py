@@ -97,7 +97,7 @@ class RotationStepper(Protocol):
         """The rotation h (s) later.
 
         Args:
-            inertia: principal moments, shape (3,), kg m².
+            inertia: principal moments, shape (3,) or (..., 3), kg m².
             torque: in the body's axes, held over the step, shape (..., 3), N m.
             h: a number, or an array of shape (..., 1).
         """
@@ -158,7 +158,7 @@ class SplitRotation:
         q = spin.orientation
         momentum = inertia * spin.angular_velocity + 0.5 * h * torque
         for axis, share in ((0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)):
-            angle = share * h * momentum[..., axis : axis + 1] / inertia[axis]
+            angle = share * h * momentum[..., axis : axis + 1] / inertia[..., axis : axis + 1]
             q, momentum = _about(axis, angle, q, momentum)
         # Products keep the length to round-off; dividing keeps the round-off from adding up.
         q = q / np.linalg.norm(q, axis=-1, keepdims=True)

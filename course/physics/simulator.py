@@ -1,7 +1,9 @@
 """A small physics engine: gravity, forces, contacts, one fixed step, and a record of it all.
 
-Every step has three parts: let everything fly; where surfaces met on the way, go back to that instant and let
-them strike; hold up what lies on something. Sample i belongs to the time ``i h``, never to a sum of steps.
+A step asks first which surfaces touch and what velocities their contacts allow, and only then moves: velocity
+before position. What lies on something is carried by forces that hold over the step, so it neither sinks nor
+creeps, whatever the method that integrates. Where surfaces meet on the way, the step goes back to that
+instant, lets them collide, and goes on. Sample i belongs to the time ``i h``, never to a sum of steps.
 
 States may hold many runs at once (leading axes), which then go forward together:
 
@@ -16,15 +18,17 @@ States may hold many runs at once (leading axes), which then go forward together
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.physics.contact import Contact, Plane, Surface, meet, meet_plane, part, slip, strike
+from course.physics.contact import Plane, Surface
+from course.physics.contact_pairs import Pairs, in_any_run
+from course.physics.contact_solver import Impulses, Motion, normal_speed, solve
 from course.physics.integrators import State, Stepper, VelocityVerlet
-from course.physics.interpolation import falling_root
-from course.physics.rotation import Spin, SplitRotation, kinetic_energy, turn_back
+from course.physics.recording import Recording
+from course.physics.rotation import Spin, SplitRotation, turn, turn_back
 from course.physics.state import RigidBodyState
 
 if TYPE_CHECKING:
@@ -35,15 +39,19 @@ if TYPE_CHECKING:
     from course.physics.body import Body
 
     Array = NDArray[np.float64]
+    Flags = NDArray[np.bool_]
     #: Adds forces to bodies, given the time (s) and all of them: ``law(t, bodies)``.
     ForceLaw = Callable[[Any, Sequence[Body]], None]
 
-__all__ = ["Recording", "Simulator", "step_count"]
+__all__ = ["Simulator", "step_count"]
 
-_IMPACTS_A_STEP = 8  # blows that one step resolves one by one; what is left is held up at its end
-_SUPPORT_ROUNDS = 10  # how often a step goes over its resting contacts, so that stacks stand
-_SLACK = 1e-12  # m: overlap that round-off leaves, not worth another round
-_REST = 1.5  # speeds below this many g h are what gravity adds in one step, no blow
+# A step goes back to this many instants at which surfaces meet; what meets after that overlaps a little.
+_INSTANTS = 8
+_BLOWS = 64  # that pass from pair to pair at one instant, as along a row of balls
+_REST = 1.5  # speeds below this many g h are what gravity adds in one step, no blow: they do not bounce
+_STILL = 0.01  # a speed below this share of g h is rest: the forces of the next step end it
+_NEAR = 1e-3  # a gap below this share of g h² is none
+_ROUND_OFF = 1e-12  # m and m/s: what is left of nothing without gravity
 
 
 def step_count(duration: float, h: float) -> int:
@@ -76,57 +84,6 @@ def _short(value: float) -> str:
     return text if abs(float(text) - value) <= 1e-12 * value else ""
 
 
-@dataclass(frozen=True, eq=False)
-class Recording:
-    """A run: n + 1 samples, the start included, of B bodies; ``...`` are the leading axes of their states.
-
-    Attributes:
-        t: shape (n + 1,), s.
-        position, velocity: shape (n + 1, B, ..., 3), m and m/s.
-        orientation: shape (n + 1, B, ..., 4). angular_velocity: (n + 1, B, ..., 3), rad/s, body axes.
-        mass: shape (B,), kg. inertia: shape (B, 3), kg m². gravity: m/s².
-        first_contact: pairs of body numbers (None is the ground) -> the time they first met, s, shape (...);
-            NaN where they did not.
-    """
-
-    t: Array
-    position: Array
-    velocity: Array
-    orientation: Array
-    angular_velocity: Array
-    mass: Array
-    inertia: Array
-    gravity: float
-    first_contact: dict[tuple[int, int | None], Array] = field(default_factory=dict)
-
-    @property
-    def ground_time(self) -> Array:
-        """When each body first met the ground, s, shape (B, ...); NaN where it did not, or there is none."""
-        never = np.full(self.position.shape[2:-1], np.nan)
-        return np.stack([self.first_contact.get((i, None), never) for i in range(self.mass.size)])
-
-    def momentum(self) -> Array:
-        """Total momentum, kg m/s, shape (n + 1, ..., 3)."""
-        return np.asarray(np.tensordot(self.mass, self.velocity, axes=(0, 1)))
-
-    def energy(self) -> Array:
-        """Total energy, motion, rotation and height together, J, shape (n + 1, ...)."""
-        total = np.zeros(self.position.shape[:1] + self.position.shape[2:-1])
-        for i, mass in enumerate(self.mass):
-            total += 0.5 * mass * np.sum(self.velocity[:, i] ** 2, axis=-1)
-            total += mass * self.gravity * self.position[:, i, ..., 2]
-            if np.all(np.isfinite(self.inertia[i])):
-                total += kinetic_energy(self.inertia[i], self.angular_velocity[:, i])
-        return total
-
-
-class _Pair(NamedTuple):
-    """Two bodies by number; the second is None for the ground."""
-
-    a: int
-    b: int | None
-
-
 class Simulator:
     """Bodies, gravity, force laws, ground and contacts, advanced by one fixed step.
 
@@ -135,14 +92,15 @@ class Simulator:
         h: the step, s.
         gravity: m/s², along -z.
         ground: the plane things fall on; None for none.
-        surface: restitution and friction of every contact.
-        stepper: the method that integrates the flight.
+        surface: restitution and friction of every contact. What meets at less than 1.5 g h does not bounce.
+        stepper: the method that integrates the motion.
         laws: called as ``law(t, bodies)`` whenever forces are needed, to add theirs. While the method looks
             ahead, the states of the bodies are the looked-at ones.
         contacts: False lets bodies pass through each other; the ground stays.
 
     Raises:
-        ValueError: the step is not positive, there is no body, or the leading axes do not fit together.
+        ValueError: the step is not positive, gravity is not finite, there is no body, or the leading axes do
+            not fit together; in ``step``, that a body touches something which is no sphere by its inertia.
     """
 
     def __init__(
@@ -160,6 +118,8 @@ class Simulator:
         if not bodies:
             raise ValueError("A simulation needs a body.")
         step_count(0.0, h)
+        if not math.isfinite(gravity):
+            raise ValueError(f"Gravity must be a finite number of m/s², not {gravity:g}.")
         self.bodies = list(bodies)
         self.h, self.gravity = float(h), float(gravity)
         self.ground, self.surface, self.stepper, self.laws = ground, surface, stepper, list(laws)
@@ -167,13 +127,24 @@ class Simulator:
         self.batch = np.broadcast_shapes(*shapes, np.shape(surface.restitution), np.shape(surface.friction))
         for body in self.bodies:
             body.state = body.state.broadcast(self.batch)
-        count = len(bodies)
-        self._pairs = [_Pair(i, j) for i in range(count) for j in range(i + 1, count) if contacts]
-        self._pairs += [_Pair(i, None) for i in range(count) if ground is not None]
-        self._first: dict[tuple[int, int | None], Array] = {
-            (pair.a, pair.b): np.full(self.batch, np.nan) for pair in self._pairs
-        }
         self._steps = 0
+        self._pairs = Pairs(self.bodies, ground, self.batch, spheres=contacts)
+        falls = np.array([self.gravity if math.isfinite(body.mass) else 0.0 for body in bodies])
+        self._falling = self._column(falls) * np.array([0.0, 0.0, -1.0])
+        self._spinning = [i for i, body in enumerate(bodies) if body.spins]
+        #: m/s and m: slower is at rest, nearer touches.
+        self._still = max(_STILL * abs(self.gravity) * self.h, _ROUND_OFF)
+        self._near = max(_NEAR * abs(self.gravity) * self.h**2, _ROUND_OFF)
+        #: What contacts add while they hold: accelerations, m/s², and angular ones, rad/s², world axes.
+        self._held = self._held_spin = np.zeros((len(bodies), *self.batch, 3))
+        shape = (len(self._pairs.numbers), *self.batch)
+        #: Forces of the contacts in the last step, N: where the solver begins in the next one.
+        self._last = Impulses(np.zeros(shape), np.zeros((*shape, 3)))
+        self._met_at: Array = np.full(shape, np.nan)
+
+    def _column(self, values: Array) -> Array:
+        """One number a body, ready to multiply vectors of shape (B, ..., 3)."""
+        return values.reshape(-1, *([1] * len(self.batch)), 1)
 
     @property
     def time(self) -> float:
@@ -195,158 +166,175 @@ class Simulator:
         position, velocity, orientation, spin = (np.stack(column) for column in zip(*samples, strict=True))
         mass = np.array([body.mass for body in self.bodies])
         inertia = np.stack([body.inertia for body in self.bodies])
-        first = {pair: times.copy() for pair, times in self._first.items()}
+        ground = len(self.bodies)
+        first = {
+            (i, None if j == ground else j): self._met_at[k].copy()
+            for k, (i, j) in enumerate(self._pairs.numbers)
+        }
         return Recording(t, position, velocity, orientation, spin, mass, inertia, self.gravity, first)
 
     def step(self) -> None:
-        """One step: fly, strike where surfaces met on the way, hold up what rests."""
+        """One step: from instant to instant at which surfaces meet, with the contacts before the motion."""
         left = np.full(self.batch, self.h)
-        for _ in range(_IMPACTS_A_STEP):
+        met = np.zeros_like(self._met_at, dtype=bool)
+        for instant in range(_INSTANTS + 1):
+            start = self._pairs.now()
+            touching = (met | (start.gap <= self._near)) & (left > 0)
+            now = self.time + self.h - left
+            self._collide(start.normal, touching, now)
+            resting = self._support(start.normal, touching, left, now)
+            start = start._replace(velocity=np.stack([body.state.velocity for body in self.bodies]))
             before = self._states()
             self._fly(left)
-            share, which = self._first_meeting(before, left)
-            met = share <= 1.0
-            if not np.any(met):
-                left = np.zeros(self.batch)
+            if instant == _INSTANTS:
                 break
-            span = np.where(met, share, 1.0) * left
+            share = self._pairs.meetings(start, self._pairs.now(), left, self._near, resting)
+            soonest = np.min(share, axis=0, initial=np.inf)
+            met = share <= np.minimum(soonest, 1.0)
+            if not np.any(met):
+                break
             self._restore(before)
+            span = np.where(soonest <= 1.0, soonest, 1.0) * left
             self._fly(span)
             left = left - span
-            for k, pair in enumerate(self._pairs):
-                self._blow(pair, met & (which == k), self.time + self.h - left)
-        if np.any(left > 0):
-            self._fly(left)
-        self._hold_up()
+            self._pairs.put_together(met)
+        self._pairs.push_apart(self._near)
         self._steps += 1
 
-    # -- flight ----------------------------------------------------------------------------------------
+    # -- motion ----------------------------------------------------------------------------------------
 
     def _accelerations(self, t: Any, q: Array, v: Array) -> Array:
-        """What the forces do to every body at these positions and velocities; shape (B, ..., 3)."""
-        for body, position, velocity in zip(self.bodies, q, v, strict=True):
-            body.state = RigidBodyState(
-                position, velocity, body.state.orientation, body.state.angular_velocity
-            )
-            body.clear()
-        for law in self.laws:
-            law(t, self.bodies)
-        a = np.empty_like(q)
-        for i, body in enumerate(self.bodies):
-            a[i] = body.acceleration()
-            a[i, ..., 2] -= self.gravity if math.isfinite(body.mass) else 0.0
+        """What gravity, force laws and contacts do at these positions and velocities; shape (B, ..., 3)."""
+        a: Array = self._falling + self._held
+        if self.laws:
+            for body, position, velocity in zip(self.bodies, q, v, strict=True):
+                body.state = RigidBodyState(
+                    position, velocity, body.state.orientation, body.state.angular_velocity
+                )
+                body.clear()
+            for law in self.laws:
+                law(t, self.bodies)
+            for i, body in enumerate(self.bodies):
+                a[i] += body.acceleration()
         return a
 
     def _fly(self, span: Array) -> None:
-        """Advance every body by ``span`` (s, one for every run) as if nothing were in the way."""
+        """Advance every body by ``span`` (s, one for every run) as if nothing more were in the way."""
         h: Any = span[..., None]
         q = np.stack([body.state.position for body in self.bodies])
         v = np.stack([body.state.velocity for body in self.bodies])
-        spins = [self._turned(body, h) if body.spins else None for body in self.bodies]
+        spins = self._turned(h)
         after = self.stepper.advance(_Accelerations(self), State(self.time, q, v), h)
-        for body, spin, position, velocity in zip(self.bodies, spins, after.q, after.v, strict=True):
-            turned = spin or Spin(body.state.orientation, body.state.angular_velocity)
-            body.state = RigidBodyState(position, velocity, *turned)
+        for i, body in enumerate(self.bodies):
+            spin = spins.get(i) or Spin(body.state.orientation, body.state.angular_velocity)
+            body.state = RigidBodyState(after.q[i], after.v[i], *spin)
 
-    def _turned(self, body: Body, h: Any) -> Spin:
-        """A body's rotation after h, under the torque that its force laws gave it last."""
-        spin = Spin(body.state.orientation, body.state.angular_velocity)
-        torque = turn_back(body.state.orientation, np.broadcast_to(body.torque, (*self.batch, 3)))
-        return SplitRotation().advance(body.inertia, spin, torque, h)
+    def _turned(self, h: Any) -> dict[int, Spin]:
+        """The rotations after h of the bodies that can turn, under the torques of laws and contacts."""
+        if not self._spinning:
+            return {}
+        bodies = [self.bodies[i] for i in self._spinning]
+        q = np.stack([body.state.orientation for body in bodies])
+        w = np.stack([body.state.angular_velocity for body in bodies])
+        torque = np.stack([np.broadcast_to(body.torque, (*self.batch, 3)) for body in bodies])
+        inertia = np.stack([body.inertia for body in bodies]).reshape(-1, *([1] * len(self.batch)), 3)
+        # Half of what contacts do before and half after, for their torque does not turn with the body.
+        half = 0.5 * h * self._held_spin[self._spinning]
+        q, w = SplitRotation().advance(inertia, Spin(q, w + turn_back(q, half)), turn_back(q, torque), h)
+        w = w + turn_back(q, half)
+        return {i: Spin(q[k], w[k]) for k, i in enumerate(self._spinning)}
 
     # -- contact ---------------------------------------------------------------------------------------
 
-    def _contact(self, pair: _Pair) -> tuple[Contact, Body, Body | None]:
-        a = self.bodies[pair.a]
-        if pair.b is None:
-            assert self.ground is not None
-            return meet_plane(a, self.ground), a, None
-        b = self.bodies[pair.b]
-        return meet(a, b), a, b
+    def _motion(self) -> Motion:
+        """How all bodies move now, and the ground, which does not."""
+        velocity = np.zeros((len(self.bodies) + 1, *self.batch, 3))
+        rim = np.zeros_like(velocity)
+        for i, body in enumerate(self.bodies):
+            velocity[i] = body.state.velocity
+        if self._spinning:
+            states = [self.bodies[i].state for i in self._spinning]
+            spin = turn(
+                np.stack([state.orientation for state in states]),
+                np.stack([state.angular_velocity for state in states]),
+            )
+            rim[self._spinning] = self._column(self._pairs.radius)[self._spinning] * spin
+        return Motion(velocity, rim, self._pairs.give, self._pairs.spin_give)
 
-    def _first_meeting(self, before: list[RigidBodyState], span: Array) -> tuple[Array, Array]:
-        """Which pair met first on the way from ``before`` to now, and after which share of ``span``.
+    def _collide(self, normal: Array, touching: Flags, now: Array) -> None:
+        """End all approach of what touches, at once: with restitution where it is fast enough to bounce."""
+        motion = self._motion()
+        speed = normal_speed(self._pairs.numbers, normal, motion.velocity)
+        if not np.any(touching & (speed < -self._still)):
+            return
+        before = self._motion()
+        e = np.asarray(self.surface.restitution)
+        bounce = max(_REST * abs(self.gravity) * self.h, self._still)
+        for _ in range(_BLOWS):
+            fast = touching & (speed < -bounce) & (e > 0)
+            if not np.any(fast):
+                break
+            self._solve(normal, motion, fast, now, target=-e * speed)
+            speed = normal_speed(self._pairs.numbers, normal, motion.velocity)
+        if np.any(touching & (speed < -self._still)):
+            self._solve(normal, motion, touching, now)
+        velocity, spin = self._difference(motion, before)
+        for i, body in enumerate(self.bodies):
+            q, w = body.state.orientation, body.state.angular_velocity
+            body.state = RigidBodyState(
+                body.state.position, body.state.velocity + velocity[i], q, w + turn_back(q, spin[i])
+            )
+
+    def _support(self, normal: Array, touching: Flags, left: Array, now: Array) -> Flags:
+        """Find the forces that keep apart, for the time left, what touches and does not separate.
+
+        They are those that leave no approach at the end of the motion, given how it would end without them.
 
         Returns:
-            The share, inf where none met, and the number of the pair; both of shape (...).
+            Which pairs rest on each other, shape (P, ...).
         """
-        share = np.full(self.batch, np.inf)
-        which = np.full(self.batch, -1)
-        for k, pair in enumerate(self._pairs):
-            when = (
-                self._meeting_with_ground(pair, before, span) if pair.b is None else self._sweep(pair, before)
-            )
-            sooner = when < share
-            share, which = np.where(sooner, when, share), np.where(sooner, k, which)
-        return share, which
+        self._held, self._held_spin = np.zeros_like(self._held), np.zeros_like(self._held_spin)
+        speed = normal_speed(self._pairs.numbers, normal, self._motion().velocity)
+        resting = touching & (speed <= self._still)
+        if not np.any(resting):
+            self._last = Impulses(np.zeros_like(self._last.push), np.zeros_like(self._last.rub))
+            return resting
+        start = self._states()
+        self._fly(left)
+        free, motion = self._motion(), self._motion()
+        self._restore(start)
+        span = np.where(left > 0, left, 1.0)
+        impulses = Impulses(self._last.push * span * resting, self._last.rub * (span * resting)[..., None])
+        self._solve(normal, motion, resting, now, impulses)
+        self._last = Impulses(impulses.push / span, impulses.rub / span[..., None])
+        velocity, spin = self._difference(motion, free)
+        self._held, self._held_spin = velocity / span[..., None], spin / span[..., None]
+        return resting
 
-    def _meeting_with_ground(self, pair: _Pair, before: list[RigidBodyState], span: Array) -> Array:
-        """Where the gap, a cubic in time, falls through 0; arrivals too slow to bounce do not count."""
-        contact, body, _ = self._contact(pair)
-        arriving = body.state.velocity @ -contact.normal[(0,) * len(self.batch)]
-        fast = (contact.gap < 0) & (-arriving > _REST * self.gravity * self.h)
-        if not np.any(fast):
-            return np.full(self.batch, np.inf)
-        now = body.state
-        body.state = before[pair.a]
-        old, _, _ = self._contact(pair)
-        leaving = body.state.velocity @ -contact.normal[(0,) * len(self.batch)]
-        body.state = now
-        share = falling_root(old.gap, contact.gap, leaving * span, arriving * span)
-        return np.where(fast, share, np.inf)
+    def _solve(
+        self,
+        normal: Array,
+        motion: Motion,
+        active: Flags,
+        now: Array,
+        impulses: Impulses | None = None,
+        target: float | Array = 0.0,
+    ) -> None:
+        """Let the active contacts act on a motion, and note which pairs touched for the first time."""
+        pairs, touched = self._pairs, in_any_run(active)
+        if np.isnan(pairs.spin_give[[*pairs.first[touched], *pairs.second[touched]]]).any():
+            raise ValueError("Contacts are between spheres: the three moments of inertia must be equal.")
+        if impulses is None:
+            impulses = Impulses(np.zeros(active.shape), np.zeros((*active.shape, 3)))
+        solve(pairs.numbers, normal, motion, impulses, active, target, self.surface.friction)
+        fresh = (impulses.push > 0) & np.isnan(self._met_at)
+        self._met_at = np.where(fresh, now, self._met_at)
 
-    def _sweep(self, pair: _Pair, before: list[RigidBodyState]) -> Array:
-        """Where two spheres first touch if each moves straight from its old place to its new one.
-
-        A sphere that passed right through the other within the step is caught too.
-        """
-        a, b = self.bodies[pair.a], self.bodies[int(pair.b or 0)]
-        old = before[int(pair.b or 0)].position - before[pair.a].position
-        new = b.state.position - a.state.position
-        move = new - old
-        reach = a.radius + b.radius
-        # |old + s move|² = reach², the smaller root; closing where old . move < 0.
-        half = np.sum(old * move, axis=-1)
-        square = np.sum(move * move, axis=-1)
-        room = np.sum(old * old, axis=-1) - reach**2
-        inside = half * half - square * room
-        closing = (half < 0) & (inside >= 0)
-        safe = np.where(closing, np.sqrt(np.maximum(inside, 0.0)) - half, 1.0)
-        return np.where(closing, np.maximum(room, 0.0) / safe, np.inf)
-
-    def _blow(self, pair: _Pair, where: Array, now: Array) -> None:
-        """Let a pair strike in the runs where it met, and note the first time."""
-        if not np.any(where):
-            return
-        contact, a, b = self._contact(pair)
-        strike(contact, a, b, self.surface, where)
-        part(contact, a, b, where)
-        self._note(pair, where, now)
-
-    def _hold_up(self) -> None:
-        """Take approach and overlap out of whatever lies on something; friction acts as it presses."""
-        soft = Surface(0.0, self.surface.friction)
-        for _ in range(_SUPPORT_ROUNDS):
-            busy = False
-            for pair in self._pairs:
-                contact, a, b = self._contact(pair)
-                approaching = np.sum(slip(contact, a, b) * contact.normal, axis=-1) < 0
-                where = (contact.gap <= 0) & approaching
-                if np.any(where):
-                    busy = True
-                    strike(contact, a, b, soft, where)
-                    self._note(pair, where, np.full(self.batch, self.time + self.h))
-                deep = contact.gap < -_SLACK
-                if np.any(deep):
-                    busy = True
-                    part(contact, a, b, deep)
-            if not busy:
-                break
-
-    def _note(self, pair: _Pair, where: Array, now: Array) -> None:
-        first = self._first[pair.a, pair.b]
-        fresh = where & np.isnan(first)
-        first[fresh] = now[fresh]
+    def _difference(self, motion: Motion, before: Motion) -> tuple[Array, Array]:
+        """Change of velocity, m/s, and of angular velocity, rad/s, world axes; both of shape (B, ..., 3)."""
+        rim = (motion.rim - before.rim)[:-1]
+        size = self._column(self._pairs.radius)[:-1]
+        return (motion.velocity - before.velocity)[:-1], rim / np.where(size > 0, size, 1.0)
 
     # -- states ----------------------------------------------------------------------------------------
 

@@ -4,9 +4,9 @@ An engine has thousands of contacts and joints that all depend on one another. S
 dear, so it takes them in turn, again and again, and stops when its time is up. These are the two smallest
 cases that show what such a solver leaves undone.
 
-Source: Catto, Iterative Dynamics with Temporal Coherence (Game Developers Conference), 2005 (sequential
-impulses); Müller et al., Position Based Dynamics, 2007; Macklin et al., Small Steps in Physics Simulation,
-2019.
+Source: Catto, Iterative Dynamics with Temporal Coherence (Game Developers Conference), 2005 (projected
+Gauss-Seidel, called sequential impulses from 2006 on); Müller et al., Position Based Dynamics, 2007; Macklin
+et al., Small Steps in Physics Simulation, 2019.
 """
 
 from __future__ import annotations

@@ -5,17 +5,27 @@ A bag is a folder. One topic a stream, with the names that are usual for them:
     ImuStream       /imu/data_raw   sensor_msgs/msg/Imu         (REP 145: no orientation)
     ScanStream      /scan           sensor_msgs/msg/LaserScan
     OdometryStream  /odom           nav_msgs/msg/Odometry
+    TruthStream     /ground_truth   nav_msgs/msg/Odometry
+
+and what a viewer needs to put them in their places: ``/tf`` with the poses of both odometries, ``/tf_static``
+with what does not move (``odom`` lies on ``map``), and ``/clock`` at every time at which something happens. A
+configuration of RViz that shows them lies in the folder, too.
 
 What the messages say beyond the streams:
 
-- Stamps are the stream's times from the epoch 0 on, to the nanosecond; a message is logged when it is
-  stamped.
+- Stamps are the stream's times plus ``START_S``, to the nanosecond; a message is logged when it is stamped.
 - A range of ``range_max`` means that nothing came back and is written as +inf (REP 117); ranges and angles
   of a LaserScan are 32-bit.
 - What is not measured says so: the first element of the covariance of orientation and of acceleration is -1;
   turn rates about x and y have the variance ``UNMEASURED``.
 - The robot moves in a plane: z, roll and pitch of an Odometry are 0 with the variance ``PLANAR``. All other
   off-diagonal covariances are 0, and a variance of 0 means that it is not known.
+
+Which ROS reads them: the metadata have version 8, which keeps the quality of service as text. Humble fails on
+version 9 ("bad conversion", github.com/ros2/rosbag2/issues/2013), and later releases read what earlier ones
+wrote (github.com/ros2/rosbag2/issues/1895). Storage is SQLite unless asked otherwise, since Humble needs one
+more package to read MCAP. ``/tf_static`` is offered as "transient local", without which RViz refuses it
+(github.com/ros2/rviz/issues/916).
 
 Writing the same streams to the same name gives the same bytes. This needs the extra ``ros``.
 """
@@ -25,7 +35,7 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,14 +43,19 @@ import numpy as np
 
 from course import extras
 from course.errors import IntegrityError, NotFoundError, UsageError
-from course.simulations.streams import ImuStream, OdometryStream, ScanStream, Stream
+from course.simulations.bag_view import rviz_view
+from course.simulations.streams import ImuStream, OdometryStream, ScanStream, Stream, TruthStream
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-__all__ = ["PLANAR", "STORAGES", "UNMEASURED", "available", "read_bag", "write_bag"]
+__all__ = ["PLANAR", "START_S", "STORAGES", "UNMEASURED", "VIEW", "available", "read_bag", "write_bag"]
 
-STORAGES = ("mcap", "sqlite3")
+STORAGES = ("sqlite3", "mcap")
+#: The configuration of RViz in the folder of a bag.
+VIEW = "view.rviz"
+#: Stamp of the stream's time 0, s. A stamp of 0 would mean "the latest" to tf2 and "no clock yet" to a node.
+START_S = 1
 #: Variance of a turn rate that no sensor looks at, (rad/s)².
 UNMEASURED = 1e6
 #: Variance of what is 0 because the world is flat, m² and rad².
@@ -50,7 +65,13 @@ _TOPICS = {
     ImuStream: ("/imu/data_raw", "sensor_msgs/msg/Imu"),
     ScanStream: ("/scan", "sensor_msgs/msg/LaserScan"),
     OdometryStream: ("/odom", "nav_msgs/msg/Odometry"),
+    TruthStream: ("/ground_truth", "nav_msgs/msg/Odometry"),
 }
+_CLOCK = ("/clock", "rosgraph_msgs/msg/Clock")
+_MOVING = ("/tf", "tf2_msgs/msg/TFMessage")
+_STATIC = ("/tf_static", "tf2_msgs/msg/TFMessage")
+#: Seconds and nanoseconds that stand for "for ever" in a quality of service.
+_FOR_EVER = (9223372036, 854775807)
 
 
 def available() -> bool:
@@ -58,13 +79,13 @@ def available() -> bool:
     return extras.available("ros")
 
 
-def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "mcap") -> Path:
+def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3") -> Path:
     """Write streams as a bag: all of it, or nothing.
 
     Args:
         path: folder of the bag; must not exist. Its name is part of the bag.
         streams: at most one of each type.
-        storage: "mcap" or "sqlite3".
+        storage: "sqlite3" or "mcap".
 
     Returns:
         ``path``.
@@ -79,7 +100,7 @@ def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "mcap") -
     if not chosen or len(chosen) != len(given):
         raise UsageError(
             "A bag holds one stream of each kind, and at least one in all.",
-            help="Give an ImuStream, a ScanStream, an OdometryStream, or several of them.",
+            help="Give an ImuStream, a ScanStream, an OdometryStream, a TruthStream, or several of them.",
             code="bag_streams",
         )
     if storage not in STORAGES:
@@ -92,14 +113,15 @@ def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "mcap") -
     plugin = rosbag2.StoragePlugin[storage.upper()]
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".bag-") as scratch:
         written = Path(scratch) / path.name  # the bag's files are called after their folder
-        with rosbag2.Writer(written, version=9, storage_plugin=plugin) as writer:
+        with rosbag2.Writer(written, version=8, storage_plugin=plugin) as writer:
             _write(writer, [chosen[kind] for kind in _TOPICS if kind in chosen])
+        (written / VIEW).write_text(rviz_view(chosen.values()), encoding="utf-8")
         shutil.move(written, path)
     return path
 
 
 def read_bag(path: Path) -> tuple[Stream, ...]:
-    """The streams of a bag that ``write_bag`` wrote, in the order imu, scan, odometry.
+    """The streams of a bag that ``write_bag`` wrote, in the order imu, scan, odometry, truth.
 
     Stamps come back to the nanosecond, ranges to 32 bits, headings within (-pi, pi].
 
@@ -119,9 +141,9 @@ def read_bag(path: Path) -> tuple[Stream, ...]:
     messages: dict[str, list[Any]] = {}
     try:
         with rosbag2.Reader(path) as reader:
-            wanted = {kind: topic for topic, kind in _TOPICS.values()}
+            wanted = set(_TOPICS.values())
             for connection, _, data in reader.messages():
-                if wanted.get(connection.msgtype) == connection.topic:
+                if (connection.topic, connection.msgtype) in wanted:
                     message = _typestore().deserialize_cdr(data, connection.msgtype)
                     messages.setdefault(connection.topic, []).append(message)
     except Exception as error:
@@ -159,19 +181,67 @@ def _typestore() -> Any:
 
 
 def _write(writer: Any, streams: list[Stream]) -> None:
-    """All messages in order of time; at one time in the order imu, scan, odometry."""
+    """All messages in order of time; at one time the clock, the frames, then imu, scan, odometry, truth."""
     store = _typestore()
+    stamped = [(stream, [round((float(t) + START_S) * 1e9) for t in stream.t]) for stream in streams]
+    poses = [(stream, stamps) for stream, stamps in stamped if isinstance(stream, OdometryStream)]
+    moments = sorted({stamp for _, stamps in stamped for stamp in stamps})
+    topics: list[tuple[tuple[str, str], Iterable[tuple[int, Any]]]] = [
+        (_CLOCK, ((stamp, _new("rosgraph_msgs/Clock", _time(stamp))) for stamp in moments)),
+        (_STATIC, _still(streams, moments)),
+        (_MOVING, (row for stream, stamps in poses for row in _moving(stream, stamps))),
+        *((_TOPICS[type(s)], zip(stamps, _messages(s, stamps), strict=True)) for s, stamps in stamped),
+    ]
     rows: list[tuple[int, int, Any, str, Any]] = []
-    for order, stream in enumerate(streams):
-        topic, kind = _TOPICS[type(stream)]
-        connection = writer.add_connection(topic, kind, typestore=store)
-        stamps = [round(float(t) * 1e9) for t in stream.t]
-        rows += [
-            (stamp, order, connection, kind, message)
-            for stamp, message in zip(stamps, _messages(stream, stamps), strict=True)
-        ]
+    for order, ((topic, kind), messages) in enumerate(topics):
+        quality = [_quality(lasting=topic == "/tf_static")]
+        connection = writer.add_connection(topic, kind, typestore=store, offered_qos_profiles=quality)
+        rows += [(stamp, order, connection, kind, message) for stamp, message in messages]
     for stamp, _, connection, kind, message in sorted(rows, key=lambda row: row[:2]):
         writer.write(connection, stamp, store.serialize_cdr(message, kind))
+
+
+def _quality(*, lasting: bool) -> Any:
+    """Reliable; lasting, as static frames need it, means that whoever listens later gets it, too."""
+    from rosbags import interfaces as qos
+
+    durability = qos.QosDurability.TRANSIENT_LOCAL if lasting else qos.QosDurability.VOLATILE
+    for_ever = qos.QosTime(*_FOR_EVER)
+    return qos.Qos(
+        qos.QosHistory.KEEP_LAST,
+        1 if lasting else 10,
+        qos.QosReliability.RELIABLE,
+        durability,
+        for_ever,
+        for_ever,
+        qos.QosLiveliness.AUTOMATIC,
+        for_ever,
+        False,
+    )
+
+
+def _frames(transforms: list[Any]) -> Any:
+    return _new("tf2_msgs/TFMessage", transforms)
+
+
+def _transform(stamp: int, frame: str, child: str, x: float, y: float, heading: float) -> Any:
+    placed = _new("geometry_msgs/Transform", _vector(x, y, 0.0), _about_z(heading))
+    return _new("geometry_msgs/TransformStamped", _header(stamp, frame), child, placed)
+
+
+def _still(streams: list[Stream], moments: list[int]) -> Iterator[tuple[int, Any]]:
+    """The frame of the odometry on that of the truth: both begin where the robot begins."""
+    odometry = next((stream for stream in streams if type(stream) is OdometryStream), None)
+    if odometry is not None and moments:
+        frame = TruthStream.frame
+        yield moments[0], _frames([_transform(moments[0], frame, odometry.frame, 0.0, 0.0, 0.0)])
+
+
+def _moving(stream: OdometryStream, stamps: list[int]) -> Iterator[tuple[int, Any]]:
+    """The frame that moves with an odometry, at each of its times."""
+    columns = (stream.x.tolist(), stream.y.tolist(), stream.heading.tolist())
+    for stamp, *pose in zip(stamps, *columns, strict=True):
+        yield stamp, _frames([_transform(stamp, stream.frame, stream.child_frame, *pose)])
 
 
 def _messages(stream: Stream, stamps: list[int]) -> Iterator[Any]:
@@ -189,7 +259,11 @@ def _new(kind: str, *values: Any) -> Any:
 
 
 def _header(stamp: int, frame: str) -> Any:
-    return _new("std_msgs/Header", _new("builtin_interfaces/Time", *divmod(stamp, 10**9)), frame)
+    return _new("std_msgs/Header", _time(stamp), frame)
+
+
+def _time(stamp: int) -> Any:
+    return _new("builtin_interfaces/Time", *divmod(stamp, 10**9))
 
 
 def _vector(x: float, y: float, z: float) -> Any:
@@ -257,7 +331,7 @@ def _odometry_messages(stream: OdometryStream, stamps: list[int]) -> Iterator[An
 
 def _times(messages: list[Any]) -> Any:
     stamps = [message.header.stamp for message in messages]
-    return np.array([stamp.sec + stamp.nanosec * 1e-9 for stamp in stamps])
+    return np.array([stamp.sec - START_S + stamp.nanosec * 1e-9 for stamp in stamps])
 
 
 def _imu(messages: list[Any]) -> Stream:
@@ -286,11 +360,11 @@ def _scan(messages: list[Any]) -> Stream:
     )
 
 
-def _odometry(messages: list[Any]) -> Stream:
+def _odometry(messages: list[Any], kind: type[OdometryStream] = OdometryStream) -> Stream:
     poses = [message.pose.pose for message in messages]
     twists = [message.twist.twist for message in messages]
     first = messages[0]
-    return OdometryStream(
+    return kind(
         _times(messages),
         np.array([pose.position.x for pose in poses]),
         np.array([pose.position.y for pose in poses]),
@@ -313,4 +387,5 @@ _READERS: dict[str, Callable[[list[Any]], Stream]] = {
     "/imu/data_raw": _imu,
     "/scan": _scan,
     "/odom": _odometry,
+    "/ground_truth": partial(_odometry, kind=TruthStream),
 }

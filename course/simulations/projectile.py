@@ -11,13 +11,15 @@ from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.integrators import STEPPERS
 from course.physics.interpolation import first_crossing, hermite
-from course.physics.simulator import Recording, Simulator
+from course.physics.simulator import Simulator
 from course.physics.state import RigidBodyState
 from course.simulations.base import METHOD, Column, Parameter, Result, Row, Simulation, duration, step
 from course.simulations.words import percent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from course.physics.recording import Recording
 
 __all__ = ["SIMULATION"]
 

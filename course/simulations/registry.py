@@ -25,6 +25,7 @@ SIMULATIONS = (
     "solver-iterations",
     "substeps",
     "environment",
+    "contact-models",
 )
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["KINDS", "ImuStream", "OdometryStream", "ScanStream", "Stream", "streams_from"]
+__all__ = ["KINDS", "ImuStream", "OdometryStream", "ScanStream", "Stream", "TruthStream", "streams_from"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class ImuStream:
     frame: str = "base_link"
 
     def __post_init__(self) -> None:
-        _settle(self, "imu", ("angular_velocity_z",))
+        _settle(self, ("angular_velocity_z",))
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class ScanStream:
     frame: str = "base_link"
 
     def __post_init__(self) -> None:
-        _settle(self, "scan", ("ranges",), dimensions=2)
+        _settle(self, ("ranges",), dimensions=2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,16 +93,32 @@ class OdometryStream:
     heading_variance: float = 0.0
 
     def __post_init__(self) -> None:
-        _settle(self, "odometry", ("x", "y", "heading", "speed", "turn_rate"))
+        _settle(self, ("x", "y", "heading", "speed", "turn_rate"))
 
 
-Stream = ImuStream | ScanStream | OdometryStream
+@dataclass(frozen=True, eq=False)
+class TruthStream(OdometryStream):
+    """Where the robot truly is, which only a simulation knows; attributes as of ``OdometryStream``.
+
+    It has a frame of its own, because in ROS a frame has one parent and that of ``base_link`` is ``odom``.
+    """
+
+    frame: str = "map"
+    child_frame: str = "base_link_true"
+
+
+Stream = ImuStream | ScanStream | OdometryStream  # a TruthStream is an OdometryStream
 
 #: What the seconds of a ROS stamp can hold.
 _LATEST = 2**31
 
 #: Kind of stream, as plain data name it: its type.
-KINDS: dict[str, type[Stream]] = {"imu": ImuStream, "scan": ScanStream, "odometry": OdometryStream}
+KINDS: dict[str, type[Stream]] = {
+    "imu": ImuStream,
+    "scan": ScanStream,
+    "odometry": OdometryStream,
+    "truth": TruthStream,
+}
 
 
 def streams_from(plain: Mapping[str, Mapping[str, Any]]) -> tuple[Stream, ...]:
@@ -140,12 +156,13 @@ def streams_from(plain: Mapping[str, Mapping[str, Any]]) -> tuple[Stream, ...]:
     return tuple(streams)
 
 
-def _settle(stream: Stream, kind: str, names: tuple[str, ...], dimensions: int = 1) -> None:
+def _settle(stream: Stream, names: tuple[str, ...], dimensions: int = 1) -> None:
     """Make the arrays of a stream float arrays that fit together, and its numbers floats.
 
     Raises:
         UsageError: they do not fit, or times are not finite, not ordered or before the start.
     """
+    kind = next(name for name, made in KINDS.items() if made is type(stream))
     t = _array(stream.t, kind, "t", 1)
     if not (np.all(np.isfinite(t)) and np.all(np.diff(t) >= 0) and np.all((t >= 0) & (t < _LATEST))):
         raise UsageError(

@@ -18,6 +18,7 @@ scenes = kit.companion("digital-twin", "scenes")
 _DT, _N = 0.05, 480
 _TRACK, _RADIUS, _COUNTS = 0.4, 0.08, 64
 _START = (1.5, 2.0, 0.0)
+_GRIP = np.array([1.0, 0.99])  # the right wheel slips a little, and no encoder sees it
 _BEAMS = np.linspace(-2.0, 2.0, 81)
 _REACH, _SIGMA = 3.5, 0.02
 _DENSITY, _WALK, _BIAS = 0.002, 0.001, 0.01
@@ -28,9 +29,8 @@ def _truth():
     """Wheel speeds (N, 2), m/s, and true poses (N + 1, 3): an eight, drawn a little askew by slip."""
     rate = np.where(np.arange(_N) < _N // 2, 1.0, -1.0) * 2 * math.pi / (_DT * _N / 2)
     speeds = 0.45 + rate[:, None] * _TRACK / 2 * np.array([-1.0, 1.0])
-    slip = 1.0 - np.array([0.0, 0.01])  # the right wheel slips a little, and no encoder sees it
     poses = [np.array(_START)]
-    for left, right in speeds * slip:
+    for left, right in speeds * _GRIP:
         turn, way = (right - left) / _TRACK * _DT, (left + right) / 2 * _DT
         x, y, heading = poses[-1]
         middle, chord = heading + turn / 2, way * float(np.sinc(turn / (2 * math.pi)))
@@ -119,9 +119,9 @@ def streams(submission):
     rates = kit.attempt(lambda: _gyroscope(submission))
     scans = kit.attempt(lambda: _scans(submission))
     odometry = kit.attempt(lambda: _odometry(submission))
-    t = _DT * np.arange(1, _N + 1)
+    t = _DT * np.arange(_N + 1)
     if rates is not None:
-        found["imu"] = {"t": t, "angular_velocity_z": rates, "variance": _DENSITY**2 / _DT}
+        found["imu"] = {"t": t[1:], "angular_velocity_z": rates, "variance": _DENSITY**2 / _DT}
     if scans is not None:
         found["scan"] = {
             "t": scans[0],
@@ -131,13 +131,21 @@ def streams(submission):
             "range_max": _REACH,
         }
     if odometry is not None:
-        poses, seen = odometry
-        found["odometry"] = {
-            "t": t,
-            "x": poses[1:, 0],
-            "y": poses[1:, 1],
-            "heading": poses[1:, 2],
-            "speed": seen.mean(axis=1),
-            "turn_rate": (seen[:, 1] - seen[:, 0]) / _TRACK,
-        }
+        found["odometry"] = _moves(t, *odometry)
+    if found:
+        speeds, poses = _truth()
+        found["truth"] = _moves(t, poses, speeds * _GRIP)
     return found
+
+
+def _moves(t, poses, wheels):
+    """Poses (N + 1, 3) with the speed of the step that led to each; the first has that of the next."""
+    wheels = np.vstack((wheels[:1], wheels))
+    return {
+        "t": t,
+        "x": poses[:, 0],
+        "y": poses[:, 1],
+        "heading": poses[:, 2],
+        "speed": wheels.mean(axis=1),
+        "turn_rate": (wheels[:, 1] - wheels[:, 0]) / _TRACK,
+    }

@@ -147,14 +147,26 @@ def test_choose_nothing(submission):
 
 
 @pytest.mark.task("choose_engine")
-@pytest.mark.points(4)
+@pytest.mark.points(3)
 def test_choose_real_engines(submission):
-    """Among ODE, Bullet, PhysX and MuJoCo as measured, each is chosen for the job it is known for"""
+    """Among ODE, Bullet, PhysX and MuJoCo as measured, the cheapest that fits is chosen for six jobs"""
     reports = measured.reports()
     choosing.expect_choices(
         submission,
         [(copy.deepcopy(reports), requirements, name) for requirements, name in measured.QUESTIONS.values()],
     )
+
+
+@pytest.mark.task("choose_engine")
+@pytest.mark.points(1)
+def test_choose_by_numbers(submission):
+    """Other names and another order change nothing, and reports and requirements stay as they were"""
+    reports = {name: {**boxes.TRUTH[name], "cost": cost} for name, cost in
+               (("cork", 5.0), ("anvil", 8.0), ("balsa", 1.0))}  # fmt: skip
+    needs = [measured.need("order", ">=", 2)]
+    swapped = {"balsa": reports["anvil"], "ode": reports["balsa"], "mujoco": reports["cork"]}
+    choosing.expect_choices(submission, [(reports, needs, "cork"), (swapped, needs, "mujoco")])
+    choosing.expect_untouched(submission, reports, needs)
 
 
 @pytest.mark.task("engine_facts")

@@ -21,9 +21,17 @@ WORDS: dict[str, tuple[str, str]] = {
         "Run for one fixed time, so that half the step means twice as many steps, and compare the ends.",
     ),
     "ORDER_AT_TURNING_POINT": (
-        "First-order engines look like second-order ones: the runs start or end where the error happens to "
-        "vanish, at rest or after a whole half-turn.",
+        "Engines look one or two orders better than they are: the runs start or end where the leading error "
+        "happens to vanish, at rest or after a whole half-turn.",
         "Start with a position and a velocity, end at an ordinary moment, and compare both halves.",
+    ),
+    "ORDER_WITHOUT_LOG": (
+        "It is two to the power of the order: the ratio of the two differences as it is.",
+        "Take the logarithm to base two of that ratio, math.log2, and round it.",
+    ),
+    "ORDER_OTHER_LOG": (
+        "It is the logarithm of the ratio to another base than two.",
+        "Each halving of the step divides the difference by two to the power of the order: take math.log2.",
     ),
     "ORDER_IN_ROUNDING": (
         "Only the accurate engines are wrong: at steps this small their differences are mere rounding.",
@@ -73,6 +81,11 @@ WORDS: dict[str, tuple[str, str]] = {
     "DAMPING_OF_ENERGY": (
         "It is twice too large: the energy goes with the square of the speed and fades twice as fast.",
         "Take the logarithm of the speed, not of its square.",
+    ),
+    "DAMPING_NOT_LOG": (
+        "It is the share of the speed that is lost, divided by the time: that is less than the rate, and the "
+        "less the longer the run.",
+        "The speed falls as exp(-c t): take -ln(v/v0) / t.",
     ),
     "DAMPING_OF_ENVELOPE": (
         "It is half of what it should be: on a spring the swing fades at half the rate.",
@@ -197,9 +210,14 @@ WORDS: dict[str, tuple[str, str]] = {
         "through.",
     ),
     "TUNNEL_FEW_STARTS": (
-        "It is a little too high: between the starts that were tried there is one that gets through.",
+        "It is somewhat too high: between the starts that were tried there is one that gets through.",
         "Try more of them (with k starts a gap up to one part in k stays unseen), or look where the samples "
         "fall and shift the start so that one lies just short of the wall.",
+    ),
+    "TUNNEL_NEVER_SEEN": (
+        "It says that nothing gets through where bodies do.",
+        "Is every run long enough to bring the body past the wall, 2 m and more? Do you look on which side "
+        "it ends, try speeds up to 200 m/s, and many starts for each?",
     ),
     "TUNNEL_NO_INFINITY": (
         "An engine through which nothing passes gets the end of the search as its answer.",
@@ -247,7 +265,7 @@ WORDS: dict[str, tuple[str, str]] = {
         "What was not measured was not met: test `report.get(key) is None` first and call it a failure.",
     ),
     "NEVER_CHOOSES": (
-        "It returns None every time, as if no engine ever met the requirements.",
+        "It returns None every time, whatever is asked and whatever the engines are called.",
         "Return the name of the cheapest that fits. Does a return inside the loop come too early, or is only "
         "one engine looked at?",
     ),
@@ -271,6 +289,10 @@ WORDS: dict[str, tuple[str, str]] = {
         "It takes an engine that meets some of the requirements and not all.",
         "Hard requirements are no wish list: all of them must be met.",
     ),
+    "FIRST_REQUIREMENT_ONLY": (
+        "It looks at one of the requirements and not at the rest.",
+        "Does a return inside the loop come before all of them were looked at? All must be met.",
+    ),
     "STRICT_COMPARISON": (
         "An engine that meets a limit exactly is refused.",
         '"<=" and ">=" include equality.',
@@ -284,8 +306,12 @@ WORDS: dict[str, tuple[str, str]] = {
         "Return None if no engine meets every requirement.",
     ),
     "DEPENDS_ON_NAMES": (
-        "The same reports under other names, or in another order, give another choice.",
+        "The same reports under other names give another choice.",
         "Look at the reports only; a name is no measurement.",
+    ),
+    "DEPENDS_ON_ORDER": (
+        "The same reports in another order give another choice.",
+        "Compare the costs of all engines that fit, wherever they stand.",
     ),
     "NOT_A_NAME": (
         "It does not return one of the names it was given.",
@@ -310,8 +336,14 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
     "NOT_SPDX": (
         "A licence is named in everyday words.",
-        "Use the identifiers of the SPDX list, such as MIT or GPL-3.0-only; two that may be chosen from are "
-        "joined by OR.",
+        "Look its identifier up in the SPDX list (spdx.org/licenses); two that may be chosen from are joined "
+        "by OR.",
+    ),
+    "OTHER_LICENCE": (
+        "A licence is named by a proper identifier, and it is not the one of this engine, or not one of "
+        "those it may be used under.",
+        "Open the licence file in the engine's repository: version and kind both count, and where there are "
+        "two files either will do.",
     ),
     "SOURCE_NOT_A_URL": (
         "A source is no address that somebody could open.",

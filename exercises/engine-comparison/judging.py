@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from course.grading import kit
@@ -77,6 +78,16 @@ def _expect_kind(case: Any, key: str) -> None:
     if key != "order":
         case.report[key] = number
         return
+    if not math.isfinite(number):  # before it is called anything else
+        kit.expect_close(
+            number,
+            case.truth[key],
+            source="a whole number",
+            quantity=key,
+            input={"engine": case.name},
+            message="`order` is not a number that could be rounded.",
+            help="Print the two differences and their ratio.",
+        )
     if not number.is_integer():
         kit.fail(
             "`order` is not a whole number.",

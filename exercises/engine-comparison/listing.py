@@ -47,13 +47,16 @@ def by_pair(listed: list[dict[str, Any]]) -> dict[tuple[str, str], dict[str, Any
 
 def expect_complete(listed: list[dict[str, Any]]) -> None:
     """Each pair of engine and field once, no other, each value of its kind."""
-    pairs = [(entry["engine"], entry["field"]) for entry in listed]
-    for entry in listed:
-        if entry["engine"] not in ENGINES or entry["field"] not in FIELDS:
+    pairs = [
+        (kit.as_text(entry["engine"], "an engine"), kit.as_text(entry["field"], "a field"))
+        for entry in listed
+    ]
+    for engine, field in pairs:
+        if engine not in ENGINES or field not in FIELDS:
             kit.fail(
                 "An entry is about an engine or a field that nobody asked for.",
                 help=f"The engines are {', '.join(ENGINES)}; the fields are {', '.join(FIELDS)}.",
-                actual=[entry["engine"], entry["field"]],
+                actual=[engine, field],
             )
     for pair in ((engine, field) for engine in ENGINES for field in FIELDS):
         if pairs.count(pair) != 1:
@@ -77,7 +80,7 @@ def _expect_kind(entry: dict[str, Any]) -> None:
         if not names or not all(isinstance(item, str) and item.strip() for item in names):
             kit.fail(f"The {field} of an engine is not a list of names.", help=_USED_BY, actual=value)
     elif field == "default_step_s":
-        if value is not None and not (kit.as_number(value, name) > 0 and math.isfinite(value)):
+        if value is not None and not 0 < kit.as_number(value, name) < math.inf:
             kit.fail("A default step is not a positive number of seconds.", help=_STEP, actual=value)
     else:
         text = kit.as_text(value, name)

@@ -174,17 +174,74 @@ def _one_start(cases: list[Any]) -> bool:
     return sum(len(places) > 1 for places in starts.values()) <= 0.2 * len(starts)
 
 
-def _too_high(key: str, cases: list[Any]) -> bool:
+def _too_high(most: float) -> Callable[[str, list[Any]], bool]:
+    """Wrong values are too high, finite, and up to so many times the right ones."""
+
+    def explains(key: str, cases: list[Any]) -> bool:
+        wrong = [case for case in cases if not right(key, case)]
+        return all(
+            _finite(key)(case)
+            and math.isfinite(case.measured(key))
+            and case.truth[key] < case.measured(key) <= most * case.truth[key]
+            for case in wrong
+        )
+
+    return explains
+
+
+def _infinite(key: str, cases: list[Any]) -> bool:
+    """Some value is infinite where the right one is not, and every other wrong one is too high."""
     wrong = [case for case in cases if not right(key, case)]
-    return all(_finite(key)(case) and case.measured(key) > case.truth[key] for case in wrong)
+    return any(math.isinf(case.measured(key)) for case in wrong) and all(
+        case.measured(key) > case.truth[key] for case in wrong
+    )
 
 
 def _flattered(key: str, cases: list[Any]) -> bool:
-    """Wrong values are too high, and among them are those of all first-order engines that keep area."""
+    """Wrong values are up to two too high, those of first-order engines that keep area among them, and runs
+    were made that start at rest or in the middle, or end after whole half-turns."""
     wrong = [case for case in cases if not right(key, case)]
-    return all(case.measured(key) > case.truth[key] for case in wrong) and all(
-        case in wrong for case in cases if case.truth["order"] == 1 and _keeps_area(case)
+    special = any(
+        scene == "spring" and n > 2 and (not any(q0) or not any(v0) or _half_turns(n * h * case.box.omega))
+        for case in cases
+        for scene, q0, v0, h, n, _ in case.runs
     )
+    return (
+        special
+        and all(case.truth[key] < case.measured(key) <= case.truth[key] + 2 for case in wrong)
+        and all(case in wrong for case in cases if case.truth["order"] == 1 and _keeps_area(case))
+    )
+
+
+def _half_turns(angle: float) -> bool:
+    return abs(angle / math.pi - round(angle / math.pi)) < 1e-3
+
+
+def _share_lost(key: str, cases: list[Any]) -> bool:
+    """Damped engines get (1 - exp(-c T)) / T, with T the time of a run of a free body without force."""
+
+    def looks(case: Any) -> bool:
+        times = {
+            n * h for scene, _, v0, h, n, force in case.runs if scene == "free" and any(v0) and not any(force)
+        }
+        lost = [(1 - math.exp(-case.truth[key] * t)) / t for t in times if case.truth[key] * t > 0.05]
+        return any(_near(case.measured(key), value, 0.005, 0.0) for value in lost)
+
+    damped = [case for case in cases if _damped(case)]
+    return bool(damped) and all(right(key, c) for c in cases if c not in damped) and all(map(looks, damped))
+
+
+def _tiny_steps(key: str, cases: list[Any]) -> bool:
+    """On the spring, runs were made whose differences are lost in rounding for a method of fourth order."""
+    return any(
+        scene == "spring" and n > 2 and h * case.box.omega < 0.005
+        for case in cases
+        for scene, _, _, h, n, _ in case.runs
+    )
+
+
+def _both(*looks: Callable[[str, list[Any]], bool]) -> Callable[[str, list[Any]], bool]:
+    return lambda key, cases: all(look(key, cases) for look in looks)
 
 
 def _no_zero(key: str, cases: list[Any]) -> bool:
@@ -227,8 +284,11 @@ _HYPOTHESES: dict[str, list[tuple[str, Any]]] = {
         ("ORDER_ASSUMED", lambda key, cases: len({case.measured(key) for case in cases}) == 1),
         ("ORDER_LOCAL", _says(lambda t, _: t + 1)),
         ("ORDER_SIGN", _says(lambda t, _: -t)),
-        ("ORDER_AGAINST_UNDAMPED", _where(_damped, lambda value, t: value < t)),
-        ("ORDER_IN_ROUNDING", _where(_order_is(4), lambda value, t: value < t)),
+        ("ORDER_WITHOUT_LOG", _says(lambda t, _: 2**t, 0.0)),
+        ("ORDER_OTHER_LOG", _says(lambda t, _: round(t * math.log(2)), 0.0)),
+        ("ORDER_OTHER_LOG", _says(lambda t, _: round(t * math.log10(2)), 0.0)),
+        ("ORDER_AGAINST_UNDAMPED", _where(_damped, lambda value, t: -1 <= value < t)),
+        ("ORDER_IN_ROUNDING", _both(_where(_order_is(4), lambda value, t: value < t), _tiny_steps)),
         ("ORDER_AT_TURNING_POINT", _flattered),
     ],
     "symplectic": [
@@ -247,6 +307,7 @@ _HYPOTHESES: dict[str, list[tuple[str, Any]]] = {
         ("DAMPING_SIGN", _says(lambda t, _: -t)),
         ("DAMPING_PER_STEP", _says(lambda t, case: t * case.box.dt)),
         ("DAMPING_OF_ENERGY", _says(lambda t, _: 2 * t)),
+        ("DAMPING_NOT_LOG", _share_lost),
         ("DAMPING_OF_ENVELOPE", _says(lambda t, _: t / 2)),
         ("DAMPING_AT_DT", _says(_at_dt(lambda kept: -math.log(kept)), 0.002, 0.001)),
         ("DAMPING_AT_DT", _says(_at_dt(lambda kept: 1 - kept), 0.002, 0.001)),
@@ -259,7 +320,10 @@ _HYPOTHESES: dict[str, list[tuple[str, Any]]] = {
         ("STABLE_BY_DETERMINANT", _where(_keeps_area, lambda value, t: value > 2 * t)),
         ("LIMIT_FROM_ABOVE", _where(_recovers, lambda value, t: value > t)),
         ("NO_ZERO", _no_zero),
-        ("NO_INFINITY", _where(lambda case: math.isinf(case.truth["max_stable_step"]))),
+        (
+            "NO_INFINITY",
+            _where(lambda case: math.isinf(case.truth["max_stable_step"]), lambda value, _: value > 0),
+        ),
         (
             "LIMIT_COARSE",
             lambda key, cases: all(
@@ -284,7 +348,8 @@ _HYPOTHESES: dict[str, list[tuple[str, Any]]] = {
         ("PENETRATION_SIGN", _says(lambda _, case: max(0.0, -_resting(case)))),
         ("PENETRATION_NEGATIVE", _says(lambda _, case: _resting(case))),
         ("PENETRATION_ABSOLUTE", _says(lambda _, case: abs(_resting(case)))),
-        ("PENETRATION_TOO_EARLY", _where(_soft, lambda value, t: value > t)),
+        # A body that is put down goes at most twice as deep as it comes to rest.
+        ("PENETRATION_TOO_EARLY", _where(_soft, lambda value, t: t < value <= 2.1 * t)),
         ("PENETRATION_TOO_EARLY", _says(lambda _, case: _landing(case), 0.05)),
     ],
     "restitution": [
@@ -304,9 +369,13 @@ _HYPOTHESES: dict[str, list[tuple[str, Any]]] = {
         ("TUNNEL_BY_GEOMETRY", _says(lambda _, case: _wide_zone(case) / case.box.dt)),
         ("TUNNEL_BY_GEOMETRY", _says(lambda _, case: _wide_zone(case) / 2 / case.box.dt)),
         ("TUNNEL_WITHOUT_RADIUS", _says(lambda _, case: case.box.wall_thickness / case.box.dt)),
-        ("TUNNEL_NO_INFINITY", _where(lambda case: math.isinf(case.truth["tunnelling_speed"]))),
-        ("TUNNEL_ONE_START", lambda key, cases: _too_high(key, cases) and _one_start(cases)),
-        ("TUNNEL_FEW_STARTS", _too_high),
+        (
+            "TUNNEL_NO_INFINITY",
+            _where(lambda case: math.isinf(case.truth["tunnelling_speed"]), lambda value, _: value > 0),
+        ),
+        ("TUNNEL_ONE_START", _both(_too_high(math.inf), lambda _, cases: _one_start(cases))),
+        ("TUNNEL_FEW_STARTS", _too_high(1.5)),
+        ("TUNNEL_NEVER_SEEN", _infinite),
     ],
     "deterministic": [
         ("DETERMINISM_ONE_RUN", _repeated("never")),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 import numpy as np
 
@@ -57,11 +56,19 @@ def _table(submission):
     return kit.Section("Your reports beside the truth", text, columns=("key", *names), rows=tuple(rows))
 
 
+def _number(value):
+    """A student's value as a float, as large as it may be; None if it is no number."""
+    return kit.attempt(lambda: kit.as_number(value))
+
+
 def _right(key, case):
     value = case.measured(key)
-    if value is None or isinstance(value, str | list | dict):
+    if isinstance(value, bool | None):
+        return value is not None and key not in probes.TOLERANCES and value == case.truth[key]
+    number = _number(value)
+    if number is None:
         return False
-    return bool(probes.right(key, case))
+    return bool(probes.right(key, bench.Case(case.name, case.box, case.truth, report={key: number})))
 
 
 def _shown(value):
@@ -69,18 +76,19 @@ def _shown(value):
         return "not yet"
     if isinstance(value, bool | str):
         return str(value)
-    return f"{value + 0.0:.4g}" if isinstance(value, int | float) else "?"  # no "-0"
+    number = _number(value)
+    return "?" if number is None else f"{number + 0.0:.4g}"  # no "-0"
 
 
 def _convergence(submission):
     """How far each engine's end of a spring run is from its own limit, and the order you reported."""
     found = kit.attempt(lambda: _cases(submission)) or []
-    orders = {case.name: case.measured("order") for case in found}
+    orders = {case.name: _number(case.measured("order")) for case in found}
     series = []
     for name, box in THREE.items():
         hs, gaps = _gaps(box)
         order = orders.get(name)
-        known = isinstance(order, int | float) and math.isfinite(order) and abs(order) < 12
+        known = order is not None and abs(order) < 12
         series.append(
             kit.Series(f"{name}, order {order:g} as you say" if known else name, hs, gaps, kind="points")
         )

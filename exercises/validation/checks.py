@@ -8,47 +8,48 @@ import numpy as np
 import pytest
 
 from course.grading import kit
+from course.physics import systems
 
 probes = kit.companion("validation", "probes")
-runs = kit.companion("validation", "probes_runs")
 shared = kit.companion("validation", "expectations")
+intervals = kit.companion("validation", "intervals")
+twins = kit.companion("validation", "twins")
+verdict = kit.companion("validation", "probes_verdict")
+verdicts = kit.companion("validation", "verdicts")
 
 
 @pytest.mark.task("rmse")
 @pytest.mark.points(2)
 def test_rmse_by_hand(submission):
     """rmse is the root of the mean square, a constant error included"""
-    cases = [[3.0, -4.0, 0.0, 5.0], [2.0, 2.0, 2.0], [0.0, 0.0]]
-    for e, value in zip(cases, submission.call_each("rmse", [(np.array(e),) for e in cases]), strict=True):
-        kit.expect_close(
-            value,
-            math.sqrt(sum(x * x for x in e) / len(e)),
-            abs=1e-12,
-            source=shared.EXACT,
-            quantity="rmse",
-            units="m",
-            input={"e": e},
-            message="The root mean square error is wrong.",
-            help="Square the errors, average the squares, take the root: in this order from right to left.",
-            diagnose=lambda value=value, e=e: probes.of_rmse(value, e),
-        )
+    for e in ([3.0, -4.0, 0.0, 5.0], [2.0, 2.0, 2.0], [0.0, 0.0]):
+        shared.expect_rmse(submission, e)
 
 
 @pytest.mark.task("bias_variance")
-@pytest.mark.points(3)
+@pytest.mark.points(2)
 def test_bias_variance_by_hand(submission):
-    """Bias and variance of a few errors, the variance divided by N"""
+    """Bias and variance of a few errors, too large or too small, the variance divided by N"""
     shared.expect_bias_variance(submission, [0.5, -0.2, 0.9, 0.1, 1.7])
+    shared.expect_bias_variance(submission, [-0.5, 0.2, -0.9, -0.1, -1.7])
+
+
+@pytest.mark.task("bias_variance")
+@pytest.mark.points(1)
+def test_bias_variance_large_mean(submission):
+    """The variance of errors that are large and hardly scatter"""
+    shared.expect_large_mean(submission, 1e7 + np.array([0.3, 1.1, -0.7, 0.5, 1.9]))
 
 
 @pytest.mark.task("wrap_angle")
 @pytest.mark.points(3)
 def test_wrap_angle_some(submission):
     """Angles around the turn come out between minus half a turn and half a turn"""
-    small = np.array([0.3, -0.3, 3.0, -3.0, 0.0, 1.8, -2.4])
-    turns = np.array([0, 1, -1, 1, 0, -1, 1])
+    small = np.array([0.3, -0.3, 3.0, -3.0, 0.0, 1.8, -2.4, 1.0, -2.0])
+    turns = np.array([0, 1, -1, 1, 0, -1, 1, 3, -2])
     angles = small + 2 * np.pi * turns
-    values = kit.as_vector(submission.call("wrap_angle", angles), len(angles), "the result")
+    inspected = submission.call_inspect("wrap_angle", angles)
+    values = kit.as_vector(inspected.value, len(angles), "the result")
     kit.expect_array(
         values,
         small,
@@ -61,6 +62,7 @@ def test_wrap_angle_some(submission):
         help="Take off whole turns until every angle lies in [-pi, pi).",
         diagnose=lambda: probes.of_wrapped(values, angles),
     )
+    shared.expect_left_alone(inspected, [angles], ["e"])
 
 
 @pytest.mark.task("nees")
@@ -81,10 +83,10 @@ def test_nis_by_hand(submission):
 @pytest.mark.points(4)
 def test_consistency_band_table(submission):
     """The band agrees with a printed table of the chi-square distribution"""
-    for dof, count in ((2, 20), (20, 1)):
-        value = submission.call("consistency_band", dof, count, 0.05)
+    for dof, count, alpha in ((2, 20, 0.05), (20, 1, 0.05), (2, 20, 0.1)):
+        value = submission.call("consistency_band", dof, count, alpha)
         lo, hi = (kit.as_number(x, name) for x, name in zip(kit.as_tuple(value, _BAND), _BAND, strict=True))
-        expected = [_TABLE[dof * count, p] / count for p in (0.025, 0.975)]
+        expected = [_TABLE[dof * count, p] / count for p in (alpha / 2, 1 - alpha / 2)]
         for actual, wanted, name in zip((lo, hi), expected, _BAND, strict=True):
             kit.expect_close(
                 actual,
@@ -92,12 +94,12 @@ def test_consistency_band_table(submission):
                 rel=0.01,
                 source="the contract's 1 %",
                 quantity=name,
-                input={"dof": dof, "runs": count, "alpha": 0.05},
+                input={"dof": dof, "runs": count, "alpha": alpha},
                 message="The band is not that of an average of chi-square numbers.",
                 help="The sum over the runs is chi-square with dof * runs degrees of freedom: take its "
                 "quantiles at alpha/2 and 1 - alpha/2, and divide both by runs.",
-                diagnose=lambda lo=lo, hi=hi, dof=dof, count=count: probes.of_band(
-                    lo, hi, dof, count, 0.05, _tabulated, _NORMAL.get
+                diagnose=lambda lo=lo, hi=hi, dof=dof, count=count, alpha=alpha: probes.of_band(
+                    lo, hi, dof, count, alpha, _tabulated, _NORMAL.get
                 ),
             )
 
@@ -122,7 +124,7 @@ _TABLE = {
     (40, 0.95): 55.758,
     (40, 0.975): 59.342,
 }
-_NORMAL = {0.975: 1.959964}
+_NORMAL = {0.975: 1.959964, 0.95: 1.644854}
 
 
 def _tabulated(degrees, p):
@@ -136,46 +138,29 @@ def test_coverage_counts(submission):
     y = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
     lo = np.array([-1.0, 1.0, 2.5, 2.0, 4.5, 4.0, 5.0, 6.0])
     hi = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 5.0, 7.0, 8.0])
-    value = submission.call("coverage", y, lo, hi)
-    kit.expect_close(
-        value,
-        0.75,
-        abs=1e-12,
-        source=shared.EXACT,
-        quantity="coverage",
-        input={"y": y, "lo": lo, "hi": hi},
-        message="The share of covered values is wrong.",
-        help="Count the values with lo <= y <= hi and divide by how many there are.",
-        diagnose=lambda: probes.of_coverage(value, y, lo, hi),
-    )
+    shared.expect_coverage(submission, y, lo, hi)
 
 
 @pytest.mark.task("block_bootstrap_ci")
-@pytest.mark.points(5)
+@pytest.mark.points(3)
 def test_bootstrap_width(submission):
     """Intervals for the mean of correlated errors are about as wide as they must be"""
-    n, phi, block = 400, 0.9, 40
-    calls = [
-        (e, shared.MEAN, block, 70, 0.05, np.random.default_rng(i))
-        for i, e in enumerate(shared.correlated(2718, 30, n, phi))
-    ]
-    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", calls))
-    kit.expect_bounded(
-        float(np.mean(ends[:, 1] - ends[:, 0])) / (2 * 1.96 * shared.spread_of_mean(n, phi)),
-        low=0.55,
-        high=1.05,
-        source="correct variants were seen between 0.65 and 0.86; resampling one by one gives 0.22",
-        quantity="mean width over true width",
-        input={
-            "series": "30, each sample keeps 0.9 of the one before",
-            "N": n,
-            "block": block,
-            "alpha": 0.05,
-        },
-        message="The intervals do not have the width that the scatter of the mean asks for.",
-        help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
-        diagnose=lambda: runs.of_width(submission, ends, np.array([np.mean(call[0]) for call in calls])),
-    )
+    intervals.expect_width(submission, np.random.default_rng(2718), 1.0, 0.0)
+
+
+@pytest.mark.task("block_bootstrap_ci")
+@pytest.mark.points(1)
+def test_bootstrap_resamples(submission):
+    """24 resamples of 250 errors in blocks of 12: each as long as the series, which is left alone"""
+    intervals.expect_resamples(submission, 3)
+
+
+@pytest.mark.task("block_bootstrap_ci")
+@pytest.mark.points(1)
+def test_bootstrap_chance(submission):
+    """The width follows alpha, the statistic is the given one, and all chance comes from rng"""
+    statistic = systems.AveragePolynomial([0.0, 0.0, 1.0])
+    intervals.expect_level(submission, np.random.default_rng(161), statistic)
 
 
 @pytest.mark.task("energy_error")
@@ -197,7 +182,7 @@ def test_contact_force_late(submission):
 
 
 @pytest.mark.task("cross_validate")
-@pytest.mark.points(4)
+@pytest.mark.points(3)
 def test_cross_validate_folds(submission):
     """Each fold is predicted by a model that has not seen it"""
     rng = np.random.default_rng(31)
@@ -208,54 +193,76 @@ def test_cross_validate_folds(submission):
     shared.expect_folds(submission, data, 3)
 
 
+@pytest.mark.task("cross_validate")
+@pytest.mark.points(1)
+def test_cross_validate_lengths(submission):
+    """Folds of different size, of runs of different length, count by their samples"""
+    rng = np.random.default_rng(32)
+    data = []
+    for i, n in enumerate((8, 40, 15, 60, 25)):
+        u = rng.standard_normal(n)
+        data.append({"id": f"run {i}", "u": u, "y": (1 + 0.3 * i) * u + 0.05 * rng.standard_normal(n)})
+    shared.expect_folds(submission, data, 2)
+
+
 @pytest.mark.task("validate")
-@pytest.mark.points(3)
+@pytest.mark.points(2)
 def test_validate_late(submission):
-    """A perfect simulation that is 50 ms late is refused for that and for what it leads to"""
-    t = 0.02 * np.arange(400)  # eight whole periods, so the numbers are known in closed form
-    y = np.sin(2 * np.pi * (t - 0.05))
-    sim = {"calibrated_on": [], "runs": [{"id": "a", "t": t, "y": y, "sigma": np.full(400, 0.4)}]}
-    real = {"runs": [{"id": "a", "t": t, "y": np.sin(2 * np.pi * t)}]}
-    spec = {"rmse_max": 0.1, "bias_max": 0.05, "lag_max_s": 0.02, "coverage_min": 0.9}
-    expected = {
-        "reasons": ["lag", "rmse"],
-        "rmse": math.sqrt(2) * math.sin(math.pi * 0.05),
-        "bias": 0.0,
-        "lag_s": 0.05,
-        "coverage": 1.0,
-        "runs_used": ["a"],
+    """A perfect simulation that is late is refused, with one lag for runs of different step and size"""
+    waves = {  # id: (samples, dt, what it swings about, amplitude, how late the simulation is)
+        "a": (400, 0.02, 1.5, 1.0, 0.06),
+        "b": (600, 0.01, -1.0, 0.5, 0.02),
+        "c": (300, 0.02, 0.4, 0.7, 0.04),
     }
-    shown = {"real": "sin(2 pi t), 8 s at 0.02 s", "sim": "the same, 0.05 s late, sigma 0.4", "spec": spec}
-    runs.expect_report(submission, sim, real, spec, expected, shown)
+    sim, real, curves = {"calibrated_on": [], "runs": []}, {"runs": []}, {}
+    for name, (n, dt, middle, size, late) in waves.items():
+        t = dt * np.arange(n)
+        speed = lambda t, m=middle, s=size, late=late: m + s * np.sin(2 * np.pi * (t - late))  # noqa: E731
+        y = middle + size * np.sin(2 * np.pi * t)
+        sim["runs"].append({"id": name, "t": t, "y": speed(t), "sigma": np.full(n, 0.4)})
+        real["runs"].append({"id": name, "t": t.copy(), "y": y})
+        curves[name] = (t, y, speed)
+    spec = {"rmse_max": 0.1, "bias_max": 0.05, "lag_max_s": 0.02, "coverage_min": 0.9, "coverage_max": 1.1}
+    right = verdict.facts(sim, real, verdict.Lags(curves, 0.06))
+    shown = {
+        "runs": "c + A sin(2 pi t); sim the same, late",
+        "c, A, late": list(waves.values()),
+        "spec": spec,
+    }
+    verdicts.expect_report(submission, sim, real, spec, right, shown)
 
 
 @pytest.mark.task("validate")
-@pytest.mark.points(3)
+@pytest.mark.points(2)
 def test_validate_accepts(submission):
-    """A good simulation is accepted on the one run that it was not calibrated on"""
-    t = 0.01 * np.arange(801)
-    wave = np.sin(2 * np.pi * 0.5 * t) + 0.3 * np.cos(2 * np.pi * 1.25 * t)
-    noise = 0.02 * np.where(np.arange(801) % 2, 1.0, -1.0)  # so that every number is known by heart
-    a = {"id": "a", "t": t, "y": wave.copy(), "sigma": np.full(801, 0.02)}
-    b = {"id": "b", "t": t, "y": 1.5 * wave, "sigma": np.full(801, 0.02)}
-    sim = {"calibrated_on": ["b"], "runs": [b, a]}
-    real = {"runs": [{"id": "a", "t": t, "y": wave + noise}, {"id": "b", "t": t, "y": wave}]}
-    spec = {"rmse_max": 0.03, "bias_max": 0.01, "lag_max_s": 0.005, "coverage_min": 0.9}
-    expected = {
-        "reasons": [],
-        "rmse": 0.02,
-        "bias": 0.02 / 801,
-        "lag_s": 0.0,
-        "coverage": 1.0,
-        "runs_used": ["a"],
-    }
-    shown = {"runs": "a: right but for noise of 0.02; b: wrong", "calibrated_on": ["b"], "spec": spec}
-    runs.expect_report(submission, sim, real, spec, expected, shown)
+    """A good simulation is accepted on runs it was not calibrated on; on one, or none, it is not"""
+    rng = np.random.default_rng(54)
+    recorded = [twins.record(rng, name, 7.0, 0.02, 0.03) for name in "abcd"]
+    good, bad = twins.simulated(recorded, offset=-0.005), twins.simulated(recorded, mass=3.0)
+    sim = {"calibrated_on": ["b"], "runs": [bad["runs"][1], *(good["runs"][i] for i in (3, 0, 2))]}
+    real = twins.measured(recorded)
+    spec = {"rmse_max": 0.05, "bias_max": 0.02, "lag_max_s": 0.01, "coverage_min": 0.8, "coverage_max": 1.1}
+    shown = {"runs": "a, c, d: right but for noise of 0.03; b: wrong", "calibrated_on": ["b"], "spec": spec}
+    right = verdicts.facts(recorded, sim, real)
+    verdicts.expect_report(submission, sim, real, spec, right, shown)
+    for fitted in (["a", "b", "c", "d"], ["a", "b", "c"]):
+        left = {**sim, "calibrated_on": fitted}
+        right = verdicts.facts(recorded, left, real)
+        verdicts.expect_nothing(submission, left, real, spec, right, {**shown, "calibrated_on": fitted})
+
+
+@pytest.mark.task("validate")
+@pytest.mark.points(2)
+def test_validate_margins_apart(submission):
+    """Each measure is refused for itself, and for its interval where the number alone would pass"""
+    verdicts.expect_margins(submission, np.random.default_rng(31), 3)
 
 
 def _expect_by_hand(submission, task, first, second):
     err = np.array([[1.0, 0.0], [0.5, -0.5], [0.2, 0.4]])
     covariance = np.array([[[1.0, 0.5], [0.5, 1.0]], [[1.0, 0.5], [0.5, 1.0]], [[0.04, 0.0], [0.0, 0.16]]])
-    value = submission.call(task, err, covariance)
     # P = [[1, 1/2], [1/2, 1]] has the inverse [[4, -2], [-2, 4]]/3, so the first is 4/3 and the second 1.
-    shared.expect_normalised(task, value, err, covariance, [4 / 3, 1.0, 2.0], (first, second))
+    shared.expect_normalised(submission, task, err, covariance, (first, second))
+    # As many rows as components, where rows and columns are easily taken for each other; and one component.
+    shared.expect_normalised(submission, task, err[:2], covariance[:2], (first, second))
+    shared.expect_normalised(submission, task, err[:, 1:], covariance[:, 1:, 1:], (first, second))

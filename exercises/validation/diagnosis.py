@@ -6,6 +6,7 @@ which one it is.
 
 from __future__ import annotations
 
+from course.grading import kit
 from course.grading.kit import Diagnosis
 
 #: code: (what it looks like, what to change)
@@ -156,6 +157,11 @@ WORDS: dict[str, tuple[str, str]] = {
         "It is the band of a normal distribution: symmetric, which a chi-square is not.",
         "Use quantiles of the chi-square distribution; the hints give two ways without scipy.",
     ),
+    "ROUGH_QUANTILES": (
+        "It is near the right band and off by more than 1 %: the quantiles are too rough.",
+        "dof * runs, alpha/2 and the division seem right. Use an approximation that bends as the chi-square "
+        "does, or the distribution itself; the hints have both.",
+    ),
     # -- coverage
     "COVERAGE_OPEN_BOUNDS": (
         "A value that lies exactly on an end is not counted.",
@@ -188,12 +194,22 @@ WORDS: dict[str, tuple[str, str]] = {
         "Each block has block samples in a row (on average, if you draw lengths too).",
     ),
     "RESAMPLE_SIZE": (
-        "The resamples are not as long as the series, and so the interval has the wrong width.",
-        "Join blocks until there are N samples and cut off what is too much.",
+        "The resamples are not as long as the series.",
+        "Join blocks until there are at least N samples and cut off what is too much; N need not be a "
+        "multiple of block.",
+    ),
+    "DRAWN_ONCE": (
+        "Every resample is the same one.",
+        "Draw new starting points for each resample, inside the loop.",
+    ),
+    "OTHER_NUMBER_OF_RESAMPLES": (
+        "It does not make n_boot resamples, or asks the statistic more than once about each.",
+        "Draw n_boot resamples and call statistic once for each; a basic interval asks about the series "
+        "itself once more.",
     ),
     "STATISTIC_IGNORED": (
-        "It does not ask the statistic that it is given once per resample.",
-        "Call statistic(samples) for each resample; it need not be the mean.",
+        "The interval is not made of what the given statistic says about each resample.",
+        "Call statistic(samples) for each resample and keep what it returns; it need not be the mean.",
     ),
     "ONE_STANDARD_ERROR": (
         "The width does not follow alpha as that of a confidence interval does.",
@@ -208,7 +224,7 @@ WORDS: dict[str, tuple[str, str]] = {
         "Take every draw from rng; do not make a generator of your own with a fixed seed.",
     ),
     "ENDS_ON_ONE_SIDE": (
-        "Both ends lie on the same side of the statistic of the series.",
+        "Both ends are among the smallest of the resampled values.",
         "One quantile belongs at alpha/2 and one at 1 - alpha/2. np.quantile counts from 0 to 1, "
         "np.percentile from 0 to 100.",
     ),
@@ -237,7 +253,7 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
     "UNSIGNED": (
         "It has lost the sign.",
-        "Leave abs out of the numerator: whether there is too much or too little is half of the answer.",
+        "Leave abs out: whether there is too much or too little is half of the answer.",
     ),
     "NOT_RELATIVE": (
         "It is a difference and not divided by anything.",
@@ -279,6 +295,10 @@ WORDS: dict[str, tuple[str, str]] = {
         "It scores each model on the runs it was fitted to and leaves the fold out.",
         "Predict the runs of the fold: those that fit did not get.",
     ),
+    "FITS_THE_FOLD": (
+        "Each model is fitted to the runs of its own fold.",
+        "The fold is what is held out: fit to all the other runs, and predict those of the fold.",
+    ),
     "NOT_CONTIGUOUS": (
         "The folds are not contiguous pieces of the list.",
         "The first fold is the first runs, and so on. Neighbouring runs resemble each other: dealing or "
@@ -297,59 +317,8 @@ WORDS: dict[str, tuple[str, str]] = {
         "would count as much as a long one.",
         "Pool all samples first, then take one root of the mean square.",
     ),
-    # -- validate
-    "CALIBRATION_RUNS_SCORED": (
-        "It scores runs that the simulation was calibrated on, which it fits by construction.",
-        "Leave out every run whose id is in calibrated_on before you compute anything.",
-    ),
-    "NOTHING_LEFT": (
-        "It gives a verdict although no run remains to judge by.",
-        "Then the only reason is calibration_data, the four numbers are None, and it is not accepted.",
-    ),
-    "MATCHED_BY_POSITION": (
-        "It pairs runs by their place in the list.",
-        "Pair them by id: the two lists may have other orders and other runs.",
-    ),
-    "LAG_SIGN": (
-        "The lag has the opposite sign.",
-        "It is positive where the simulation is late: where sim(t + lag) looks like real(t).",
-    ),
-    "LAG_WHOLE_SAMPLES": (
-        "The lag is a whole number of samples.",
-        "The best shift lies between two samples. Lay a parabola through the misfit at the best whole "
-        "shift and its two neighbours, or interpolate.",
-    ),
-    "LAG_IN_SAMPLES": (
-        "The lag is counted in samples.",
-        "Multiply by the time between samples: lag_s is in seconds.",
-    ),
-    "SIGN_OF_LIMIT_IGNORED": (
-        "A negative number passes whatever its size.",
-        "bias_max and lag_max_s limit the absolute value: too early is as wrong as too late.",
-    ),
-    "SIGMA_NOT_SCALED": (
-        "The interval reaches one sigma to each side.",
-        "The interval is y plus and minus 1.96 sigma, which should cover 95 %.",
-    ),
-    "REASON_MISSING": (
-        "A number breaks its limit and the reason is not given.",
-        "Compare every number with its limit, and collect every reason that applies: bias, coverage, lag, "
-        "rmse.",
-    ),
-    "REASON_TOO_MANY": (
-        "A reason is given although its number keeps the limit.",
-        "Compare each number with its own limit; for the coverage that is the least allowed, for the "
-        "others the most.",
-    ),
-    "NOT_SORTED": (
-        "The reasons are right and not in order.",
-        "Sort them by alphabet.",
-    ),
-    "VERDICT_AGAINST_REASONS": (
-        "The verdict does not go with the reasons.",
-        "accepted is True exactly where there is no reason against it.",
-    ),
 }
+WORDS |= kit.companion("validation", "diagnosis_verdict").WORDS
 
 
 def named(code: str) -> Diagnosis:

@@ -21,6 +21,26 @@ EXACT = "a closed formula: only rounding is allowed"
 MEAN = systems.AveragePolynomial([0.0, 1.0])
 
 
+def expect_rmse(submission, e):
+    """rmse agrees with the definition on these errors, and leaves them alone."""
+    e = np.asarray(e, dtype=float)
+    inspected = submission.call_inspect("rmse", e)
+    kit.expect_close(
+        inspected.value,
+        math.sqrt(np.mean(e**2)),
+        rel=1e-9,
+        abs=1e-12,
+        source=EXACT,
+        quantity="rmse",
+        units="m",
+        input={"e": e},
+        message="The root mean square error is wrong.",
+        help="Square the errors, average the squares, take the root: in this order from right to left.",
+        diagnose=lambda: probes.of_rmse(kit.as_number(inspected.value), e),
+    )
+    expect_left_alone(inspected, [e], ["e"])
+
+
 def expect_bias_variance(submission, e):
     """bias_variance agrees with the definition on these errors, and leaves them alone."""
     names = ("bias", "variance")
@@ -45,11 +65,32 @@ def expect_bias_variance(submission, e):
     expect_left_alone(inspected, [e], ["e"])
 
 
+def expect_large_mean(submission, e):
+    """The variance keeps its digits where the mean is ten million times the scatter."""
+    value = submission.call("bias_variance", e)
+    _, variance = kit.as_tuple(value, ("bias", "variance"))
+    variance = kit.as_number(variance, "variance")
+    kit.expect_close(
+        variance,
+        float(np.var(e)),
+        rel=1e-6,
+        source="rounding of two-pass and running formulas stays below 1e-8 here; one pass loses all digits",
+        quantity="variance",
+        units="m²",
+        input={"e": e},
+        message="Where the errors are large and hardly scatter, the variance is wrong.",
+        help="Take the mean off before squaring.",
+        diagnose=lambda: probes.of_offset(submission, e, variance),
+    )
+
+
 def expect_left_alone(inspected, given, names):
-    """The arguments are as they were. To hand back the very array that came is allowed."""
-    for name, before, after in zip(names, given, inspected.args_after, strict=True):
+    """The arguments that have a name are as they were. To hand back the very array that came is allowed."""
+    for name, before, after in zip(names, given, inspected.args_after, strict=False):
+        if name is None:  # a function: it is nothing that could be changed
+            continue
         kit.expect_true(
-            np.array_equal(before, np.asarray(after)),
+            same(before, after),
             f"The call changed its argument `{name}` in place.",
             help="Make a new array.",
             diagnose=probes.named("MUTATES_INPUT"),
@@ -58,8 +99,44 @@ def expect_left_alone(inspected, given, names):
         )
 
 
-def expect_normalised(task, value, err, covariance, expected, names):
-    """A list of normalised squared errors is as expected."""
+def same(before, after):
+    """Whether two nests of dicts, lists and arrays are equal; ``after`` may be anything."""
+    if isinstance(before, dict):
+        return (
+            isinstance(after, dict)
+            and before.keys() == after.keys()
+            and all(same(before[key], after[key]) for key in before)
+        )
+    if isinstance(before, np.ndarray):
+        return isinstance(after, np.ndarray) and np.array_equal(before, after)
+    if isinstance(before, list):
+        return isinstance(after, list) and len(before) == len(after) and all(map(same, before, after))
+    return type(before) is type(after) and before == after
+
+
+def expect_coverage(submission, y, lo, hi):
+    """coverage agrees with the definition, and leaves values and intervals alone."""
+    inspected = submission.call_inspect("coverage", y, lo, hi)
+    value = kit.as_number(inspected.value)
+    kit.expect_close(
+        value,
+        float(np.mean((lo <= y) & (y <= hi))),
+        abs=1e-12,
+        source=EXACT,
+        quantity="coverage",
+        input={"y": y, "lo": lo, "hi": hi},
+        message="The share of covered values is wrong.",
+        help="Count the values with lo <= y <= hi, ends included, and divide by how many there are.",
+        diagnose=lambda: probes.of_coverage(value, y, lo, hi),
+    )
+    expect_left_alone(inspected, [y, lo, hi], ["y", "lo", "hi"])
+
+
+def expect_normalised(submission, task, err, covariance, names):
+    """Each normalised squared error is as expected, and errors and covariances are left alone."""
+    inspected = submission.call_inspect(task, err, covariance)
+    value = inspected.value
+    expected = np.einsum("ni,nij,nj->n", err, np.linalg.inv(covariance), err)
     found = lambda: probes.of_normalised(value, err, covariance)  # noqa: E731 - needed twice
     if isinstance(value, int | float):
         kit.fail(
@@ -80,6 +157,7 @@ def expect_normalised(task, value, err, covariance, expected, names):
         help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w.",
         diagnose=found,
     )
+    expect_left_alone(inspected, [err, covariance], names)
 
 
 @functools.cache
@@ -122,8 +200,8 @@ def expect_energies(submission, q, v, energy):
         return energy(kit.as_vector(q, d, "q"), kit.as_vector(v, d, "v"))
 
     probe = probes.callback("energy(q_i, v_i)", checked)
-    values = probe.during(lambda: submission.call("energy_error", q, v, probe))
-    values = kit.as_vector(values, len(q), "the result")
+    inspected = probe.during(lambda: submission.call_inspect("energy_error", q, v, probe))
+    values = kit.as_vector(inspected.value, len(q), "the result")
     energies = np.array([energy(a, b) for a, b in zip(q, v, strict=True)])
     kit.expect_array(
         values,
@@ -136,6 +214,7 @@ def expect_energies(submission, q, v, energy):
         help="Compare every sample with the first, and divide by the size of the first.",
         diagnose=lambda: probes.of_energies(values, energies),
     )
+    expect_left_alone(inspected, [q, v], ["q", "v"])
 
 
 def pulse(t, start, length, peak):
@@ -145,10 +224,9 @@ def pulse(t, start, length, peak):
 
 def expect_forces(submission, pairs):
     """contact_force_error agrees with the definition on these pulses, (f_sim, f_real, dt) each."""
-    for value, (f_sim, f_real, dt) in zip(
-        submission.call_each("contact_force_error", pairs), pairs, strict=True
-    ):
-        record = kit.as_record(value, ("peak", "impulse"))
+    for f_sim, f_real, dt in pairs:
+        inspected = submission.call_inspect("contact_force_error", f_sim, f_real, dt)
+        record = kit.as_record(inspected.value, ("peak", "impulse"))
         for key, of in (("peak", np.max), ("impulse", np.sum)):
             number = kit.as_number(record[key], key)
             kit.expect_close(
@@ -164,12 +242,15 @@ def expect_forces(submission, pairs):
                     key, number, f_sim, f_real
                 ),
             )
+        expect_left_alone(inspected, [f_sim, f_real], ["f_sim", "f_real"])
 
 
 def expect_folds(submission, data, k):
     """cross_validate holds out k contiguous folds and scores them as the README says."""
     folds = runs.Folds(data)
-    scores = kit.as_vector(folds.cross_validate(submission, k), k, "the result")
+    given = [dict(run) for run in data]
+    inspected = folds.cross_validate(submission, k)
+    scores = kit.as_vector(inspected.value, k, "the result")
     shown = {"runs": len(data), "k": k, "samples": [len(run["y"]) for run in data]}
     code = folds.fault(k)
     if code is not None:
@@ -196,3 +277,4 @@ def expect_folds(submission, data, k):
         help="Pool the errors of all runs of a fold, then take one RMSE; fold by fold, in order.",
         diagnose=lambda: runs.of_scores(scores, residuals),
     )
+    expect_left_alone(inspected, [None, None, given], [None, None, "runs"])

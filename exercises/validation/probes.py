@@ -76,6 +76,7 @@ def of_bias(bias, variance, e):
         return match(
             bias,
             [
+                ("UNSIGNED", abs(mean)),
                 ("WRONG_SIGN", -mean),
                 ("MEAN_ABSOLUTE", np.mean(np.abs(e))),
                 ("MEDIAN_FOR_MEAN", np.median(e)),
@@ -159,19 +160,28 @@ def of_band(lo, hi, dof, runs, alpha, quantile, normal):
 
     z = normal(1 - alpha / 2)
     half = z * np.sqrt(2 * dof / runs)
+    right = band(n, alpha / 2, runs)
     candidates = [
-        ("RETURNS_SWAPPED", band(n, alpha / 2, runs)[::-1]),
+        ("RETURNS_SWAPPED", right[::-1]),
         ("ONE_SIDED", band(n, alpha, runs)),
         ("LEVEL_FOR_ALPHA", band(n, (1 - alpha) / 2, runs)),
-        ("NOT_DIVIDED_BY_RUNS", band(n, alpha / 2, 1)),
-        ("RUNS_IGNORED", band(dof, alpha / 2, runs)),
-        ("DIVIDED_BY_DOF", band(n, alpha / 2, n)),
-        ("DIVIDED_BY_DOF", band(n, alpha / 2, dof)),
         ("NORMAL_BAND", np.array([dof - half, dof + half])),
     ]
+    if runs > 1:  # for a single run these are the right band
+        candidates += [
+            ("NOT_DIVIDED_BY_RUNS", band(n, alpha / 2, 1)),
+            ("RUNS_IGNORED", band(dof, alpha / 2, runs)),
+        ]
+    if dof > 1:
+        candidates += [
+            ("DIVIDED_BY_DOF", band(n, alpha / 2, n)),
+            ("DIVIDED_BY_DOF", band(n, alpha / 2, dof)),
+        ]
     found = match(np.array([lo, hi]), candidates, rel=0.01)
-    # Approximations are poor at the lower end where there are few degrees of freedom, so only hi counts.
-    return found or match(hi, [("RUNS_IGNORED", band(dof, alpha / 2, 1)[1])], rel=0.02)
+    if not found and runs > 1:
+        # Approximations are poor at the lower end where there are few degrees of freedom: only hi counts.
+        found = match(hi, [("RUNS_IGNORED", band(dof, alpha / 2, 1)[1])], rel=0.02)
+    return found or match(np.array([lo, hi]), [("ROUGH_QUANTILES", right)], rel=0.2)
 
 
 def of_coverage(value, y, lo, hi):

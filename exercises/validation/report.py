@@ -10,7 +10,13 @@ from course.physics.systems import AveragePolynomial
 dataset = kit.companion("validation", "dataset")
 twins = kit.companion("validation", "twins")
 
-SPEC = {"rmse_max": 0.06, "bias_max": 0.03, "lag_max_s": 0.012, "coverage_min": 0.9}
+SPEC = {
+    "rmse_max": 0.06,
+    "bias_max": 0.03,
+    "lag_max_s": 0.012,
+    "coverage_min": 0.85,
+    "coverage_max": 0.99,
+}
 
 
 def report(submission):
@@ -119,6 +125,7 @@ def _intervals(submission, title):
     ends = np.array(
         [kit.as_vector(v, 2, "(lo, hi)") for v in submission.call_each("block_bootstrap_ci", calls)]
     )
+    held = _held(submission, mean)
     words = [str(block) for block in blocks]
     widths = 1000 * (ends[:, 1] - ends[:, 0])
     holding = int(np.sum((ends[:, 0] <= dataset.BIAS) & (ends[:, 1] >= dataset.BIAS)))
@@ -127,7 +134,9 @@ def _intervals(submission, title):
         text=f"400 errors with a bias of {dataset.BIAS} m, each of which keeps 0.9 of the one before. With "
         "blocks of one sample an interval pretends that all 400 are independent; it has to come out narrow, "
         "and wrong, and to grow with the block until the blocks are longer than the memory of the errors. "
-        "With very long blocks there are too few of them to draw from.",
+        "With very long blocks there are too few of them to draw from. Nominally they are 95 % intervals. Of "
+        f"{_SERIES} such series, with blocks of 40, {held:.0%} of yours hold the true bias: the ten blocks "
+        "of a series are too few to know their own spread, and cutting them apart loses some of it.",
         columns=("block", "from", "to", "width"),
         rows=tuple(
             (word, f"{1000 * lo:+.1f} mm", f"{1000 * hi:+.1f} mm", f"{1000 * (hi - lo):.1f} mm")
@@ -151,6 +160,19 @@ def _intervals(submission, title):
             f"{holding} of them hold. {_compared(widths, words)}",
         ),
     )
+
+
+#: Series whose intervals are counted; a share of 81 % is known to 4 % by so many.
+_SERIES = 100
+
+
+def _held(submission, statistic):
+    """The share of intervals for series of their own that hold the true bias."""
+    series = [dataset.slow_errors(seed=1000 + i) for i in range(_SERIES)]
+    calls = [(e, statistic, 40, 200, 0.05, np.random.default_rng(i)) for i, e in enumerate(series)]
+    values = submission.call_each("block_bootstrap_ci", calls)
+    ends = np.array([kit.as_vector(kit.as_tuple(v, ("lo", "hi")), 2, "(lo, hi)") for v in values])
+    return float(np.mean((ends[:, 0] <= dataset.BIAS) & (ends[:, 1] >= dataset.BIAS)))
 
 
 def _compared(widths, blocks):
@@ -180,14 +202,30 @@ def _verdicts(submission, title):
     rows = []
     keys = ("rmse", "bias", "lag_s", "coverage")
     for (name, _), value in zip(cases, submission.call_each("validate", calls), strict=True):
-        verdict = kit.as_record(value, ("accepted", "reasons", *keys, "runs_used"), "the report")
-        numbers = tuple("-" if verdict[k] is None else f"{kit.as_number(verdict[k], k):.3f}" for k in keys)
+        verdict = kit.as_record(value, ("accepted", "reasons", *keys, "intervals", "runs_used"), "the report")
+        ends = dict.fromkeys(keys)
+        if verdict["intervals"] is not None:
+            ends = kit.as_record(verdict["intervals"], keys, "`intervals`")
+        cells = tuple(_cell(verdict[key], ends[key], key) for key in keys)
         reasons = ", ".join(kit.as_text(r, "a reason") for r in kit.as_list(verdict["reasons"], "reasons"))
-        rows.append((name, "yes" if verdict["accepted"] is True else "no", *numbers, reasons or "-"))
+        rows.append((name, "yes" if verdict["accepted"] is True else "no", *cells, reasons or "-"))
     return kit.Section(
         title,
-        text=f"Four runs of the cart, limits fixed beforehand: rmse {SPEC['rmse_max']} m/s, bias "
-        f"{SPEC['bias_max']} m/s, lag {SPEC['lag_max_s']} s, coverage at least {SPEC['coverage_min']}.",
+        text=f"Four runs of the cart, margins fixed beforehand: rmse up to {SPEC['rmse_max']} m/s, bias "
+        f"within {SPEC['bias_max']} m/s, lag within {SPEC['lag_max_s']} s, coverage from "
+        f"{SPEC['coverage_min']} to {SPEC['coverage_max']}. A number is followed by its interval, from one "
+        "run or another left out: that is what is held against the margin.",
         columns=("twin", "accepted", "rmse m/s", "bias m/s", "lag s", "coverage", "reasons"),
         rows=tuple(rows),
     )
+
+
+def _cell(number, interval, key):
+    """A number and its interval."""
+    if number is None:
+        return "-"
+    shown = f"{kit.as_number(number, key):.3f}"
+    if interval is None:
+        return shown
+    lo, hi = kit.as_vector(kit.as_tuple(interval, ("lo", "hi")), 2, f"the interval of {key}")
+    return f"{shown} ({lo:.3f}, {hi:.3f})"

@@ -1,8 +1,8 @@
 """Carts that were driven and recorded, and simulations of them that are right or wrong on purpose.
 
-A cart of mass m (kg) rolls with friction b (N s/m) under a force made of a few sines, so its speed is known
-in closed form at any time, and a simulation that is late by any amount is exact, too. The checks and the
-report make their data with this; each has its own seed.
+A cart of mass m (kg) rolls with friction b (N s/m) under a steady force and a few sines, so its speed is
+known in closed form at any time, and a simulation that is late by any amount is exact, too. The checks and
+the report make their data with this; each has its own seed.
 """
 
 from __future__ import annotations
@@ -40,11 +40,19 @@ class Recording:
     noise: float
 
 
-def record(rng, run_id, seconds, dt, noise):
-    """Drive the real cart once, and measure."""
+def record(rng, run_id, seconds, dt, noise, *, swing=1.0):
+    """Drive the real cart once, and measure.
+
+    Args:
+        swing: how far it is driven, as a multiple of the usual.
+    """
     omega = 2 * np.pi * rng.uniform([0.4, 0.8, 1.2], [0.7, 1.1, 1.6])
-    # Each sine moves the cart by about as much, whatever its frequency.
-    drive = Drive(MASS * omega * rng.uniform(0.4, 0.7, 3), omega, rng.uniform(0, 2 * np.pi, 3))
+    # Each sine moves the cart by about as much, whatever its frequency; the force of no frequency keeps it
+    # going one way, so that no recording averages zero.
+    amplitude = swing * MASS * omega * rng.uniform(0.4, 0.7, 3)
+    steady = FRICTION * rng.choice([-1.0, 1.0]) * rng.uniform(0.6, 1.4)
+    phase = rng.uniform(0, 2 * np.pi, 3)
+    drive = Drive(np.append(amplitude, steady), np.append(omega, 0.0), np.append(phase, np.pi / 2))
     t = dt * np.arange(round(seconds / dt) + 1)
     return Recording(run_id, t, drive, drive.speed(t) + noise * rng.standard_normal(len(t)), noise)
 
@@ -53,18 +61,19 @@ def simulated(recordings, *, mass=MASS, late=0.0, offset=0.0, sigma_factor=1.0, 
     """What a simulation says to the same forces.
 
     mass: the mass it believes in, kg
-    late: how much it lags behind, s
-    offset: what it adds to every speed, m/s
-    sigma_factor: the sigma it claims, in units of the real noise
+    late: how much it lags behind, s; one number, or one for each run
+    offset: what it adds to every speed, m/s; one number, or one for each run
+    sigma_factor: the sigma it claims, in units of the real noise; one number, or one for each run
     """
+    late, offset, factor = (np.broadcast_to(x, len(recordings)) for x in (late, offset, sigma_factor))
     runs = [
         {
             "id": run.id,
             "t": run.t.copy(),
-            "y": run.drive.speed(run.t - late, mass) + offset,
-            "sigma": np.full(len(run.t), sigma_factor * run.noise),
+            "y": run.drive.speed(run.t - late[i], mass) + offset[i],
+            "sigma": np.full(len(run.t), factor[i] * run.noise),
         }
-        for run in recordings
+        for i, run in enumerate(recordings)
     ]
     return {"calibrated_on": list(calibrated_on), "runs": runs}
 

@@ -8,6 +8,9 @@ import math  # noqa: F401 - yours to use
 
 import numpy as np  # noqa: F401 - yours to use
 
+#: What Student's t of 1, 2, 3 ... 10 degrees of freedom stays below with probability 0.95.
+T95 = (6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812)
+
 
 def rmse(e):
     """Root of the mean square error.
@@ -127,13 +130,14 @@ def validate(sim, real, spec):
 
     sim: {"calibrated_on": [ids], "runs": [{"id", "t", "y", "sigma"}, ...]}
     real: {"runs": [{"id", "t", "y"}, ...]}
-    spec: {"rmse_max", "bias_max", "lag_max_s", "coverage_min"}
-    Returns {"accepted", "reasons", "rmse", "bias", "lag_s", "coverage", "runs_used"}.
+    spec: {"rmse_max", "bias_max", "lag_max_s", "coverage_min", "coverage_max"}
+    Returns {"accepted", "reasons", "rmse", "bias", "lag_s", "coverage", "intervals", "runs_used"}.
 
-    One way to build it, in four pieces:
+    One way to build it, in five pieces:
       1. pair the runs by id, without those the simulation was calibrated on
-      2. nothing left: reasons ["calibration_data"], the four numbers None, not accepted
-      3. pool the errors of all pairs: rmse, bias, coverage; then the best shift, lag_s
-      4. compare each number with the spec, and sort the reasons
+      2. one or none left: reasons ["single_run"] or ["calibration_data"], intervals None, not accepted
+      3. a function that pools the errors of some pairs: rmse, bias, best shift, coverage
+      4. call it for all pairs and with each one left out: intervals
+      5. hold each interval against its margin, and sort the reasons
     """
     raise NotImplementedError

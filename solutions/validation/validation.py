@@ -7,6 +7,9 @@ import numpy as np
 
 MAX_LAG = 0.25  # s, the largest shift that is tried
 
+#: What a Student's t of 1, 2, 3 ... 10 degrees of freedom stays below with probability 0.95.
+T95 = (6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812)
+
 
 def rmse(e):
     return float(np.sqrt(np.mean(np.square(np.asarray(e, dtype=float)))))
@@ -85,25 +88,56 @@ def cross_validate(fit, predict, runs, k):
 
 def validate(sim, real, spec):
     pairs = held_out_pairs(sim, real)
-    if not pairs:
-        numbers = dict.fromkeys(("rmse", "bias", "lag_s", "coverage"))
-        return {"accepted": False, "reasons": ["calibration_data"], **numbers, "runs_used": []}
+    used = [simulated["id"] for simulated, _ in pairs]
+    if len(pairs) < 2:
+        numbers = measures(pairs) if pairs else dict.fromkeys(("rmse", "bias", "lag_s", "coverage"))
+        why = "single_run" if pairs else "calibration_data"
+        return {"accepted": False, "reasons": [why], **numbers, "intervals": None, "runs_used": used}
+    numbers, intervals = measures(pairs), interval_of_each(pairs)
+    margins = {
+        "rmse": (-math.inf, spec["rmse_max"]),
+        "bias": (-spec["bias_max"], spec["bias_max"]),
+        "lag_s": (-spec["lag_max_s"], spec["lag_max_s"]),
+        "coverage": (spec["coverage_min"], spec["coverage_max"]),
+    }
+    reasons = sorted(
+        key.removesuffix("_s")
+        for key, (least, most) in margins.items()
+        if not least <= intervals[key][0] <= intervals[key][1] <= most
+    )
+    return {
+        "accepted": not reasons,
+        "reasons": reasons,
+        **numbers,
+        "intervals": intervals,
+        "runs_used": used,
+    }
+
+
+def measures(pairs):
+    """rmse, bias, lag and coverage over the samples of all pairs."""
     y, sigma, measured = (np.concatenate(column) for column in zip(*map(columns, pairs)))
     e = y - measured
-    numbers = {
+    return {
         "rmse": float(np.sqrt(np.mean(e**2))),
         "bias": float(np.mean(e)),
         "lag_s": best_shift(pairs),
         "coverage": float(np.mean(np.abs(e) <= 1.96 * sigma)),
     }
-    failed = {
-        "rmse": numbers["rmse"] > spec["rmse_max"],
-        "bias": abs(numbers["bias"]) > spec["bias_max"],
-        "lag": abs(numbers["lag_s"]) > spec["lag_max_s"],
-        "coverage": numbers["coverage"] < spec["coverage_min"],
-    }
-    reasons = sorted(reason for reason, wrong in failed.items() if wrong)
-    return {"accepted": not reasons, "reasons": reasons, **numbers, "runs_used": [s["id"] for s, _ in pairs]}
+
+
+def interval_of_each(pairs):
+    """The jackknife over runs: how much each number moves as one run or another is left out."""
+    n = len(pairs)
+    numbers = measures(pairs)
+    without = [measures(pairs[:i] + pairs[i + 1 :]) for i in range(n)]
+    intervals = {}
+    for key, value in numbers.items():
+        values = np.array([left[key] for left in without])
+        error = math.sqrt((n - 1) / n * np.sum((values - np.mean(values)) ** 2))
+        half = T95[n - 2] * error  # n - 1 degrees of freedom
+        intervals[key] = (value - half, value + half)
+    return intervals
 
 
 def held_out_pairs(sim, real):

@@ -61,7 +61,7 @@ def test_every_command_to_try_works_in_a_fresh_workspace(lesson_id: str, tmp_pat
             cwd=tmp_path,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=600,
             check=False,
             env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"},
         )

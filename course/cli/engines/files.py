@@ -63,6 +63,7 @@ def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
                 version=row.version,
                 options=row.options,
                 why=row.why,
+                samples=row.samples,
                 repeats=row.repeats,
                 spread=row.spread,
                 details=row.details,

@@ -61,7 +61,8 @@ class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
 
     ``setting`` is "default" or "tuned"; ``origin`` "measured", "cached" or "reference" (another machine).
     ``status`` is "ok" or why there is no value: not_installed, unavailable, crash, deadline, diverged,
-    not_applicable, failed. ``best`` marks what is nearest the truth among those measured on this machine.
+    not_applicable, failed. ``samples`` are what ``value`` is the mean or median of: one for each phase of the
+    step or each start. ``best`` marks what is nearest the truth among those measured on this machine.
     """
 
     engine: str
@@ -80,6 +81,7 @@ class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
     version: str
     options: dict[str, Any]
     why: tuple[str, ...]
+    samples: tuple[float, ...]
     repeats: int
     spread: float
     details: dict[str, Any]

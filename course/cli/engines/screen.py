@@ -102,9 +102,11 @@ def best_rows(rows: Sequence[Row]) -> frozenset[int]:
         if len(column) < 2:
             continue
         distance = [_distance(scenario, row) for row in column]
-        # What is the same on the screen is the same rank.
-        nearest = min(distance)
-        slack = 0.5 * 10.0**-scenario.digits if scenario.better == "near" else 1e-9
+        nearest, first = min(zip(distance, column, strict=True), key=lambda pair: pair[0])
+        # What is the same on the screen is the same rank, and so is what a phase or a start could change.
+        slack = max(0.5 * 10.0**-scenario.digits, 0.5 * (first.highest - first.lowest))
+        if scenario.better == "large":
+            slack = 1e-9
         best |= {id(row) for row, far in zip(column, distance, strict=True) if far - nearest <= slack}
     return frozenset(best)
 
@@ -118,7 +120,7 @@ def _truth(scenario: Scenario) -> str:
     if scenario.truth is None:
         return "none"
     if not math.isfinite(scenario.truth):
-        return "any speed"
+        return "any step" if scenario.unit == "ms" else "any speed"
     return _unit(f"{scenario.truth:g}", scenario)
 
 
@@ -128,24 +130,36 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
     text = number(scenario, row.value)
     if rate := row.details.get("steps_per_second"):
         text = f"{text}, {_rate(rate)}"
-    elif not math.isfinite(scenario.truth or 0.0) and row.details.get("passed_at_m_s") is None:
+    elif row.value in (row.details.get("fastest_tried_m_s"), row.details.get("longest_tried_ms")):
         text += ", all"
-    if row.repeats > 1 and row.spread and scenario.id != BOXES:
+    if row.highest - row.lowest >= 10.0**-scenario.digits:
+        text += f" ({_short(row.lowest)} to {_short(row.highest)})"
+    elif row.repeats > 1 and row.spread and scenario.id != BOXES:
         text += f" ± {0.5 * row.spread:.1g}"
     return text + (" best" if id(row) in best else "")
 
 
 def number(scenario: Scenario, value: float) -> str:
-    """A value with its unit: signed where the truth is zero, and never a nought that is none."""
+    """A value with its unit."""
+    return _unit(_digits(scenario, value), scenario)
+
+
+def _digits(scenario: Scenario, value: float) -> str:
+    """A value: signed where the truth is zero, and never a nought that is none."""
     sign = "+" if scenario.truth == 0.0 and scenario.unit == "%" else ""
     size = abs(value)
     if size >= 1000:
-        text = f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}"
-    elif 0.0 < size < 0.5 * 10.0**-scenario.digits:
-        text = f"{value:{sign}.0e}"
-    else:
-        text = f"{value + 0.0:{sign}.{scenario.digits}f}"
-    return _unit(text, scenario)
+        return f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}"
+    if 0.0 < size < 0.5 * 10.0**-scenario.digits:
+        return f"{value:{sign}.0e}"
+    return f"{value + 0.0:{sign}.{scenario.digits}f}"
+
+
+def _short(value: float) -> str:
+    """Three digits, for the ends of a range."""
+    size = abs(value)
+    digits = 2 - math.floor(math.log10(size)) if size >= 1e-3 else 0
+    return f"{value + 0.0:.{max(0, digits)}f}"
 
 
 def _rate(rate: float) -> str:

@@ -44,7 +44,7 @@ def export(
     ] = None,
     roster: Annotated[
         Path | None,
-        typer.Option("--roster", metavar="FILE", help="Class list (CSV); remembered for later exports."),
+        typer.Option("--roster", metavar="FILE", help="Who is enrolled; remembered for later exports."),
     ] = None,
     assignment: Annotated[
         list[str] | None,
@@ -53,6 +53,12 @@ def export(
     partial: Annotated[
         bool, typer.Option("--partial", help="Leave out students the roster has not.")
     ] = False,
+    missing: Annotated[
+        str,
+        typer.Option(
+            "--missing", metavar="blank|zero", help="What an enrolled student who handed in nothing gets."
+        ),
+    ] = "blank",
     exercise: Annotated[
         list[str] | None,
         typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
@@ -80,7 +86,15 @@ def export(
         )
     else:
         written = _from_gradebook(
-            console, out, format, output, roster, tuple(assignment or ()), partial, tuple(exercise or ())
+            console,
+            out,
+            format,
+            output,
+            roster,
+            tuple(assignment or ()),
+            partial,
+            tuple(exercise or ()),
+            missing,
         )
     if written is not None:
         _show(console, format, written)
@@ -96,12 +110,15 @@ def _from_gradebook(
     assignments: tuple[str, ...],
     partial: bool,
     exercises: tuple[str, ...],
+    missing: str,
 ) -> Written | None:
     """Write it; None if it was printed."""
     from course.grading.running.run import open_results
 
     people = read_roster(roster) if roster else None
-    options = ExportOptions(exercises, _assignments(assignments), partial)
+    if missing not in {"blank", "zero"}:
+        raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
+    options = ExportOptions(exercises, _assignments(assignments), partial, missing)
     with open_results(out) as opened:
         results = Results(opened.book, people) if people else opened
         if console.json and name == "jsonl" and output is None:

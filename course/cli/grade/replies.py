@@ -26,6 +26,8 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     out: str
     troubled: tuple[Trouble, ...]
     unrecognised: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    strangers: tuple[str, ...] = ()
 
 
 class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):

@@ -17,6 +17,7 @@ from course.cli.work.verdicts import show_everything
 from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
 from course.grading.results.late import in_days
+from course.grading.results.roster import read_roster
 from course.scoring.numbers import LARGEST_SEED, format_points
 from course.scoring.terms import Terms
 
@@ -68,6 +69,14 @@ def run(
             help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
         ),
     ] = "auto",
+    roster: Annotated[
+        Path | None,
+        typer.Option(
+            "--roster",
+            metavar="FILE",
+            help="Who is enrolled: what Canvas, Moodle or Gradescope hand out, or a CSV of your own.",
+        ),
+    ] = None,
     local_cluster: Annotated[
         int | None,
         typer.Option("--local-cluster", metavar="N", min=1, max=256, help="On N Dask workers started here."),
@@ -89,7 +98,8 @@ def run(
     _only_one_way(jobs, local_cluster, scheduler)
     level, at_least = levels(isolation)
     terms = Terms(level, at_least, timeout)
-    options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout)
+    people = read_roster(roster) if roster else None
+    options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
     catalog = load_catalog()
     with (
         _graders(catalog, jobs, local_cluster, scheduler) as grade,
@@ -127,6 +137,21 @@ def _graders(
         else extras.load("cluster").remote_cluster(scheduler, catalog)
     )
     return cluster
+
+
+def _show_people(console: Console, summary: Summary) -> None:
+    """Who is missing, and what is nobody's."""
+    for listed, words in (
+        (summary.missing, "enrolled and handed in nothing"),
+        (summary.strangers, "not in the roster, or not told apart by it"),
+        (summary.unrecognised, "could not be told whose they are"),
+    ):
+        if listed:
+            console.line((f"{len(listed)} {words}:", "bold"))
+        for entry in listed[:_MOST_TROUBLED]:
+            console.line(entry, indent=2)
+        if len(listed) > _MOST_TROUBLED:
+            console.line(f"and {len(listed) - _MOST_TROUBLED} more.", indent=2)
 
 
 def explain(
@@ -221,6 +246,8 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
                 grader_error=summary.states["grader_error"],
                 passed=summary.passed,
                 not_submitted=summary.not_submitted,
+                missing=tuple(summary.missing),
+                strangers=tuple(summary.strangers),
                 already_graded=summary.already,
                 isolation=dict(summary.levels),
                 seed=summary.seed,
@@ -244,12 +271,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
             console.item(f"{row.student} {row.exercise}", f"{row.code}: {row.message}")
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
-    if summary.unrecognised:
-        console.line((f"{len(summary.unrecognised)} could not be told whose they are:", "bold"))
-    for sentence in summary.unrecognised[:_MOST_TROUBLED]:
-        console.line(sentence, indent=2)
-    if len(summary.unrecognised) > _MOST_TROUBLED:
-        console.line(f"and {len(summary.unrecognised) - _MOST_TROUBLED} more.", indent=2)
+    _show_people(console, summary)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))

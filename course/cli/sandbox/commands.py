@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,7 +23,7 @@ from course.cli.sandbox.replies import (
 )
 from course.errors import NotFoundError, UsageError
 from course.sandbox.exports.mjcf import mjcf
-from course.sandbox.exports.sdf import sdf
+from course.sandbox.exports.sdf import START, sdf, start_script
 from course.sandbox.scene.loading import choose, question, scenes, unchanged
 from course.sandbox.scene.settings import SETTINGS
 
@@ -196,8 +197,16 @@ def export(
             console.raw(data.decode())
     else:
         written = sandbox_files.write(console, target, data, format_)
+    beside = None
+    start = start_script(data) if format_ == "sdf" else None
+    if start is not None and target is None:
+        console.warn(f"Its velocities at the start need a file beside it: with -o FILE, {START} comes along.")
+    elif start is not None and target is not None:
+        beside = sandbox_files.write(console, target.with_name(START), start, "python")
+        folder = shlex.quote(str(target.parent))
+        console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
-    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, text=text))
+    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text))
     return 0
 
 

@@ -112,9 +112,13 @@ class SandboxReplay(Envelope, tag="course.sandbox-replay/1", frozen=True, kw_onl
 
 
 class SandboxExport(Envelope, tag="course.sandbox-export/1", frozen=True, kw_only=True):
-    """A scene as another engine's world; ``text`` is empty if it went to a file."""
+    """A scene as another engine's world; ``text`` is empty if it went to a file.
+
+    ``beside`` is what a world for Gazebo needs in its folder to start with velocities.
+    """
 
     scene: str
     format: str
     file: SandboxFile | None = None
+    beside: SandboxFile | None = None
     text: str = ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
 from typing import TYPE_CHECKING, Annotated
 
@@ -169,7 +170,7 @@ def _write_bag(console: Console, made: Report, bag: Path) -> str:
             help="Its sensors are not written yet, or the exercise has none.",
             code="no_streams",
         )
-    from course.simulations.bags import read_bag, write_bag
+    from course.simulations.bags import VIEW, read_bag, write_bag
     from course.simulations.streams import KINDS, streams_from
 
     path = cwd() / bag.expanduser()
@@ -179,4 +180,6 @@ def _write_bag(console: Console, made: Report, bag: Path) -> str:
     counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in read_bag(path)]
     console.blank()
     console.line(f"Wrote {path}: messages {', '.join(counts)}.")
+    console.note(f"With ROS 2: ros2 bag play {shlex.quote(str(path))}")
+    console.note(f"Beside it: rviz2 -d {shlex.quote(str(path / VIEW))} --ros-args -p use_sim_time:=true")
     return str(path)

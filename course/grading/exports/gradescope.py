@@ -35,7 +35,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
     """
     selection = select(results, options)
     rows: list[Sequence[str]] = []
-    for effective in selection.each():
+    for effective in (item for item in selection.each() if not item.missing):
         # A student's id never becomes a path.
         name = f"{len(rows) + 1:05}.json"
         body = results_body([effective])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
@@ -27,11 +27,13 @@ class ExportOptions:
         exercises: ids; empty takes all.
         assignments: exercise id -> id of the assignment on the platform.
         partial: leave out students the roster has not, instead of stopping.
+        missing: what stands for what an enrolled student did not hand in: "blank" or "zero".
     """
 
     exercises: tuple[str, ...] = ()
     assignments: dict[str, str] = field(default_factory=dict)
     partial: bool = False
+    missing: str = "blank"
 
 
 @dataclass
@@ -59,20 +61,26 @@ class Selection:
 
     Attributes:
         people: student -> row of the roster; empty without one.
+        zeros: what was not handed in counts as 0.
     """
 
     results: Results
     exercises: tuple[str, ...]
     people: dict[str, Person]
     written: Written
+    zeros: bool = False
 
     def each(self) -> Iterator[Effective]:
         """The results, ordered by student and exercise; what is missing is noted on the way."""
         left_out = set(self.written.unmatched)
-        for effective in self.results.all():
+        for found in self.results.all():
+            effective = found
             if effective.exercise not in self.exercises or effective.student in left_out:
                 continue
-            if effective.score is None:
+            if effective.missing:
+                if self.zeros:
+                    effective = replace(effective, score=0.0)
+            elif effective.score is None:
                 self.written.without_grade.append(f"{effective.student} {effective.exercise}")
             self.written.rows += 1
             yield effective
@@ -119,7 +127,7 @@ def select(
             raise _unmatched(sorted(unmatched))
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
-    return Selection(results, exercises, people, written)
+    return Selection(results, exercises, people, written, options.missing == "zero")
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:

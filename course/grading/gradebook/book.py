@@ -263,6 +263,11 @@ class Gradebook:
         with explained(self.path):
             return [row[0] for row in self._db.execute("SELECT DISTINCT student FROM results ORDER BY 1")]
 
+    def exercise_ids(self) -> list[str]:
+        """Everything with a result, by name."""
+        with explained(self.path):
+            return [row[0] for row in self._db.execute("SELECT DISTINCT exercise FROM results ORDER BY 1")]
+
     def submission(self, sha256: str) -> dict[str, bytes] | None:
         """What was handed in: file name to content; None if nothing of that digest was kept.
 

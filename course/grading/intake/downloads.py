@@ -2,7 +2,8 @@
 
     folders      SUBMISSIONS/<student>/...
     moodle       SUBMISSIONS/<Full Name>_<number>_assignsubmission_file/...   or files that begin so
-    canvas       SUBMISSIONS/<name>[_LATE]_<user>_<attachment>_<file name>
+    canvas       SUBMISSIONS/<name>[_LATE]_<user>_<attachment>_<file name>, and what was typed into it:
+                 <name>[_LATE]_<user>_text.html or _link.html; <name> is anon where it grades anonymously
     gradescope   SUBMISSIONS/submission_<number>/... with submission_metadata.yml
 
 Which one it is follows from all the names together. A folder in which some names are a platform's and some
@@ -41,9 +42,13 @@ IGNORED = frozenset(
 _MOODLE = re.compile(
     r"(?P<name>[^_]*)_(?P<key>[0-9]+)_assignsubmission_(?P<plugin>[a-z]+)(?:_(?P<file>.*))?", re.S
 )
-# Canvas takes '_<digits>_' out of names, so the first two numbers are its own.
+# Canvas takes '_<digits>_' out of names, so the first two numbers are its own. Graded anonymously, a student
+# is a few letters and digits that stand for nobody.
 _CANVAS = re.compile(
-    r"(?P<name>.*?)(?P<late>_LATE)?_(?P<key>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>.+)", re.S
+    r"(?:(?P<name>.*?)(?P<late>_LATE)?_(?P<key>[0-9]+)"
+    r"|(?P<anon>anon)(?P<anon_late>_LATE)?_(?P<anon_key>[A-Za-z0-9]{4,8}))"
+    r"_(?:(?P<attachment>[0-9]+)_(?P<file>.+)|(?P<typed>text|link)\.html)",
+    re.S,
 )
 _METADATA = "submission_metadata.yml"
 #: What can be handed in, by the ends of its names.
@@ -243,10 +248,13 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
         if match is None or (folder / raw).is_dir():
             found.unrecognised.append(f"{_text(raw)}: not a name that Canvas gives")
             continue
-        files.setdefault(match["key"], []).append((match["file"], folder / raw))
-        spelled.setdefault(match["key"], set()).add(_text(match["name"]))
-        if match["late"]:
-            late.add(match["key"])
+        key = match["key"] or match["anon_key"]
+        mine = files.setdefault(key, [])
+        if not match["typed"]:  # text or an address typed into Canvas is no file of the student's
+            mine.append((match["file"], folder / raw))
+        spelled.setdefault(key, set()).add(_text(match["name"] or match["anon"] or ""))
+        if match["late"] or match["anon_late"]:
+            late.add(key)
     for key, items in files.items():
         if len(spelled[key]) > 1:
             both = " and ".join(sorted(spelled[key]))

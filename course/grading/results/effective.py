@@ -4,11 +4,13 @@ A gradebook keeps apart what the graders found, what an instructor decided and w
 ``Results`` puts them together, the same way for every export and report: the newest grading of each student
 and exercise; an override in its place if there is one, which is final and not touched by lateness; else less
 the penalty of the late policy. A fault of ours is never a zero: its score is None until it is graded or
-overridden.
+overridden. With a roster, whoever is enrolled and handed in nothing has a result too: ``missing``, without a
+score, which an export writes as it is told to.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
@@ -22,7 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-__all__ = ["Effective", "Results"]
+__all__ = ["MISSING", "Effective", "Results"]
+
+#: State of what an enrolled student did not hand in.
+MISSING = "missing"
 
 
 @dataclass(frozen=True)
@@ -31,7 +36,7 @@ class Effective:
 
     Attributes:
         result: the newest grading; its verdict has what the checks found.
-        score: what counts, in points; None if a fault of ours kept it from being graded.
+        score: what counts, in points; None if a fault of ours kept it from being graded, or if it is missing.
         max_score: points of the exercise.
         passed: whether ``score`` reaches the exercise's pass mark.
         penalty: points taken off for lateness; 0 under an override.
@@ -66,9 +71,14 @@ class Effective:
         return self.result.verdict
 
     @property
+    def missing(self) -> bool:
+        """Whether somebody who is enrolled handed in nothing, and nobody decided about it."""
+        return self.verdict.state == MISSING and self.override is None
+
+    @property
     def raw_score(self) -> float | None:
         """What the checks gave, before lateness and overrides."""
-        return None if self.verdict.state == "grader_error" else self.verdict.score
+        return None if self.verdict.state in {"grader_error", MISSING} else self.verdict.score
 
 
 class Results:
@@ -125,8 +135,20 @@ class Results:
         return tuple(self._exercises.values())
 
     def students(self) -> list[str]:
-        """Everybody with a result or an override, by name."""
-        return sorted({*self.book.student_ids(), *(name for name, _ in self._overrides)})
+        """Everybody with a result or an override, or a row of the roster, by name."""
+        return sorted({*self._known(), *self.absent()})
+
+    def absent(self) -> list[str]:
+        """Who is enrolled and in no folder, by the roster's order; nobody without a roster."""
+        if self.roster is None:
+            return []
+        known = self._known()
+        found, _ = self.roster.match(known, self.downloads)
+        there = {person.student for person in found.values()}
+        return [one.student for one in self.roster.people if one.student not in there | known]
+
+    def _known(self) -> set[str]:
+        return {*self.book.student_ids(), *(name for name, _ in self._overrides)}
 
     def title(self, exercise: str) -> str:
         """The exercise's title; its id where none was noted."""
@@ -137,15 +159,37 @@ class Results:
         return self.roster.find(student, self.downloads.get(student)) if self.roster else None
 
     def all(self, student: str | None = None, exercise: str | None = None) -> Iterator[Effective]:
-        """Every student and exercise, ordered by both; those that only an override is about at the end."""
-        seen: set[tuple[str, str]] = set()
-        for result in self.book.results(student, exercise):
-            seen.add((result.key.student, result.key.exercise))
-            yield self.of(result)
-        for (name, about), override in sorted(self._overrides.items()):
-            wanted = student in {None, name} and exercise in {None, about}
-            if wanted and override.score is not None and (name, about) not in seen:
-                yield self.of(self._nothing(name, about))
+        """Every student and exercise, ordered by both; students whom no grading is about come at the end."""
+        enrolled = self._enrolled()
+        # What nobody at all handed in was not asked for: it is nobody's to miss.
+        asked = frozenset(self.book.exercise_ids() if enrolled else ())
+        done: set[tuple[str, str]] = set()
+        for name, group in itertools.groupby(self.book.results(student, exercise), lambda r: r.key.student):
+            for result in group:
+                done.add((name, result.key.exercise))
+                yield self.of(result)
+            if name in enrolled:
+                yield from self._without_grading(name, exercise, done, asked)
+        others = sorted({name for name, _ in self._overrides} | enrolled)
+        for name in others if student is None else [student]:
+            yield from self._without_grading(name, exercise, done, asked if name in enrolled else frozenset())
+
+    def _enrolled(self) -> set[str]:
+        """Who has a row of the roster, absent or not; nobody without a roster."""
+        if self.roster is None:
+            return set()
+        return {*self.absent(), *self.roster.match(self._known(), self.downloads)[0]}
+
+    def _without_grading(
+        self, student: str, exercise: str | None, done: set[tuple[str, str]], asked: frozenset[str]
+    ) -> Iterator[Effective]:
+        """What a student did not hand in: with a score by hand, or missing if it was asked for."""
+        for about in self._exercises if exercise is None else [exercise]:
+            override = self._overrides.get((student, about))
+            by_hand = override is not None and override.score is not None
+            if (student, about) not in done and (by_hand or about in asked):
+                done.add((student, about))
+                yield self.of(self._nothing(student, about, "ungradable" if by_hand else MISSING))
 
     def of(self, result: Result) -> Effective:
         """One result as it counts."""
@@ -160,7 +204,7 @@ class Results:
         penalty = 0.0
         if override is not None:
             score = override.score
-        elif verdict.state == "grader_error":
+        elif verdict.state in {"grader_error", MISSING}:
             score = None
         else:
             if self.policy is not None and verdict.state == "graded":
@@ -211,12 +255,13 @@ class Results:
         # The tolerance is rounding of sums of points, not mercy.
         return noted is not None and score >= noted.pass_share * most - 1e-9
 
-    def _nothing(self, student: str, exercise: str) -> Result:
-        """In place of a grading, where an instructor gave a score and nothing was handed in."""
+    def _nothing(self, student: str, exercise: str, state: str = "ungradable") -> Result:
+        """In place of a grading, where nothing was handed in."""
         noted = self._exercises.get(exercise)
-        problem = Problem("not_submitted", "Nothing was handed in.", "The score was set by the instructor.")
+        told = "" if state == MISSING else "The score was set by the instructor."
+        problem = Problem("not_submitted", "Nothing was handed in.", told)
         verdict = Verdict(
-            exercise=exercise, scope="full", state="ungradable", score=0.0,
+            exercise=exercise, scope="full", state=state, score=0.0,
             max_score=noted.max_points if noted else 0.0, passed=False, checks=(), isolation="",
             error=problem,
         )  # fmt: skip

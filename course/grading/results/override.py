@@ -77,10 +77,10 @@ def _maximum(results: Results, student: str, exercise: str) -> float:
             help=f"It has {', '.join(item.id for item in results.exercises()) or 'none'}.",
             code="exercise_not_found",
         )
-    if graded is None and next(iter(results.book.results(student)), None) is None:
+    if student not in results.students():
         raise NotFoundError(
             f"The gradebook has no student {student!r}.",
-            help="grades.csv lists all.",
+            help="grades.csv lists all, and with a roster everybody who is enrolled.",
             code="student_not_found",
         )
     if noted is not None:

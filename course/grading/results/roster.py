@@ -1,10 +1,16 @@
 """Who is in the class, as the learning platform knows them: the link between folders and its ids.
 
-A roster is a CSV file with a heading row. ``student`` is the name of the folder a student's work is graded
-from; the other columns are optional: name, email, canvas_id, sis_user_id, section, moodle_key,
-extension_days. A student is found by ``student``, or, for a class downloaded from a platform, by that
-platform's own number. A name is used only where no number can be (Moodle's downloads carry a number of their
-own), and only if one student alone has it; who cannot be told apart is listed.
+A roster is a CSV file with a heading row, one of four kinds, told by its headings:
+
+    our own             student (the name of the folder a student's work is graded from), and as far as they
+                        are needed name, email, canvas_id, sis_user_id, section, moodle_key, extension_days
+    Canvas' gradebook   Student, ID, SIS User ID, SIS Login ID, Section, then its assignments
+    Moodle's worksheet  Identifier, Full name, Email address, ... as "Download grading worksheet" gives it
+    Gradescope's        First Name and Last Name, or Name; SID, Email, and Role if there is one
+
+A student is found by ``student``, or, for a class downloaded from a platform, by that platform's own number.
+A name is used only where no number can be, and only if one student alone has it; who cannot be told apart is
+listed.
 """
 
 from __future__ import annotations
@@ -13,7 +19,9 @@ import csv
 import io
 import re
 import unicodedata
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -22,7 +30,6 @@ from course.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
     from course.grading.gradebook.book import FromDownload
 
@@ -61,7 +68,7 @@ class Roster:
     def __post_init__(self) -> None:
         for person in self.people:
             for kind, value in (
-                ("student", person.student),
+                ("student", _composed(person.student)),
                 ("canvas", person.canvas_id),
                 ("moodle", person.moodle_key),
                 ("email", person.email.casefold()),
@@ -112,14 +119,20 @@ class Roster:
 
 
 def _keys(student: str, download: FromDownload | None) -> list[tuple[str, str]]:
-    keys = [("student", student)]
+    keys = [("student", _composed(student))]
     if download is not None and download.source == "canvas":
         keys += [("canvas", download.key)]
     if download is not None and download.source == "gradescope":
-        keys += [("sid", download.sid), ("student", download.sid), ("email", download.email.casefold())]
+        keys += [("sid", download.sid), ("student", _composed(download.sid))]
+        keys += [("email", download.email.casefold())]
     if download is not None and download.source == "moodle":
         keys += [("moodle", download.key), ("name", _folded(download.name))]
     return keys
+
+
+def _composed(name: str) -> str:
+    """A student's id in one of the spellings that Unicode has for it: macOS takes names apart."""
+    return unicodedata.normalize("NFC", name)
 
 
 def _folded(name: str) -> str:
@@ -146,29 +159,51 @@ def read_roster(path: Path) -> Roster:
     try:
         headings = [str(name).strip() for name in reader.fieldnames or ()]
         reader.fieldnames = headings
-        _check_headings(path, headings)
-        people = tuple(_person(path, reader.line_num, row) for row in reader if any(row.values()))
+        kind = _kind(path, headings)
+        rows = (_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values())))
+        people = tuple(person for row, line in rows if (person := kind(path, line, row)) is not None)
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num}: {error}") from None
     _check_unique(path, people)
     return Roster(people)
 
 
-def _check_headings(path: Path, headings: list[str]) -> None:
-    if "student" not in headings:
-        raise _wrong(path, "its first row has no heading 'student'")
-    if len(set(headings)) < len(headings):
+#: What makes of a row a person, or None of a row that is about nobody.
+Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
+
+
+def _kind(path: Path, headings: list[str]) -> Kind:
+    """Which kind of roster has these headings."""
+    found = set(headings)
+    if {"Identifier", "Full name"} <= found:
+        return _from_moodle
+    if {"Student", "ID"} <= found:
+        return _from_canvas
+    if {"First Name", "Last Name", "Email"} <= found or {"Name", "Email"} <= found:
+        return _from_gradescope
+    if "student" not in found:
+        raise _wrong(path, "its first row has no heading 'student', and is not that of a platform's file")
+    if len(found) < len(headings):
         raise _wrong(path, "two columns have one heading")
-    unknown = sorted(set(headings) - set(COLUMNS))
+    unknown = sorted(found - set(COLUMNS))
     if unknown:
         raise _wrong(path, f"the heading {unknown[0]!r} is not one of {', '.join(COLUMNS)}")
+    return _from_ours
 
 
-def _person(path: Path, line: int, row: dict[str, str | None]) -> Person:
+def _some(value: object) -> bool:
+    return bool(value.strip()) if isinstance(value, str) else bool(value)
+
+
+def _cells(path: Path, line: int, row: dict[str, str | None]) -> tuple[dict[str, str], int]:
     if None in row or None in row.values():
         raise _wrong(path, f"line {line}: it has another number of cells than the headings")
+    return {name: text or "" for name, text in row.items()}, line
+
+
+def _from_ours(path: Path, line: int, row: dict[str, str]) -> Person:
     # A student's id is the name of a folder, spaces and all; the rest was typed by somebody.
-    cells = {name: (text or "") if name == "student" else (text or "").strip() for name, text in row.items()}
+    cells = {name: text if name == "student" else text.strip() for name, text in row.items()}
     if not cells["student"]:
         raise _wrong(path, f"line {line}: it names no student")
     if cells.get("canvas_id") and not re.fullmatch(r"[0-9]{1,20}", cells["canvas_id"]):
@@ -181,6 +216,54 @@ def _person(path: Path, line: int, row: dict[str, str | None]) -> Person:
     if not 0 <= granted <= 3660:
         raise _wrong(path, f"line {line}: extension_days is {days!r}, not a number of days")
     return Person(**cells, extension_days=granted)
+
+
+def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
+    """A row of Canvas' gradebook; below its headings it has rows about columns, and a student for tests."""
+    cells = {name: text.strip() for name, text in row.items()}
+    name, key = cells["Student"], cells["ID"]
+    if not key:
+        return None  # "Points Possible", "Manual Posting"
+    if not re.fullmatch(r"[0-9]{1,20}", key):
+        raise _wrong(path, f"line {line}: ID {key!r} is not a number")
+    if name == "Student, Test":
+        return None
+    # As Canvas calls the files of a download: the sortable name without anything but letters and digits.
+    plain = "".join(letter for letter in name.casefold() if letter.isalnum())
+    return Person(
+        student=f"{plain}_{key}",
+        name=name,
+        canvas_id=key,
+        sis_user_id=cells.get("SIS User ID", ""),
+        section=cells.get("Section", ""),
+    )
+
+
+def _from_moodle(path: Path, line: int, row: dict[str, str]) -> Person:
+    """A row of Moodle's grading worksheet; its files are called by name and the participant's number."""
+    cells = {name: text.strip() for name, text in row.items()}
+    key = re.search(r"([0-9]+)$", cells["Identifier"])
+    if key is None:
+        raise _wrong(path, f"line {line}: Identifier {cells['Identifier']!r} ends in no number")
+    name = cells["Full name"].replace("_", "")
+    return Person(
+        student=f"{name}_{key[1]}", name=name, email=cells.get("Email address", ""), moodle_key=key[1]
+    )
+
+
+def _from_gradescope(path: Path, line: int, row: dict[str, str]) -> Person | None:
+    """A row of Gradescope's roster; staff are listed in it too."""
+    cells = {name: text.strip() for name, text in row.items()}
+    if cells.get("Role", "Student").casefold() not in {"", "student"}:
+        return None
+    name = cells.get("Name") or " ".join(
+        part for part in (cells.get("First Name", ""), cells.get("Last Name", "")) if part
+    )
+    sid, email = cells.get("SID", ""), cells["Email"]
+    if not (sid or email or name):
+        raise _wrong(path, f"line {line}: it names no student")
+    section = cells.get("Sections", "") or cells.get("Section", "")
+    return Person(student=sid or email or name, name=name, email=email, sis_user_id=sid, section=section)
 
 
 def _check_unique(path: Path, people: tuple[Person, ...]) -> None:
@@ -196,6 +279,7 @@ def _check_unique(path: Path, people: tuple[Person, ...]) -> None:
 def _wrong(path: Path, why: str) -> UsageError:
     return UsageError(
         f"{path}: {why}.",
-        help=f"A roster is a CSV file with the columns {', '.join(COLUMNS)}; all but the first are optional.",
+        help="A roster is what Canvas, Moodle or Gradescope hand out, unchanged, or a CSV file with the "
+        f"columns {', '.join(COLUMNS)}; all but the first are optional.",
         code="invalid_roster",
     )

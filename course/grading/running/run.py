@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.grading.intake.downloads import ClassList, Student
     from course.grading.results.effective import Effective
+    from course.grading.results.roster import Roster
     from course.grading.running.batch import Graded
 
     #: What turns entries into verdicts: processes on this machine, or anything else that does the same.
@@ -58,6 +59,7 @@ class RunOptions:
         terms: protection, deadline; their seed is not asked for.
         seed: of the run; None draws one, and a resumed run keeps its own.
         layout: what kind of folder it is; "auto" finds out.
+        roster: who is enrolled; None leaves what the gradebook remembers.
     """
 
     exercises: tuple[str, ...] = ()
@@ -66,6 +68,7 @@ class RunOptions:
     seed: int | None = None
     resume: bool = False
     layout: str = "auto"
+    roster: Roster | None = None
 
 
 class Trouble(msgspec.Struct, frozen=True):
@@ -87,6 +90,8 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results that an earlier run had.
+        missing: who is enrolled and handed in nothing at all; empty without a roster.
+        strangers: who handed in something and has no row of their own in the roster.
         unrecognised: what in the class folder belongs to nobody, one sentence each.
         elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
@@ -96,6 +101,8 @@ class Summary:
     passed: int = 0
     troubled: list[Trouble] = field(default_factory=list)
     not_submitted: int = 0
+    missing: list[str] = field(default_factory=list)
+    strangers: list[str] = field(default_factory=list)
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
@@ -112,8 +119,12 @@ class Summary:
 
     def count(self, results: Results) -> None:
         """Take in everything a gradebook has."""
+        self.missing = results.absent()
+        self.strangers = results.unmatched(results.students())
         for effective in results.all():
             verdict = effective.verdict
+            if effective.missing:
+                continue
             settled = effective.override is not None  # by hand, whatever the graders could make of it
             self.states["graded" if settled else verdict.state] += 1
             self.passed += effective.passed
@@ -202,6 +213,8 @@ class _Run:
         options, book = self._options, self._book
         course = self._catalog
         book.set_meta(seed=str(self.summary.seed), course=course.course_id, version=course.version)
+        if options.roster is not None:
+            book.set_meta(roster=options.roster.dump())
         terms = options.terms
         facts = {"level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout}
         if not (options.resume and book.run_options()):

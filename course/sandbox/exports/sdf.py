@@ -1,29 +1,40 @@
-"""A scene as an SDF world, which Gazebo reads.
+"""A scene as an SDF world, which Gazebo Sim reads.
 
-Bodies that joints hold together become links of one model, each other one a model of its own. SDF has
-restitution and friction for each surface and leaves it to the physics engine how a pair's come about. It has
-no plane to hold bodies in: they start in it, and nothing pushes them out of it but rounding.
+Bodies that nothing holds slide on rails and turn on a hinge, so that they stay in the plane; bodies that
+joints hold together are links of one model, and each other one is a model of its own. SDF has restitution and
+friction for each surface and leaves it to the physics engine how a pair's come about. Velocities at the start
+are set by ``gazebo_start.py``, which has to lie beside the world.
 """
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 from course.sandbox.exports.common import DEPTH, checked_parts, gravity_of, moment_3d, number, surface_of
+from course.sandbox.exports.sdf_joints import assemblies
 
 if TYPE_CHECKING:
+    from course.sandbox.exports.sdf_joints import Assembly, Held, LightLink
     from course.sandbox.scene.loading import Chosen
-    from course.sandbox.scene.model import Joint
     from course.sandbox.scene.parts import Part
 
-__all__ = ["VERSION", "sdf"]
+__all__ = ["START", "VERSION", "sdf", "start_script"]
 
 VERSION = "1.9"
-_NOTE = (
-    " Written by `course sandbox export`. A plane in space: x is x, z is up, y is held by nothing."
-    " Velocities at the start are in `state`, which some readers pass over. "
+#: The file that gives a world its velocities at the start.
+START = "gazebo_start.py"
+_NOTE = " Written by `course sandbox export`. A plane in space: x is x, z is up, y is held. "
+_NOTE_START = (
+    f" Velocities at the start are set by {START}, which Gazebo finds by GZ_SIM_SYSTEM_PLUGIN_PATH. "
+)
+#: What Gazebo Sim loads when a world names no systems; a world that names one has to name them all.
+_SYSTEMS = (
+    ("physics", "Physics"),
+    ("user-commands", "UserCommands"),
+    ("scene-broadcaster", "SceneBroadcaster"),
 )
 
 
@@ -35,35 +46,106 @@ def sdf(chosen: Chosen) -> bytes:
     """
     scene = chosen.scene
     parts = checked_parts(chosen, "SDF")
+    models = list(assemblies(parts, scene.joint))
     root = ET.Element("sdf", version=VERSION)
     root.append(ET.Comment(_NOTE))
+    if any(_moves(model) for model in models):
+        root.append(ET.Comment(_NOTE_START))
     world = ET.SubElement(root, "world", name=scene.id)
+    # Gazebo Sim takes its engine from a plugin, not from this type, which SDF wants to be there.
     physics = ET.SubElement(world, "physics", name="fixed-step", type="ignored")
     _text(physics, "max_step_size", number(chosen.settings.get("step", scene.step)))
     _text(physics, "real_time_factor", "1")
+    for file, name in _SYSTEMS:
+        _plugin(world, file, name)
     gx, gy = gravity_of(chosen)
     _text(world, "gravity", f"{number(gx)} 0 {number(gy)}")
-    joined = {name for joint in scene.joint for name in (joint.a, joint.b)}
-    by_name = {part.name: part for part in parts}
-    if joined:
-        model = ET.SubElement(world, "model", name="joined")
-        _text(model, "self_collide", "true")
-        for name in (part.name for part in parts if part.name in joined):
-            _add_link(model, chosen, by_name[name], place=True)
-            if by_name[name].fixed:
-                _add_joint(model, f"{name}-stays", "fixed", "world", name)
-        for i, joint in enumerate(scene.joint, 1):
-            _add_held(model, i, joint, by_name)
+    _add_light(world)
     for part in parts:
-        if part.name not in joined:
+        if part.fixed:
             model = ET.SubElement(world, "model", name=part.name)
-            _text(model, "static", "true" if part.fixed else "false")
-            _text(model, "pose", _pose(part))
-            _add_link(model, chosen, part, place=False)
-    _add_state(world, parts, joined)
+            _text(model, "static", "true")
+            _add_link(model, chosen, part)
+    for assembly in models:
+        _add_assembly(world, chosen, assembly)
     ET.indent(root)
     data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
     return data + b"\n"
+
+
+def start_script(world: bytes) -> bytes | None:
+    """What has to lie beside a world as ``START``; None if all its bodies start at rest."""
+    if START.encode() not in world:
+        return None
+    return Path(__file__).with_name(START).read_bytes()
+
+
+def _moves(assembly: Assembly) -> bool:
+    return any(held.speed for held in assembly.held)
+
+
+def _plugin(parent: ET.Element, file: str, name: str) -> ET.Element:
+    return ET.SubElement(parent, "plugin", filename=f"gz-sim-{file}-system", name=f"gz::sim::systems::{name}")
+
+
+def _add_light(world: ET.Element) -> None:
+    light = ET.SubElement(world, "light", name="sun", type="directional")
+    for tag, text in (
+        ("cast_shadows", "true"),
+        ("pose", "0 -10 10 0 0 0"),
+        ("diffuse", "0.9 0.9 0.9 1"),
+        ("specular", "0.2 0.2 0.2 1"),
+        ("direction", "0.3 0.7 -0.6"),
+    ):
+        _text(light, tag, text)
+
+
+def _add_assembly(world: ET.Element, chosen: Chosen, assembly: Assembly) -> None:
+    """A model whose links stand where their bodies do, the joints that hold them, and their velocities."""
+    model = ET.SubElement(world, "model", name=assembly.bodies[0].name)
+    if len(assembly.bodies) > 1:
+        _text(model, "self_collide", "true")
+    for light in assembly.light:
+        _add_light_link(model, light)
+    for part in assembly.bodies:
+        _add_link(model, chosen, part)
+    for held in assembly.held:
+        _add_joint(model, held)
+    if _moves(assembly):
+        plugin = _plugin(model, "python-system-loader", "PythonSystemLoader")
+        _text(plugin, "module_name", START.removesuffix(".py"))
+        moving = [held for held in assembly.held if held.speed]
+        _text(plugin, "joints", " ".join(held.name for held in moving))
+        for held in moving:
+            _text(plugin, held.name, number(held.speed))
+
+
+def _add_light_link(model: ET.Element, light: LightLink) -> None:
+    link = ET.SubElement(model, "link", name=light.name)
+    _text(link, "pose", f"{number(light.x)} 0 {number(light.z)} 0 {number(light.pitch)} 0")
+    _add_inertial(link, light.mass, (light.moment,) * 3)
+
+
+def _add_inertial(link: ET.Element, mass: float, moments: tuple[float, float, float]) -> None:
+    inertial = ET.SubElement(link, "inertial")
+    _text(inertial, "mass", number(mass))
+    inertia = ET.SubElement(inertial, "inertia")
+    for tag, moment in zip(("ixx", "iyy", "izz"), moments, strict=True):
+        _text(inertia, tag, number(moment))
+    for tag in ("ixy", "ixz", "iyz"):
+        _text(inertia, tag, "0")
+
+
+def _add_joint(model: ET.Element, held: Held) -> None:
+    joint = ET.SubElement(model, "joint", name=held.name, type=held.kind)
+    _text(joint, "pose", f"{number(held.place[0])} 0 {number(held.place[1])} 0 0 0")
+    _text(joint, "parent", held.parent)
+    _text(joint, "child", held.child)
+    axis = ET.SubElement(joint, "axis")
+    _text(axis, "xyz", " ".join(map(str, held.axis))).set("expressed_in", "__model__")
+    limit = ET.SubElement(axis, "limit")
+    _text(limit, "lower", "-1e16")  # SDF's own way to say that there is none
+    _text(limit, "upper", "1e16")
 
 
 def _text(parent: ET.Element, tag: str, text: str) -> ET.Element:
@@ -77,18 +159,11 @@ def _pose(part: Part) -> str:
     return f"{number(part.x)} 0 {number(part.y)} 0 {number(-part.angle)} 0"
 
 
-def _add_link(model: ET.Element, chosen: Chosen, part: Part, *, place: bool) -> None:
+def _add_link(model: ET.Element, chosen: Chosen, part: Part) -> None:
     link = ET.SubElement(model, "link", name=part.name)
-    if place:
-        _text(link, "pose", _pose(part))
+    _text(link, "pose", _pose(part))
     if not part.fixed:
-        inertial = ET.SubElement(link, "inertial")
-        _text(inertial, "mass", number(part.mass))
-        inertia = ET.SubElement(inertial, "inertia")
-        for tag, moment in zip(("ixx", "iyy", "izz"), moment_3d(part), strict=True):
-            _text(inertia, tag, number(moment))
-        for tag in ("ixy", "ixz", "iyz"):
-            _text(inertia, tag, "0")
+        _add_inertial(link, part.mass, moment_3d(part))
     restitution, friction = surface_of(chosen, part)
     for kind in ("collision", "visual"):
         element = ET.SubElement(link, kind, name=f"{part.name}-{kind}")
@@ -129,53 +204,3 @@ def _add_geometry(geometry: ET.Element, part: Part) -> None:
         for x, y in (*part.outline, part.outline[0]):
             _text(polyline, "point", f"{number(x)} {number(y)}")
         _text(polyline, "height", number(2 * DEPTH))
-
-
-def _add_joint(model: ET.Element, name: str, kind: str, parent: str, child: str) -> ET.Element:
-    joint = ET.SubElement(model, "joint", name=name, type=kind)
-    _text(joint, "parent", parent)
-    _text(joint, "child", child)
-    if kind == "revolute":
-        _text(ET.SubElement(joint, "axis"), "xyz", "0 1 0")
-    return joint
-
-
-def _add_held(model: ET.Element, number_of: int, joint: Joint, parts: dict[str, Part]) -> None:
-    """A pivot is a hinge. A rod is a light link with a hinge at either end."""
-    ends = [_end(parts[joint.a], joint.anchor_a), _end(parts[joint.b], joint.anchor_b)]
-    if joint.kind == "pivot":
-        made = _add_joint(model, f"pivot-{number_of}", "revolute", joint.a, joint.b)
-        place = f"{number(joint.anchor_b[0])} 0 {number(joint.anchor_b[1])} 0 0 0"
-        made.insert(0, _text(ET.Element("joint"), "pose", place))
-        return
-    name = f"rod-{number_of}"
-    (ax, ay), (bx, by) = ends
-    link = ET.SubElement(model, "link", name=name)
-    tilt = math.atan2(bx - ax, by - ay)
-    _text(link, "pose", f"{number((ax + bx) / 2)} 0 {number((ay + by) / 2)} 0 {number(tilt)} 0")
-    length = math.hypot(bx - ax, by - ay)
-    mass = 0.001 * max(parts[joint.a].mass, parts[joint.b].mass)
-    inertial = ET.SubElement(link, "inertial")
-    _text(inertial, "mass", number(mass))
-    inertia = ET.SubElement(inertial, "inertia")
-    for tag in ("ixx", "iyy", "izz"):
-        _text(inertia, tag, number(mass * length * length / 12))
-    for side, other, end in (("a", joint.a, -length / 2), ("b", joint.b, length / 2)):
-        made = _add_joint(model, f"{name}-{side}", "revolute", other, name)
-        made.insert(0, _text(ET.Element("joint"), "pose", f"0 0 {number(end)} 0 0 0"))
-
-
-def _end(part: Part, anchor: tuple[float, float]) -> tuple[float, float]:
-    c, s = math.cos(part.angle), math.sin(part.angle)
-    return part.x + c * anchor[0] - s * anchor[1], part.y + s * anchor[0] + c * anchor[1]
-
-
-def _add_state(world: ET.Element, parts: tuple[Part, ...], joined: set[str]) -> None:
-    moving = [part for part in parts if not part.fixed and (part.vx or part.vy or part.spin)]
-    if not moving:
-        return
-    state = ET.SubElement(world, "state", world_name=world.get("name", ""))
-    for part in moving:
-        model = ET.SubElement(state, "model", name="joined" if part.name in joined else part.name)
-        link = ET.SubElement(model, "link", name=part.name)
-        _text(link, "velocity", f"{number(part.vx)} 0 {number(part.vy)} 0 {number(-part.spin)} 0")

@@ -9,5 +9,8 @@ import recorder
 
 if __name__ == "__main__":
     recorder.main(
-        "validation", {"best_shift": "validate", "columns": "validate", "held_out_pairs": "validate"}
+        "validation",
+        dict.fromkeys(
+            ("best_shift", "columns", "held_out_pairs", "measures", "interval_of_each"), "validate"
+        ),
     )

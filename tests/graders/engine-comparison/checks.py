@@ -6,7 +6,6 @@ Thresholds come from sweeps over seeds of every accepted solution; the table is 
 
 from __future__ import annotations
 
-import copy
 import functools
 import math
 
@@ -128,7 +127,11 @@ def _questions(seed):
     real += [(reports, needs, answer) for needs, answer in measured.QUESTIONS.values()]
     telling = choices.questions(rng, truths, 12, choices.telling)
     return {
-        "plain": [*telling[:8], choices.at_the_limit(rng, truths)],
+        "plain": [
+            *telling[:8],
+            choices.at_the_limit(rng, truths),
+            *choices.questions(rng, truths, 1, choices.all_count),
+        ],
         "gaps": [*(choices.with_gaps(rng, q) for q in telling[8:]), choices.beyond_reach(rng, truths)],
         "renamed": [choices.renamed(rng, question) for question in real],
     }
@@ -163,27 +166,9 @@ def test_choose_real_again(submission):
 @pytest.mark.requires("choose_by_report")
 def test_choose_by_numbers_only(submission):
     """Other names, another order and a second call change nothing, and the reports stay as they were"""
-    reports = measured.reports()
-    asked = _questions(submission.seed)["renamed"]
-    answers = submission.call_each(choosing.TASK, [question[:2] for question in asked])
-    for question, answer in zip(asked, answers, strict=True):
-        if answer != question[2]:
-            kit.fail(
-                "Engines under other names are chosen differently.",
-                diagnose=diagnosis.named("DEPENDS_ON_NAMES"),
-                input={"reports": question[0], "requirements": question[1]},
-                expected=question[2],
-                actual=answer,
-            )
-    given = [copy.deepcopy(reports), [measured.need("pendulum_loss", "<=", 0.09)]]
-    inspected = submission.call_inspect(choosing.TASK, *given)
-    if [*inspected.args_after] != [measured.reports(), given[1]]:
-        kit.fail(
-            "The call changed the reports or the requirements it was given.",
-            diagnose=diagnosis.named("MUTATES_INPUT"),
-            input={"reports": given[0], "requirements": given[1]},
-            actual=inspected.args_after,
-        )
+    choosing.expect_choices(submission, _questions(submission.seed)["renamed"])
+    needs = [measured.need("pendulum_loss", "<=", 0.09)]
+    choosing.expect_untouched(submission, measured.reports(), needs)
 
 
 # -- the facts ------------------------------------------------------------------------------------------
@@ -224,15 +209,16 @@ def test_facts_defaults(submission):
     entries = listing.by_pair(listing.entries(submission))
     for engine in listing.ENGINES:
         entry = _entry(entries, engine, "default_integrator")
-        if entry["value"] != facts.INTEGRATOR:
-            explicit = entry["value"] == "explicit_euler"
+        integrator = kit.as_text(entry["value"], "a default integrator")
+        if integrator != facts.INTEGRATOR:
+            explicit = integrator == "explicit_euler"
             kit.fail(
                 "A default integrator is not right.",
                 help="Which half of the state is updated first, and what does the other half use?",
                 diagnose=diagnosis.named("INTEGRATOR_BY_NAME") if explicit else None,
                 input={"engine": engine},
                 expected=facts.INTEGRATOR,
-                actual=entry["value"],
+                actual=integrator,
             )
         entry = _entry(entries, engine, "default_step_s")
         _expect_step(engine, entry["value"])
@@ -280,13 +266,8 @@ def _entry(entries, engine, field):
 
 
 def _of_licence(engine, text):
-    """Outdated, or the right one by its everyday name."""
-    words = facts.plain(text)
-    if any(word in words for word in facts.STALE):
-        return diagnosis.named("STALE_LICENCE")
-    if any(word in words for word in facts.EVERYDAY[engine]):
-        return diagnosis.named("NOT_SPDX")
-    return None
+    code = facts.licence_mistake(engine, text)
+    return code and diagnosis.named(code)
 
 
 def _expect_step(engine, value):

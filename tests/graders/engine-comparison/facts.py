@@ -19,6 +19,15 @@ LICENCES = {
 #: Words of licences that these engines once had.
 STALE = ("proprietary", "commercial", "nvidia", "eula", "closed", "roboti", "licenseref", "paid", "trial")
 
+#: Identifiers of licences that these engines do not have, in lower case: well-formed, and wrong here.
+IDENTIFIERS = {
+    "mit", "mit-0", "apache-1.1", "apache-2.0", "bsd-2-clause", "bsd-3-clause", "bsd-4-clause", "zlib", "isc",
+    "bsl-1.0", "mpl-1.1", "mpl-2.0", "epl-1.0", "epl-2.0", "cc0-1.0", "unlicense", "wtfpl", "0bsd",
+    *(f"{name}{ending}"
+      for name in ("gpl-1.0", "gpl-2.0", "gpl-3.0", "lgpl-2.0", "lgpl-2.1", "lgpl-3.0", "agpl-3.0")
+      for ending in ("", "+", "-only", "-or-later")),
+}  # fmt: skip
+
 #: Words of a licence's everyday name: the right licence, not its identifier.
 EVERYDAY = {
     "ode": ("lgpl", "gpl", "bsd"),
@@ -79,6 +88,16 @@ def spdx(text: str) -> list[str]:
 def right_licence(engine: str, text: str) -> bool:
     """Whether every identifier of the expression is one the engine may be used under."""
     return all(part in LICENCES[engine] for part in spdx(text))
+
+
+def licence_mistake(engine: str, text: str) -> str | None:
+    """The code of a wrong licence: outdated, another engine's, or the right one by its everyday name."""
+    words = plain(text)
+    if any(word in words for word in STALE):
+        return "STALE_LICENCE"
+    if all(part in IDENTIFIERS for part in spdx(text)):
+        return "OTHER_LICENCE"
+    return "NOT_SPDX" if any(word in words for word in EVERYDAY[engine]) else None
 
 
 def plain(text: str) -> str:

@@ -117,8 +117,14 @@ def test_a_replay_that_differs_says_where_and_exits_with_one(tmp_path: Path) -> 
 def test_an_export_goes_to_the_screen_or_a_file(tmp_path: Path, kind: str) -> None:
     out = sandbox("export", "head-on", "--format", kind, cwd=tmp_path).stdout
     assert out.startswith("<?xml")
-    sandbox("export", "head-on", "--format", kind, "-o", "world.xml", cwd=tmp_path)
+    written = sandbox("export", "head-on", "--format", kind, "-o", "world.xml", "--json", cwd=tmp_path).stdout
     assert (tmp_path / "world.xml").read_text() == out
+    beside = json.loads(written)["beside"]
+    if kind == "sdf":
+        assert beside["path"] == str(tmp_path / "gazebo_start.py")
+        assert "def get_system" in (tmp_path / "gazebo_start.py").read_text()
+    else:
+        assert beside is None
 
 
 def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_path: Path) -> None:

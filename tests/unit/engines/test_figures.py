@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import msgspec
 import pytest
 
 from course.engines import reference
+from course.engines.compare import LADDER, QUICK_LADDER
 from course.figures import engine_comparison as module
 from course.figures.style import house_style
 
@@ -28,6 +31,48 @@ def test_the_speed_names_every_engine_once():
         said = words(module.speed())
     for name in ("pymunk", "MuJoCo", "ODE", "Bullet 2.84", "Rapier", "PhysX", "Bullet 3", "DART"):
         assert said.count(name) == 1
+
+
+def inside(figure):
+    """The texts of a figure that stick out of it, or out of it and into the next panel."""
+    figure.canvas.draw()
+    size = figure.bbox
+    out = []
+    for axes in figure.axes:
+        for text in axes.texts:
+            box = text.get_window_extent()
+            next_panel = min((o.bbox.x0 for o in figure.axes if o.bbox.x0 > axes.bbox.x0), default=size.x1)
+            if box.x0 < 0 or box.x1 > next_panel or box.y0 < axes.bbox.y0 or box.y1 > size.y1:
+                out.append(text.get_text())
+    return out
+
+
+@pytest.mark.parametrize("ladder", [LADDER, QUICK_LADDER])
+@pytest.mark.parametrize("tests", [("free-fall",), ("pendulum",), ("free-fall", "pendulum")])
+def test_no_name_of_the_steps_is_cut(ladder, tests):
+    rows = [
+        row
+        for row in reference.load().rows
+        if row.scenario in tests and any(math.isclose(row.dt, dt) for dt in ladder)
+    ]
+    with house_style():
+        assert inside(module._steps(rows)) == []
+
+
+def test_no_name_of_the_speed_or_the_settings_is_cut():
+    from course.figures.engines import settings
+
+    with house_style():
+        assert inside(module.speed()) == []
+        assert inside(settings()) == []
+
+
+def test_where_a_smaller_step_gives_a_larger_error_no_order_is_claimed():
+    with house_style():
+        figure = module.steps()
+    (pendulum,) = [axes for axes in figure.axes if "pendulum" in axes.get_title(loc="left")]
+    words = [text.get_text() for text in pendulum.texts]
+    assert "Rapier" in words
 
 
 def test_the_same_rows_give_the_same_bytes():

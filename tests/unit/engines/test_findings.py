@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from course.engines.findings import chaos, defaults, findings, fingerprints, same_algorithm, slope
+from course.engines.findings import chaos, defaults, findings, fingerprints, phases, same_algorithm, slope
 from course.engines.results import Row
 
 
-def row(engine, scenario, value, setting="tuned", **details):
+def row(engine, scenario, value, setting="tuned", samples=(), **details):
     return Row(
+        samples=samples,
         engine=engine,
         scenario=scenario,
         setting=setting,
@@ -66,6 +67,32 @@ def test_defaults_count_where_options_moved_one_engine_beyond_all():
     assert "in 1 of 2 scenarios (bounce)" in defaults(rows)
     assert defaults(rows[4:]) == ""
     assert defaults(rows[:2]) == ""
+
+
+def test_a_move_within_the_range_of_the_phases_is_not_called_an_option_s():
+    still = [row(e, "bounce", 0.25, s) for e in ("ode", "dart") for s in ("default", "tuned")]
+    moved = [
+        row("mujoco", "bounce", 0.1, "default", samples=(0.05, 0.24)),
+        row("mujoco", "bounce", 0.25, samples=(0.23, 0.27)),
+    ]
+    assert defaults([*still, *moved]) == ""
+    apart = [row("mujoco", "bounce", 0.1, "default", samples=(0.05, 0.18)), moved[1]]
+    assert "in 1 of 1 scenarios (bounce)" in defaults([*still, *apart])
+    # Well-set engines lie as far apart as their phases reach.
+    wide = [row("bullet", "bounce", 0.25, s, samples=(0.1, 0.4)) for s in ("default", "tuned")]
+    assert defaults([*still, *apart, *wide]) == ""
+
+
+def test_the_widest_impact_is_named_with_its_range_and_narrow_ones_are_not():
+    rows = [
+        row("bullet", "bounce", 0.25, samples=(0.14, 0.41)),
+        row("ode", "bounce", 0.25, samples=(0.24, 0.26)),
+        row("ode", "small-drop", 5.0, samples=(4.0, 6.0)),
+    ]
+    assert "Bullet 2.84 gives between 0.1400 and 0.4100 m in bounce" in phases(rows)
+    assert "ODE gives between 4.00 and 6.00 mm in small-drop" in phases(rows[1:])
+    assert phases([row("ode", "bounce", 0.25, samples=(0.249, 0.251))]) == ""
+    assert phases([row("ode", "bounce", 0.25)]) == ""
 
 
 def test_chaos_quotes_the_widest_engine_and_keeps_quiet_about_small_ones():

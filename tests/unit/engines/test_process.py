@@ -98,7 +98,7 @@ def test_a_process_killed_from_outside_is_a_crash_and_the_next_question_starts_a
 def test_what_an_engine_prints_does_not_get_between_the_replies(tmp_path, monkeypatch):
     (tmp_path / "loud.py").write_text(
         "import os, sys\nprint('build time: today')\nos.write(1, b'from C\\n')\n"
-        "from course.engines.pymunk import ADAPTER\n"
+        "from course.engines.adapters.pymunk import ADAPTER\n"
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     command = [

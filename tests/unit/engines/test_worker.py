@@ -35,8 +35,8 @@ class Falling:
 
 
 class Engine:
-    def __init__(self, trick="", tuned=AS_IT_COMES):
-        self.trick, self.tuned, self.given = trick, tuned, None
+    def __init__(self, trick=""):
+        self.trick, self.given = trick, None
 
     def build(self, scene, options):
         self.given = dict(options)
@@ -44,12 +44,13 @@ class Engine:
             raise NotApplicableError("flat")
         return Falling(scene, self.trick)
 
-    def tuning(self, scenario):
-        return self.tuned
+
+def desk(engine, tuned=AS_IT_COMES):
+    return Desk(engine, lambda _scenario: tuned)
 
 
 def test_a_measurement_holds_value_and_details():
-    reply = Desk(Engine()).answer(JOB)
+    reply = desk(Engine()).answer(JOB)
     assert reply["status"] == "ok"
     assert reply["value"] == pytest.approx(0.0, abs=1e-9)
     assert reply["details"]["steps"] == 200
@@ -58,27 +59,39 @@ def test_a_measurement_holds_value_and_details():
 
 def test_tuned_options_reach_the_engine_and_the_reply_only_when_asked_for():
     tuned = Tuning({"iterations": 60}, ("because",))
-    engine = Engine(tuned=tuned)
-    reply = Desk(engine).answer({**JOB, "setting": "tuned"})
+    engine = Engine()
+    reply = desk(engine, tuned).answer({**JOB, "setting": "tuned"})
     assert engine.given == {"iterations": 60}
     assert (reply["options"], reply["why"]) == ({"iterations": 60}, ["because"])
-    Desk(engine).answer(JOB)
+    desk(engine, tuned).answer(JOB)
     assert engine.given == {}
+
+
+def test_while_settings_are_chosen_the_job_itself_says_what_to_set():
+    engine = Engine()
+    desk(engine).answer({**JOB, "options": {"erp": 0.5}})
+    assert engine.given == {"erp": 0.5}
+
+
+def test_the_runs_that_a_value_is_made_of_are_in_the_reply():
+    reply = desk(Engine()).answer({**JOB, "scenario": "stack", "quick": True})
+    assert len(reply["samples"]) == 3
+    assert "samples" not in reply["details"]
 
 
 @pytest.mark.parametrize(
     ("trick", "status"), [("nan", "diverged"), ("planar", "not_applicable"), ("raises", "failed")]
 )
 def test_what_goes_wrong_has_a_name(trick, status):
-    reply = Desk(Engine(trick)).answer(JOB)
+    reply = desk(Engine(trick)).answer(JOB)
     assert reply["status"] == status
     assert reply["message"]
 
 
 def test_an_unknown_scenario_or_a_stretch_before_the_boxes_is_a_failure_not_an_end():
-    desk = Desk(Engine())
-    assert desk.answer({**JOB, "scenario": "tea"})["status"] == "failed"
-    assert desk.answer({"do": "chunk", "steps": 5})["status"] == "failed"
+    one = desk(Engine())
+    assert one.answer({**JOB, "scenario": "tea"})["status"] == "failed"
+    assert one.answer({"do": "chunk", "steps": 5})["status"] == "failed"
 
 
 def test_motion_that_is_not_a_number_is_refused_in_every_part():

@@ -24,6 +24,8 @@ runs = kit.companion("validation", "probes_runs")
 shared = kit.companion("validation", "expectations")
 twins = kit.companion("validation", "twins")
 dataset = kit.companion("validation", "dataset")
+verdict = kit.companion("validation", "probes_verdict")
+verdicts = kit.companion("validation", "verdicts")
 words = kit.companion("validation", "diagnosis").WORDS
 chi_square = kit.sibling(str(GRADERS), "chi_square")
 
@@ -37,7 +39,7 @@ def code(diagnosis):
 def test_every_code_that_is_named_has_words_and_every_word_is_used():
     folder = ROOT / "exercises" / "validation"
     sources = [*folder.glob("*.py"), *GRADERS.parent.glob("*.py")]
-    text = "".join(path.read_text() for path in sources if path.name != "diagnosis.py")
+    text = "".join(path.read_text() for path in sources if "diagnosis" not in path.name)
     spoken = set(re.findall(r'"([A-Z][A-Z_]{3,})"', text))
     others = {
         "NOT_A_MODEL",
@@ -98,11 +100,21 @@ def test_the_spread_of_the_mean_is_that_of_many_series():
     assert np.std(means) == pytest.approx(shared.spread_of_mean(60, 0.8), rel=0.05)
 
 
-def blocks(length):
-    """Ten resamples of 240 positions in blocks that start anywhere."""
+def blocks(length, count=24):
+    """24 resamples of 250 positions in blocks that start anywhere."""
     rng = np.random.default_rng(0)
-    starts = rng.integers(0, 240 - length + 1, (10, -(-240 // length)))
-    return list((starts[:, :, None] + np.arange(length)).reshape(10, -1)[:, :240].astype(float))
+    starts = rng.integers(0, 250 - length + 1, (count, -(-250 // length)))
+    return list((starts[:, :, None] + np.arange(length)).reshape(count, -1)[:, :250].astype(float))
+
+
+def resampled(asked, ends=None):
+    """What the bootstrap's probe finds where the statistic, the mean square, is asked about these."""
+    e = np.arange(250.0)
+    answers = [float(np.mean(samples**2)) for samples in asked]
+    return runs.Resampled(e, asked, answers, kit.Inspected(ends, [e], shared=False))
+
+
+ITSELF = np.arange(250.0)
 
 
 @pytest.mark.parametrize(
@@ -113,14 +125,61 @@ def blocks(length):
         (blocks(4), "BLOCK_IGNORED"),
         (blocks(60), "BLOCK_IGNORED"),
         ([row[:12] for row in blocks(12)], "RESAMPLE_SIZE"),
-        ([np.arange(240.0)] * 10, "NOT_RESAMPLED"),
+        ([row[:240] for row in blocks(12)], "RESAMPLE_SIZE"),
+        ([ITSELF] * 24, "NOT_RESAMPLED"),
         (blocks(12)[:1], "STATISTIC_IGNORED"),
-        ([np.arange(240.0), *blocks(12)], None),
+        ([], "STATISTIC_IGNORED"),
+        (blocks(12)[:1] * 24, "DRAWN_ONCE"),
+        (blocks(12, 2000), "OTHER_NUMBER_OF_RESAMPLES"),
+        (blocks(12)[:23], "OTHER_NUMBER_OF_RESAMPLES"),
+        ([*blocks(12), *[ITSELF] * 24], "OTHER_NUMBER_OF_RESAMPLES"),
+        ([ITSELF, *blocks(12)], None),
     ],
-    ids=["right", "single", "short", "long", "one block", "itself", "asked once", "basic interval"],
+    ids=[
+        "right",
+        "single",
+        "short",
+        "long",
+        "one block",
+        "whole blocks",
+        "itself",
+        "asked once",
+        "never asked",
+        "drawn once",
+        "too many",
+        "too few",
+        "asked twice",
+        "basic interval",
+    ],
 )
 def test_resamples_are_recognised(asked, expected):
-    assert runs.of_resamples(np.arange(240.0), asked) == expected
+    assert runs.of_resamples(resampled(asked)) == expected
+
+
+def quantiles(values, low, high):
+    return np.quantile(values, [low, high])
+
+
+@pytest.mark.parametrize(
+    ("make", "expected"),
+    [
+        (lambda v, whole, means: quantiles(v, 0.1, 0.9), None),
+        (lambda v, whole, means: 2 * whole - quantiles(v, 0.1, 0.9)[::-1], None),
+        (lambda v, whole, means: quantiles(v, 0.1, 0.9)[::-1], "RETURNS_SWAPPED"),
+        (lambda v, whole, means: 2 * whole - quantiles(v, 0.1, 0.9), "RETURNS_SWAPPED"),
+        (lambda v, whole, means: quantiles(v, 0.2, 0.8), "ONE_SIDED"),
+        (lambda v, whole, means: quantiles(v, 0.4, 0.6), "LEVEL_FOR_ALPHA"),
+        (lambda v, whole, means: np.percentile(v, [0.1, 0.9]), "ENDS_ON_ONE_SIDE"),
+        (lambda v, whole, means: quantiles(means, 0.1, 0.9), "STATISTIC_IGNORED"),
+        (lambda v, whole, means: quantiles(v, 0.1, 0.9) - whole, "NOT_CENTRED"),
+        (lambda v, whole, means: [math.nan, math.nan], None),
+        (lambda v, whole, means: "an interval", None),
+    ],
+)
+def test_ends_of_an_interval_are_recognised(make, expected):
+    found = resampled(blocks(12))
+    ends = make(np.array(found.answers), np.mean(ITSELF**2), [np.mean(row) for row in found.asked])
+    assert runs.of_ends(resampled(blocks(12), ends)) == expected
 
 
 def folds(fitted, asked):
@@ -146,6 +205,8 @@ def folds(fitted, asked):
         ([[1, 2, 3], [0]], [[0], [1, 2, 3]], "FOLDS_UNEVEN"),
         ([[2, 3], [0, 1]], [[0, 1], [2]], "FOLDS_UNEVEN"),
         ([[2], [0, 1]], [[0, 1], [2, 3]], "TRAINS_ON_TOO_LITTLE"),
+        ([[0], [1, 2], [3]], [[1, 2, 3], [0, 3], [0, 1, 2]], "FITS_THE_FOLD"),
+        ([[0], [1, 2], [3]], [[0], [1, 2], [3]], "FITS_THE_FOLD"),
         ([], [], "FOLDS_UNEVEN"),
     ],
 )
@@ -163,26 +224,125 @@ def test_predict_and_fit_refuse_what_they_cannot_use():
     assert refused.value.finding.diagnosis == "NOT_A_RUN"
 
 
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [(-0.05, "LAG_SIGN"), (0.04, "LAG_WHOLE_SAMPLES"), (2.5, "LAG_IN_SAMPLES"), (0.123, None)],
-)
-def test_a_wrong_lag_is_recognised(value, expected):
-    assert code(runs.of_lag(value, 0.05, 0.02)) == expected
+def three_runs(lates=(0.05, 0.05, 0.05), offset=-0.02):
+    """Carts that a simulation follows so much later, and the facts about it."""
+    rng = np.random.default_rng(3)
+    recorded = [twins.record(rng, name, 6.0 + i, 0.02, 0.03) for i, name in enumerate("abc")]
+    sim, real = twins.simulated(recorded, late=lates, offset=offset), twins.measured(recorded)
+    return sim, real, verdicts.facts(recorded, sim, real, lates)
 
 
 @pytest.mark.parametrize(
-    ("reasons", "expected"),
+    ("lates", "value", "expected"),
     [
-        (["rmse", "lag"], "NOT_SORTED"),
-        (["rmse"], "SIGN_OF_LIMIT_IGNORED"),
-        (["lag"], "REASON_MISSING"),
-        (["bias", "lag", "rmse"], "REASON_TOO_MANY"),
+        ((0.05, 0.05, 0.05), -0.05, "LAG_SIGN"),
+        ((0.05, 0.05, 0.05), 0.04, "LAG_WHOLE_SAMPLES"),
+        ((0.05, 0.05, 0.05), 2.5, "LAG_IN_SAMPLES"),
+        ((0.05, 0.05, 0.05), 0.123, "LAG_NOT_BEST"),
+        ((0.05, 0.05, 0.05), 0.25, "LAG_AT_THE_END"),
+        # Where the simulation is neither late nor early, no wrong lag is a number of samples.
+        *(((0.0, 0.0, 0.0), value, "LAG_NOT_BEST") for value in (0.011, 0.09, -0.15)),
+        ((0.0, 0.0, 0.0), 0.7, "LAG_AT_THE_END"),
     ],
 )
-def test_wrong_reasons_are_recognised(reasons, expected):
-    numbers = {"bias": 0.0, "lag_s": -0.05}
-    assert code(runs.of_reasons(reasons, ["lag", "rmse"], numbers)) == expected
+def test_a_wrong_lag_is_recognised(lates, value, expected):
+    *_, right = three_runs(lates)
+    assert code(verdict.of_lag(value, math.nan, right)) == expected
+
+
+def test_a_mean_of_lags_is_told_from_the_lag_of_all():
+    *_, right = three_runs((0.01, 0.05, 0.09))
+    alone = np.array([run["lag_s"] for run in right.single])
+    half = verdict.T95[1] * math.sqrt(2) * np.std([np.mean(np.delete(alone, i)) for i in range(3)])
+    assert code(verdict.of_lag(float(np.mean(alone)), half, right)) == "LAG_MEAN_OF_RUNS"
+    assert code(verdict.of_lag(float(np.mean(alone)), math.nan, right)) == "LAG_NOT_BEST"
+
+
+SPEC = {"rmse_max": 1.0, "bias_max": 0.01, "lag_max_s": 0.01, "coverage_min": 0.0, "coverage_max": 1.1}
+
+
+@pytest.mark.parametrize(
+    ("reasons", "lates", "expected"),
+    [
+        (["lag", "bias"], (-0.05,) * 3, "NOT_SORTED"),
+        (["bias"], (-0.05,) * 3, "SIGN_OF_LIMIT_IGNORED"),
+        (["bias"], (0.05,) * 3, "REASON_MISSING"),
+        (["bias", "lag", "rmse"], (0.05,) * 3, "REASON_TOO_MANY"),
+    ],
+)
+def test_wrong_reasons_are_recognised(reasons, lates, expected):
+    *_, right = three_runs(lates)
+    assert right.reasons(SPEC) == ["bias", "lag"]
+    assert code(verdict.of_verdicts([(reasons, right, SPEC)])) == expected
+
+
+def test_a_number_within_its_margin_is_told_from_an_interval_within_it():
+    *_, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, -0.03))
+    number, half = right.numbers["bias"], right.half("bias")
+    spec = SPEC | {"bias_max": abs(number) + half / 2, "lag_max_s": 1.0}
+    assert right.reasons(spec) == ["bias"]
+    wide = SPEC | {"bias_max": abs(number) / 2, "lag_max_s": 1.0}
+    assert code(verdict.of_verdicts([([], right, spec), (["bias"], right, wide)])) == "POINT_ESTIMATE_JUDGED"
+
+
+def test_the_interval_of_the_facts_is_the_jackknife_of_the_model_solution():
+    sim, real, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, 0.01))
+    report = Fake().call("validate", sim, real, SPEC)
+    for key in verdict.NUMBERS:
+        assert report[key] == pytest.approx(right.numbers[key], rel=1e-9)
+        assert report["intervals"][key] == pytest.approx(right.interval(key), rel=1e-9)
+    assert report["lag_s"] == pytest.approx(right.numbers["lag_s"], abs=0.001)
+    assert report["intervals"]["lag_s"] == pytest.approx(right.interval("lag_s"), abs=0.003)
+
+
+@pytest.mark.parametrize("bad", [None, 3, "abc", [1, [2]], np.zeros(3), {"a": 1}, 10**400, [None], math.nan])
+@pytest.mark.parametrize("key", [*verdicts.KEYS, None])
+def test_whatever_a_report_holds_is_judged(key, bad):
+    """A report with any one value spoilt fails as the student's, never as the grader's."""
+    sim, real, right = three_runs()
+    report = Fake().call("validate", sim, real, SPEC)
+    spoilt = bad if key is None else {**report, key: bad}
+
+    class Spoilt:
+        def call(self, *_):
+            return spoilt
+
+        def call_inspect(self, *_):
+            return kit.Inspected(spoilt, [sim, real, SPEC], shared=False)
+
+    with pytest.raises(kit.CheckFailed):
+        verdicts.expect_report(Spoilt(), sim, real, SPEC, right, {})
+    with pytest.raises(kit.CheckFailed):
+        verdicts.expect_nothing(Spoilt(), sim, real, SPEC, right, {})
+
+
+def test_a_nominal_interval_covers_what_the_readme_says():
+    """The README's row for 400 errors: 34 % with single errors, 81 % with blocks of 40, each to 3 sigma."""
+    bootstrap = Fake()
+    series = shared.correlated(99, 300, 400, 0.9)
+    for block, share, slack in ((1, 0.34, 0.085), (40, 0.81, 0.07)):
+        ends = np.array([
+            bootstrap.call("block_bootstrap_ci", e, np.mean, block, 200, 0.05, np.random.default_rng(i))
+            for i, e in enumerate(series)
+        ])  # fmt: skip
+        assert np.mean((ends[:, 0] <= 0) & (ends[:, 1] >= 0)) == pytest.approx(share, abs=slack)
+
+
+@pytest.mark.parametrize("each", [0.0, 0.3])
+def test_the_interval_from_runs_left_out_covers_what_the_readme_says(each):
+    """89 to 91 % for the bias, of errors that resemble their neighbours, off as a whole or not; 3 sigma."""
+    rng, solution = np.random.default_rng(5), Fake()
+    solution.set("best_shift", lambda pairs: 0.0)
+    held = []
+    for _ in range(400):
+        e = shared.correlated(int(rng.integers(2**31)), 4, 400, 0.9)
+        pairs = [
+            ({"y": row[:n] + each * rng.standard_normal(), "sigma": np.ones(n)}, {"y": np.zeros(n)})
+            for row, n in zip(e, rng.integers(200, 401, 4), strict=True)
+        ]
+        lo, hi = solution.call("interval_of_each", pairs)["bias"]
+        held.append(lo <= 0 <= hi)
+    assert np.mean(held) == pytest.approx(0.9, abs=0.05)
 
 
 def test_the_speed_of_the_cart_obeys_its_equation_of_motion():
@@ -213,6 +373,9 @@ class Fake:
         exec(compile((folder / "validation.py").read_text(), "validation.py", "exec"), self._functions)
         if mutant:
             exec(compile(path.read_text(), path.name, "exec"), self._functions)
+
+    def set(self, name, value):
+        self._functions[name] = value
 
     def call(self, name, *arguments):
         return self._functions[name](*arguments)

@@ -5,23 +5,50 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.figures import engines, sim_to_real, summary, twins
+from course.engines import reference
+from course.engines.registry import ENGINES
+from course.figures import engines, how_contact_is_solved, sim_to_real, summary, twins
+from course.figures.style import house_style
+from course.physics.contact_models import Constraint
 
 
-@pytest.mark.parametrize("test", engines.TESTS)
-def test_in_every_test_options_moved_one_engine_further_than_well_set_ones_lie_apart(test: str) -> None:
-    rows = engines.measured()["engine"]
-    tuned = [row.get("tuned", row["default"])[test] for row in rows]
-    moved = [abs(row.get("tuned", row["default"])[test] - row["default"][test]) for row in rows]
-    assert max(moved) > max(tuned) - min(tuned)
+def test_the_title_of_the_settings_counts_errors_that_are_there() -> None:
+    few, many = engines.mended()
+    assert 0 < few <= many
+    large = [
+        (engine, test)
+        for engine in ENGINES
+        for test in engines.TESTS
+        if engines.error(engine, test, "default").mean > engines.LARGE
+    ]
+    assert len(large) == many
+    with house_style():
+        figure = engines.settings()
+    assert f"Of {many} errors above 10 %, {few} are gone" in figure.get_suptitle()
 
 
-def test_every_engine_has_every_measurement_and_a_rate() -> None:
-    for row in engines.measured()["engine"]:
-        low, high = row["rate"]
-        assert 0 < low < high
-        for setting in ("default", "tuned"):
-            assert set(row.get(setting, row["default"])) == set(engines.TESTS)
+def test_every_error_is_drawn_inside_its_panel() -> None:
+    with house_style():
+        figure = engines.settings()
+    for axes in figure.axes:
+        low, high = axes.get_xlim()
+        drawn = [float(x) for line in axes.lines for x in np.atleast_1d(line.get_xdata())]
+        assert all(low <= x <= high for x in drawn)
+
+
+def test_an_error_of_the_reference_is_its_value_against_the_truth() -> None:
+    row = reference.row("mujoco", "bounce", "default")
+    assert row.value == 0.0
+    assert engines.error("mujoco", "bounce", "default").mean == pytest.approx(100.0)
+    swing = reference.row("dart", "double-pendulum", "tuned")
+    assert engines.error("dart", "double-pendulum", "tuned").worst == pytest.approx(swing.highest)
+
+
+def test_a_bounce_depends_on_its_phase() -> None:
+    plain = how_contact_is_solved.rebounds(Constraint(0.5))
+    assert 0.22 < plain.min() < 0.225
+    assert 0.25 < plain.max() < 0.26
+    assert how_contact_is_solved.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
 
 
 def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None:

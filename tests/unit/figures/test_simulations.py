@@ -47,6 +47,8 @@ def labels(axes: Axes) -> list[str]:
         ("solver-iterations", ["boxes=20", "tolerance=0.5"]),
         ("substeps", ["work=60", "duration=0.5", "frame=0.025"]),
         ("environment", ["step=0.05"]),
+        ("contact-models", ["restitution=0", "step=0.05"]),
+        ("contact-models", ["restitution=1", "erp=1", "height=100", "step=0.02"]),
     ],
 )
 def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(name: str, pairs: list[str]) -> None:
@@ -58,7 +60,8 @@ def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(name: str, 
 
 
 @pytest.mark.parametrize(
-    "name", ["projectile", "collision", "integrators", "rotation", "solver-iterations", "substeps"]
+    "name",
+    ["projectile", "collision", "integrators", "rotation", "solver-iterations", "substeps", "contact-models"],
 )
 def test_a_legend_beside_the_axes_stays_on_the_page(name: str) -> None:
     drawn = figure(name)

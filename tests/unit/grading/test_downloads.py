@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import importlib.util
 from typing import TYPE_CHECKING
 
 import pytest
@@ -186,8 +187,8 @@ def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gradescope(tmp_path)
-    monkeypatch.setitem(__import__("sys").modules, "yaml", None)
-    with pytest.raises(MissingCapabilityError, match="PyYAML") as caught:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(MissingCapabilityError, match="pyyaml") as caught:
         class_list(tmp_path)
     assert "pip install" in caught.value.help
 

@@ -18,8 +18,8 @@ from course.errors import MissingCapabilityError
 from course.grading.exports.cells import number, safe_cell, spelled_out
 from course.grading.exports.formats import export
 from course.grading.exports.html_report.class_page import class_page
-from course.grading.exports.html_report.markup import Html, prose, script, tag, text
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
+from course.grading.exports.html_report.templates import macro, script
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
@@ -341,7 +341,8 @@ def test_the_page_goes_where_it_is_told(tmp_path: Path) -> None:
     assert {"href": "spring.html"} in read_page(tmp_path / "web" / "students.html").all("a")
     assert (tmp_path / "folder" / "report.html").is_file()
     page = read_page(tmp_path / "web" / "students" / "1.html")
-    assert page.pieces[page.pieces.index("Skip to the content") + 1] == "Ada Lovelace"
+    said = [piece for piece in page.pieces if piece.strip()]
+    assert said[said.index("Skip to the content") + 1] == "Ada Lovelace"
     row = read_page(tmp_path / "web" / "students.html").tables["Students and their scores"][1]
     assert row == ["1", "ada", "Ada Lovelace", "B", "10", "–"]
 
@@ -381,8 +382,13 @@ def test_a_class_of_which_nothing_could_be_graded_has_a_page(tmp_path: Path) -> 
 
 
 def test_what_is_no_markup_becomes_none() -> None:
-    assert tag("p", "<b>", title='"&') == '<p title="&quot;&amp;">&lt;b&gt;</p>'
-    assert tag("p", Html("<b></b>"), hidden=True, id=None) == '<p hidden=""><b></b></p>'
-    assert text("a\u202eb\nc\x1b") == "a\\u202eb\nc\\x1b"
-    assert prose("use `a<b` or `") == "use <code>a&lt;b</code> or `"
+    hostile = 'a\u202eb\x1b<b title="&">'
+    drawn = macro("charts", "bar_rows", [(hostile, 1, 2)], hostile)
+    shown = "a\\u202eb\\x1b&lt;b title=&#34;&amp;&#34;&gt;"
+    assert f"<figcaption>{shown}</figcaption>" in drawn
+    assert f'aria-label="{shown}. {shown}: 1 of 2"' in drawn
+    assert "<b" not in drawn
+    said = macro("macros", "paragraph", "use `a<b` or `\nthen \u202e")
+    assert said.strip() == '<p class="words">use <code>a&lt;b</code> or `\nthen \\u202e</p>'
+    assert macro("macros", "paragraph", " \n") == ""
     assert number(None) == ""

@@ -9,14 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course.grading.exports.html_report.charts import (
-    bar_rows,
     duration,
     duration_bins,
-    histogram,
     mark_of,
     percent,
     score_bins,
 )
+from course.grading.exports.html_report.templates import macro
 from course.grading.exports.html_report.words import when
 from course.grading.results.late import in_days
 from tests.unit.grading.pages import Page
@@ -65,7 +64,7 @@ def test_only_everything_is_a_hundred_percent() -> None:
 
 def test_bars_are_as_high_as_their_counts() -> None:
     bins, _ = score_bins([5.0] * 30 + [95.0] * 10, 100.0)
-    page = Page(histogram(bins, caption="Scores", axis="%", last="100", mark=(7.0, "pass mark")))
+    page = Page(macro("charts", "histogram", bins, "Scores", "%", last="100", mark=(7.0, "pass mark")))
     heights = [float(item["height"] or 0) for item in page.all("rect")]
     assert heights[0] == pytest.approx(3 * heights[9], rel=1e-3)
     assert set(heights[1:9]) == {0}
@@ -74,7 +73,12 @@ def test_bars_are_as_high_as_their_counts() -> None:
 
 
 def test_no_bar_leaves_its_track() -> None:
-    drawing = bar_rows([("half", 5, 10), ("more", 15, 10), ("less", -1, 10), ("nothing", 0, 0)], "Points")
+    drawing = macro(
+        "charts",
+        "bar_rows",
+        [("half", 5, 10), ("more", 15, 10), ("less", -1, 10), ("nothing", 0, 0)],
+        "Points",
+    )
     widths = [float(found) for found in re.findall(r'width="([\d.]+)" height="10" class="bar"', drawing)]
     assert widths == [180, 360, 0, 0]
     assert "15 of 10" in Page(drawing).pieces

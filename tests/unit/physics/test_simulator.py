@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import time
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -10,11 +12,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from course.physics.body import Body
-from course.physics.contact import Surface
+from course.physics.contact import Plane, Surface
 from course.physics.integrators import STEPPERS
 from course.physics.invariants import convergence_order
-from course.physics.simulator import Recording, Simulator, step_count
+from course.physics.simulator import Simulator, step_count
 from course.physics.state import RigidBodyState
+
+if TYPE_CHECKING:
+    from course.physics.recording import Recording
 
 few = settings(max_examples=15, deadline=None)
 
@@ -93,7 +98,7 @@ def test_a_ball_meets_the_ground_when_the_closed_form_says(height: float, up: fl
 def test_the_chapters_ball_lands_after_1_428_s_and_stays() -> None:
     record = Simulator([Body(1.0, RigidBodyState.of([0, 0, 10]))], h=0.01, surface=Surface(0.0)).run(2.0)
     assert record.ground_time[0] == pytest.approx(1.4278431, abs=1e-7)
-    assert record.position[-1, 0].tolist() == [0.0, 0.0, 0.0]
+    np.testing.assert_allclose(record.position[-1, 0], 0.0, atol=1e-15)
 
 
 def test_a_throw_from_the_ground_does_not_land_where_it_starts() -> None:
@@ -124,29 +129,144 @@ def test_a_ball_at_rest_stays_at_rest() -> None:
     assert np.all(record.position[:, 0] == [0.0, 0.0, 0.5])
 
 
-def test_five_boxes_stacked_stay_where_they_were_put() -> None:
-    bodies = [ball([0, 0, 0.5 + k], spins=False) for k in range(5)]
-    record = Simulator(bodies, h=0.01, surface=Surface(0.0)).run(1.0)
-    assert np.max(np.abs(record.position - record.position[0])) < 0.01
-
-
 @few
 @given(st.floats(0.5, 4), st.floats(0.1, 1.0))
-def test_a_sliding_block_stops_where_the_closed_form_says_but_for_half_a_step(
-    speed: float, mu: float
-) -> None:
+def test_a_sliding_block_stops_where_the_closed_form_says(speed: float, mu: float) -> None:
     body = ball([0, 0, 0.5], [speed, 0, 0], spins=False)
     assume(speed / (mu * 9.81) < 1.5)
     record = Simulator([body], h=0.005, surface=Surface(0.0, mu)).run(1.5)
+    # Friction is held over a step, and that is exact until the last one, which brakes to 0 evenly.
     exact = speed**2 / (2 * mu * 9.81)
-    # Braking acts at the end of a step, so the block has kept its speed half a step too long.
-    assert record.position[-1, 0, 0] == pytest.approx(exact + speed * 0.005 / 2, abs=0.1 * speed * 0.005)
+    assert record.position[-1, 0, 0] == pytest.approx(exact, abs=mu * 9.81 * 0.005**2)
+
+
+def test_velocity_before_position_stops_a_sliding_block_half_a_step_early() -> None:
+    body = ball([0, 0, 0.5], [2, 0, 0], spins=False)
+    record = Simulator(
+        [body], h=0.01, surface=Surface(0.0, 0.3), stepper=STEPPERS["semi_implicit_euler"]
+    ).run(1.0)
+    assert record.position[-1, 0, 0] == pytest.approx(4 / (2 * 0.3 * 9.81) - 2 * 0.01 / 2, abs=1e-3)
 
 
 def test_a_ball_thrown_flat_ends_rolling_at_five_sevenths_of_its_speed() -> None:
     record = Simulator([ball([0, 0, 0.5], [2, 0, 0])], h=0.01, surface=Surface(0.0, 0.3)).run(2.0)
     assert record.velocity[-1, 0, 0] == pytest.approx(10 / 7, rel=1e-9)
     assert record.angular_velocity[-1, 0, 1] == pytest.approx(10 / 7 / 0.5, rel=1e-9)
+
+
+# -- rest --------------------------------------------------------------------------------------------------
+
+
+def on_a_slope(angle_deg: float, mu: float, **options: object) -> Recording:
+    angle = math.radians(angle_deg)
+    slope = Plane(normal=(math.sin(angle), 0.0, math.cos(angle)))
+    body = ball(0.5 * np.array(slope.normal), **options)
+    return Simulator([body], h=0.01, ground=slope, surface=Surface(0.0, mu)).run(1.0)
+
+
+@pytest.mark.parametrize("method", STEPPERS)
+def test_what_sticks_on_a_slope_does_not_creep(method: str) -> None:
+    angle = math.radians(20)
+    slope = Plane(normal=(math.sin(angle), 0.0, math.cos(angle)))
+    body = ball(0.5 * np.array(slope.normal), spins=False)
+    engine = Simulator([body], h=0.01, ground=slope, surface=Surface(0.0, 1.0), stepper=STEPPERS[method])
+    record = engine.run(2.0)
+    # Solved after the move, as it used to be, friction lets it creep g sin(20°) h/2 a step: 33.6 mm.
+    assert np.max(np.abs(record.position - record.position[0])) < 1e-12
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(5, 60), st.floats(0.0, 1.5), st.booleans())
+def test_on_a_slope_a_body_stays_slides_or_rolls_as_the_closed_form_says(
+    angle_deg: float, mu: float, spins: bool
+) -> None:
+    angle = math.radians(angle_deg)
+    along, across = 9.81 * math.sin(angle), 9.81 * math.cos(angle)
+    # Friction takes up to mu times the pressing force: what holds it, or what makes it roll.
+    held = min(mu * across, along * (2 / 7 if spins else 1.0))
+    record = on_a_slope(angle_deg, mu, spins=spins)
+    way = np.linalg.norm(record.position[-1, 0] - record.position[0, 0])
+    assert way == pytest.approx(0.5 * (along - held) * 1.0**2, abs=1e-9)
+
+
+def test_a_stack_of_ten_stands_at_a_cost_that_a_lesson_can_bear() -> None:
+    bodies = [ball([0, 0, 0.5 + k]) for k in range(10)]
+    engine = Simulator(bodies, h=0.01, surface=Surface(0.5, 0.5))
+    start = time.process_time()
+    record = engine.run(2.0)
+    assert time.process_time() - start < 2.0  # 0.7 s here, on a busy machine
+    # The first steps leave what 500 sweeps leave: 15 nm. It used to be 16 mm.
+    assert np.max(np.abs(record.position - record.position[0])) < 1e-6
+    # What the solver takes for nothing is a millionth of g h.
+    assert np.max(np.abs(record.velocity[100:])) < 1e-6
+
+
+def test_a_pyramid_of_balls_stands_by_friction_alone_and_falls_without() -> None:
+    third = math.sqrt(3) / 6
+    base = np.array([[0, 0, 0.5], [1, 0, 0.5], [0.5, 3 * third, 0.5]])
+    places = [*base, [0.5, third, 0.5 + math.sqrt(2 / 3)]]
+
+    def moved(mu: float) -> float:
+        engine = Simulator([ball(place) for place in places], h=0.01, surface=Surface(0.0, mu))
+        record = engine.run(0.3)
+        return float(np.max(np.abs(record.position[-1] - record.position[0])))
+
+    assert moved(0.5) < 1e-6
+    assert moved(0.1) > 0.02
+
+
+def test_a_stack_that_falls_comes_to_rest_and_gains_no_energy() -> None:
+    bodies = [ball([0, 0, 1.5 + k]) for k in range(5)]
+    record = Simulator(bodies, h=0.01, surface=Surface(0.3, 0.4)).run(3.0)
+    np.testing.assert_allclose(record.position[-1, :, 2], 0.5 + np.arange(5), atol=1e-5)
+    assert np.diff(record.energy()).max() < 1e-6 * record.energy()[0]
+
+
+@pytest.mark.parametrize("moving", [1, 2, 4])
+def test_along_a_row_of_balls_as_many_leave_as_arrive(moving: int) -> None:
+    bodies = [ball([k - (0.5 if k < moving else 0.0), 0, 0], [float(k < moving), 0, 0]) for k in range(5)]
+    record = Simulator(bodies, h=0.01, gravity=0.0, ground=None).run(1.0)
+    expected = [float(k >= 5 - moving) for k in range(5)]
+    np.testing.assert_allclose(record.velocity[-1, :, 0], expected, atol=1e-12)
+
+
+def test_a_light_ball_on_a_heavy_one_flies_off_at_nearly_three_times_the_speed() -> None:
+    bodies = [ball([0, 0, 1.5]), ball([0, 0, 2.25], mass=1e-6, radius=0.25)]
+    record = Simulator(bodies, h=0.01).run(0.7)
+    assert record.velocity[:, 1, 2].max() == pytest.approx(3 * math.sqrt(2 * 9.81 * 1.0), rel=0.01)
+
+
+def test_a_heap_of_balls_keeps_its_momentum_across_and_ends_without_overlap() -> None:
+    rng = np.random.default_rng(0)
+    bodies = [ball(place, radius=0.25) for place in rng.uniform([-1, -1, 1], [1, 1, 8], (12, 3))]
+    record = Simulator(bodies, h=0.01, surface=Surface(0.3, 0.0)).run(2.0)
+    np.testing.assert_allclose(
+        record.momentum()[:, :2], 0.0, atol=1e-12
+    )  # a smooth floor pushes upwards only
+    for i in range(12):
+        for j in range(i):
+            apart = np.linalg.norm(record.position[-1, i] - record.position[-1, j])
+            assert apart > 0.5 - 1e-5
+    assert np.diff(record.energy()).max() < 1e-5 * record.energy()[0]
+
+
+def test_what_touches_from_the_start_has_met_at_time_0() -> None:
+    record = Simulator([ball([0, 0, 0.5])], h=0.01, surface=Surface(0.5)).run(0.1)
+    assert record.ground_time[0] == 0.0
+
+
+def test_a_body_that_is_no_sphere_is_refused_when_it_touches_and_not_before() -> None:
+    body = Body(1.0, RigidBodyState.of([0, 0, 1]), inertia=[1, 1, 1.5], radius=0.1)
+    engine = Simulator([body], h=0.01)
+    engine.run(0.1)
+    with pytest.raises(ValueError, match="Contacts are between spheres"):
+        engine.run(1.0)
+
+
+@pytest.mark.parametrize("gravity", [math.nan, math.inf, -math.inf])
+def test_a_gravity_that_is_no_number_is_refused(gravity: float) -> None:
+    with pytest.raises(ValueError, match="Gravity must be a finite number"):
+        Simulator([ball([0, 0, 1])], h=0.01, gravity=gravity)
 
 
 # -- collisions --------------------------------------------------------------------------------------------

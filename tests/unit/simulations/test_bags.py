@@ -26,7 +26,10 @@ SCAN = streams.ScanStream(T[:2], np.array([[1.0, 2.5, 5.0], [1.5, 5.0, 0.0]]), -
 ODOMETRY = streams.OdometryStream(
     T, [0.0, 1.0, 2.0], [0.0, -1.0, 0.5], [0.0, 2.0, -3.0], [0.5, 0.6, 0.7], [0.0, 0.1, 0.2]
 )
-ALL = (IMU, SCAN, ODOMETRY)
+TRUTH = streams.TruthStream(
+    T, [0.0, 1.1, 2.2], [0.0, -0.9, 0.6], [0.0, 2.1, -2.9], [0.5, 0.6, 0.7], [0.0, 0.1, 0.2]
+)
+ALL = (IMU, SCAN, ODOMETRY, TRUTH)
 
 
 class Cdr:
@@ -51,6 +54,22 @@ class Cdr:
 
     def header(self) -> tuple[int, int, str]:
         return self.take("i"), self.take("I"), self.text()
+
+
+def of(topic: str, rows: list[tuple[str, str, int, bytes]]) -> list[tuple[str, str, int, bytes]]:
+    return [row for row in rows if row[0] == topic]
+
+
+def frames(data: bytes) -> list[tuple[tuple[int, int], str, str, tuple[float, ...]]]:
+    """Stamp, parent, child and x, y, heading of each transform of a TFMessage."""
+    cdr, found = Cdr(data), []
+    for _ in range(cdr.take("I")):
+        second, nanosecond, parent = cdr.header()
+        child = cdr.text()
+        x, y, z, qx, qy, qz, qw = cdr.take("d", 7)
+        assert (z, qx, qy) == (0.0, 0.0, 0.0)
+        found.append(((second, nanosecond), parent, child, (x, y, 2 * math.atan2(qz, qw))))
+    return found
 
 
 def sqlite_messages(bag: Path) -> list[tuple[str, str, int, bytes]]:
@@ -87,12 +106,13 @@ def mcap_messages(path: Path) -> list[tuple[int, bytes]]:
 
 @needs_rosbags
 def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_says(tmp_path):
-    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [IMU], storage="sqlite3"))
+    rows = of("/imu/data_raw", sqlite_messages(bags.write_bag(tmp_path / "drive", [IMU])))
     assert [(name, kind, stamp) for name, kind, stamp, _ in rows] == [
-        ("/imu/data_raw", "sensor_msgs/msg/Imu", stamp) for stamp in (0, 100_000_000, 250_000_000)
+        ("/imu/data_raw", "sensor_msgs/msg/Imu", 10**9 * bags.START_S + stamp)
+        for stamp in (0, 100_000_000, 250_000_000)
     ]
     cdr = Cdr(rows[2][3])
-    assert cdr.header() == (0, 250_000_000, "base_link")
+    assert cdr.header() == (bags.START_S, 250_000_000, "base_link")
     assert cdr.take("d", 4) == (0.0, 0.0, 0.0, 1.0)
     assert cdr.take("d", 9)[0] == -1.0
     assert cdr.take("d", 3) == (0.0, 0.0, 0.3)
@@ -104,9 +124,9 @@ def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_sa
 
 @needs_rosbags
 def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(tmp_path):
-    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [SCAN], storage="sqlite3"))
+    rows = of("/scan", sqlite_messages(bags.write_bag(tmp_path / "drive", [SCAN])))
     cdr = Cdr(rows[0][3])
-    assert cdr.header() == (0, 0, "laser")
+    assert cdr.header() == (bags.START_S, 0, "laser")
     assert cdr.take("f", 7) == pytest.approx((-0.5, 0.5, 0.5, 0.0, 0.1, 0.0, 5.0))
     assert cdr.take("f", cdr.take("I")) == (1.0, 2.5, math.inf)
     assert cdr.take("I") == 0
@@ -114,9 +134,13 @@ def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(tmp_
 
 @needs_rosbags
 def test_an_odometry_message_holds_pose_and_twist_in_their_frames(tmp_path):
-    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [ODOMETRY], storage="sqlite3"))
-    cdr = Cdr(rows[1][3])
-    assert cdr.header() == (0, 100_000_000, "odom")
+    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [ODOMETRY, TRUTH]))
+    truth = Cdr(of("/ground_truth", rows)[1][3])
+    assert truth.header() == (bags.START_S, 100_000_000, "map")
+    assert truth.text() == "base_link_true"
+    assert truth.take("d", 3) == (1.1, -0.9, 0.0)
+    cdr = Cdr(of("/odom", rows)[1][3])
+    assert cdr.header() == (bags.START_S, 100_000_000, "odom")
     assert cdr.text() == "base_link"
     assert cdr.take("d", 3) == (1.0, -1.0, 0.0)
     assert cdr.take("d", 4) == pytest.approx((0.0, 0.0, math.sin(1.0), math.cos(1.0)))
@@ -126,17 +150,90 @@ def test_an_odometry_message_holds_pose_and_twist_in_their_frames(tmp_path):
 
 @needs_rosbags
 def test_an_mcap_bag_holds_the_same_messages_in_order_of_time(tmp_path):
-    lite = sqlite_messages(bags.write_bag(tmp_path / "lite", ALL, storage="sqlite3"))
-    mcap = mcap_messages(bags.write_bag(tmp_path / "drive", ALL) / "drive.mcap")
+    lite = sqlite_messages(bags.write_bag(tmp_path / "lite", ALL))
+    mcap = mcap_messages(bags.write_bag(tmp_path / "drive", ALL, storage="mcap") / "drive.mcap")
     assert mcap == [(stamp, data) for _, _, stamp, data in lite]
     assert [stamp for stamp, _ in mcap] == sorted(stamp for stamp, _ in mcap)
-    assert len(mcap) == 8
+    assert len(mcap) == 11 + 3 + 1 + 6  # the streams, the clock, a frame that stands and two that move
+
+
+@needs_rosbags
+def test_the_clock_runs_from_after_zero_through_every_stamp(tmp_path):
+    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", ALL))
+    clock = [
+        (stamp, Cdr(data)) for _, kind, stamp, data in of("/clock", rows) if kind == "rosgraph_msgs/msg/Clock"
+    ]
+    assert [stamp for stamp, _ in clock] == sorted({stamp for _, _, stamp, _ in rows})
+    assert all(cdr.take("i") * 10**9 + cdr.take("I") == stamp > 0 for stamp, cdr in clock)
+
+
+@needs_rosbags
+def test_every_scan_finds_its_way_through_the_frames_to_the_map_at_its_own_time(tmp_path):
+    scan = streams.ScanStream(T[:2], [[1.0], [1.5]], 0.0, 0.1, 5.0)
+    rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [scan, ODOMETRY, TRUTH]))
+    ((_, kind, when, data),) = of("/tf_static", rows)
+    assert kind == "tf2_msgs/msg/TFMessage"
+    assert when == min(stamp for _, _, stamp, _ in rows)
+    parents = {child: parent for _, parent, child, _ in frames(data)}
+    moving = {}
+    for _, _, stamp, message in of("/tf", rows):
+        for (second, nanosecond), parent, child, pose in frames(message):
+            assert second * 10**9 + nanosecond == stamp
+            assert parents.setdefault(child, parent) == parent, "a frame has one parent"
+            moving[child, stamp] = pose
+    for _, _, stamp, message in of("/scan", rows):
+        frame = Cdr(message).header()[2]
+        assert (frame, stamp) in moving
+        while frame in parents:
+            frame = parents[frame]
+        assert frame == "map"
+    assert moving["base_link", 10**9 * bags.START_S + 100_000_000] == pytest.approx((1.0, -1.0, 2.0))
+    assert moving["base_link_true", 10**9 * bags.START_S + 100_000_000] == pytest.approx((1.1, -0.9, 2.1))
+
+
+@needs_rosbags
+def test_the_metadata_are_of_a_version_that_humble_reads_and_keep_static_frames_for_those_who_come_later(
+    tmp_path,
+):
+    from ruamel.yaml import YAML
+
+    bag = bags.write_bag(tmp_path / "drive", ALL)
+    told = YAML(typ="safe").load((bag / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    assert told["version"] == 8
+    assert told["storage_identifier"] == "sqlite3"
+    assert told["starting_time"]["nanoseconds_since_epoch"] == 10**9 * bags.START_S
+    offered = {}
+    for topic in told["topics_with_message_count"]:
+        quality = topic["topic_metadata"]["offered_qos_profiles"]
+        assert isinstance(quality, str), "up to version 8 it is YAML within YAML"
+        (offered[topic["topic_metadata"]["name"]],) = YAML(typ="safe").load(quality)
+    assert {name for name, quality in offered.items() if quality["durability"] == 1} == {"/tf_static"}
+    assert {quality["reliability"] for quality in offered.values()} == {1}
+
+
+@needs_rosbags
+@pytest.mark.parametrize(
+    ("given", "frame", "topics"),
+    [
+        (ALL, "map", {"/scan", "/odom", "/ground_truth"}),
+        ((SCAN, ODOMETRY), "odom", {"/scan", "/odom"}),
+        ((IMU, SCAN), "base_link", {"/scan"}),
+    ],
+)
+def test_the_view_for_rviz_shows_topics_of_the_bag_in_a_frame_of_the_bag(tmp_path, given, frame, topics):
+    from ruamel.yaml import YAML
+
+    bag = bags.write_bag(tmp_path / "drive", given)
+    view = YAML(typ="safe").load((bag / bags.VIEW).read_text())["Visualization Manager"]
+    assert view["Global Options"]["Fixed Frame"] == frame
+    shown = {display["Topic"]["Value"] for display in view["Displays"] if "Topic" in display}
+    assert shown == topics <= {name for name, *_ in sqlite_messages(bag)}
 
 
 @needs_rosbags
 @pytest.mark.parametrize("storage", bags.STORAGES)
 def test_streams_come_back_as_they_were(tmp_path, storage):
-    imu, scan, odometry = bags.read_bag(bags.write_bag(tmp_path / "drive", ALL, storage=storage))
+    imu, scan, odometry, truth = bags.read_bag(bags.write_bag(tmp_path / "drive", ALL, storage=storage))
     np.testing.assert_allclose(imu.t, T, atol=1e-9)
     np.testing.assert_array_equal(imu.angular_velocity_z, IMU.angular_velocity_z)
     assert imu.variance == 0.04
@@ -144,6 +241,9 @@ def test_streams_come_back_as_they_were(tmp_path, storage):
     assert (scan.angle_min, scan.angle_increment, scan.range_max, scan.frame) == (-0.5, 0.5, 5.0, "laser")
     for name in ("x", "y", "heading", "speed", "turn_rate"):
         np.testing.assert_allclose(getattr(odometry, name), getattr(ODOMETRY, name), atol=1e-12)
+        np.testing.assert_allclose(getattr(truth, name), getattr(TRUTH, name), atol=1e-12)
+    assert (type(odometry), type(truth)) == (streams.OdometryStream, streams.TruthStream)
+    assert (truth.frame, truth.child_frame) == ("map", "base_link_true")
 
 
 @needs_rosbags
@@ -167,10 +267,10 @@ def test_the_same_streams_under_the_same_name_are_the_same_bytes(tmp_path, stora
 @needs_rosbags
 def test_a_bag_is_never_written_over_another(tmp_path):
     bags.write_bag(tmp_path / "drive", [IMU])
-    before = (tmp_path / "drive" / "drive.mcap").read_bytes()
+    before = (tmp_path / "drive" / "drive.db3").read_bytes()
     with pytest.raises(UsageError, match="exists already"):
         bags.write_bag(tmp_path / "drive", [SCAN])
-    assert (tmp_path / "drive" / "drive.mcap").read_bytes() == before
+    assert (tmp_path / "drive" / "drive.db3").read_bytes() == before
 
 
 @needs_rosbags
@@ -205,7 +305,7 @@ def test_a_folder_that_is_no_bag_is_not_found(tmp_path):
 @pytest.mark.parametrize("keep", [0, 20, 400])
 def test_a_damaged_bag_says_so(tmp_path, storage, keep):
     bag = bags.write_bag(tmp_path / "drive", ALL, storage=storage)
-    (file,) = (file for file in bag.iterdir() if file.suffix != ".yaml")
+    (file,) = (file for file in bag.iterdir() if file.suffix in {".db3", ".mcap"})
     file.write_bytes(file.read_bytes()[:keep])
     with pytest.raises(IntegrityError, match="cannot be read as a bag"):
         bags.read_bag(bag)
@@ -230,7 +330,7 @@ def test_without_rosbags_the_error_gives_the_command_that_installs_it(tmp_path, 
     for call in (lambda: bags.write_bag(tmp_path / "drive", [IMU]), lambda: bags.read_bag(tmp_path)):
         with pytest.raises(MissingCapabilityError) as caught:
             call()
-        assert 'pip install "physics-sim-course[ros]"' in caught.value.help
+        assert "pip install 'rosbags" in caught.value.help
 
 
 def test_importing_bags_does_not_import_rosbags():

@@ -244,6 +244,27 @@ def test_the_same_work_in_small_steps_stretches_a_chain_five_times_less() -> Non
     assert stretches == sorted(stretches, reverse=True)
 
 
+def test_floors_let_a_ball_sink_hop_and_gain_as_their_models_say() -> None:
+    out = result("contact-models")
+    for row in out.rows[:4]:
+        assert row.simulated == pytest.approx(row.theory, rel=1e-6)
+    assert out.row("lowest rebound, no correction").simulated == pytest.approx(0.222, abs=5e-4)
+    assert out.row("highest rebound, no correction").simulated == pytest.approx(0.255, abs=5e-4)
+    # (1 + ERP u)² - 1 with u even from 0 to 1 is ERP + ERP²/3 on average, whatever the step.
+    for step in (0.01, 0.001):
+        gained = result("contact-models", f"step={step}").row("energy kept at e = 1, ERP in the velocity")
+        assert gained.simulated - 1 == pytest.approx(0.2 + 0.04 / 3, rel=0.06)
+    assert out.row("energy kept at e = 1, split impulse").simulated == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_spring_too_stiff_for_the_step_is_said_to_throw_the_ball() -> None:
+    out = result("contact-models", "stiffness=1e6", "erp=0.8")
+    assert math.isnan(out.row("depth at rest, penalty").simulated)
+    assert out.row("depth at rest, ERP and CFM of the spring").error == pytest.approx(0.0, abs=1e-9)
+    assert out.row("hop out of the overlap, ERP in the velocity").simulated == pytest.approx(0.1186, abs=1e-4)
+    assert out.row("hop out of the overlap, ERP split impulse").simulated == 0.0
+
+
 @pytest.mark.parametrize("work", [2, 7, 60])
 def test_any_amount_of_work_is_split_into_at_most_six_ways(work: int) -> None:
     out = result("substeps", f"work={work}", "duration=0.5", "frame=0.025")
@@ -254,7 +275,7 @@ def test_any_amount_of_work_is_split_into_at_most_six_ways(work: int) -> None:
 def test_the_floor_decides_more_than_the_step() -> None:
     out = result("environment")
     for row in out.rows[:3]:
-        assert row.error == pytest.approx(2.0 * 0.01 / 2, rel=0.01)  # half a step at the starting speed
+        assert row.error == pytest.approx(-2.0 * 0.01 / 2, rel=0.01)  # half a step at the starting speed
     for row in out.rows[3:6]:
         assert row.simulated == pytest.approx(row.theory, rel=1e-9)
     assert out.rows[6].simulated == pytest.approx(1 / 9, rel=0.02)

@@ -91,6 +91,7 @@ class ExerciseTally:
         scores: what counts, of everybody with a grade (a score set by hand is one).
         ungraded: results that could not be graded and have no score by hand.
         faults: results without a score for a fault of the grader.
+        missing: enrolled students who handed in nothing.
         seconds: wall time of the checks of each graded submission.
     """
 
@@ -101,6 +102,7 @@ class ExerciseTally:
     passed: int = 0
     ungraded: int = 0
     faults: int = 0
+    missing: int = 0
     seconds: array[float] = field(default_factory=lambda: array("d"))
     checks: dict[str, CheckTally] = field(default_factory=dict)
     tasks: dict[str, TaskTally] = field(default_factory=dict)
@@ -113,6 +115,9 @@ class ExerciseTally:
     def take(self, effective: Effective) -> None:
         """Count one student's result."""
         verdict = effective.verdict
+        if effective.missing:
+            self.missing += 1
+            return
         self.results += 1
         self.passed += effective.passed
         # Nobody handed in what only an instructor's decision is about.
@@ -227,6 +232,8 @@ class Tally:
         self.students += 1
         for effective in found:
             self.exercises[effective.exercise].take(effective)
+            if effective.missing:
+                continue
             self._take_facts(effective)
             if effective.result.number:
                 self._take_grading(effective)

@@ -1,0 +1,131 @@
+"""Comparisons of intervals by ``block_bootstrap_ci`` that the public and the hidden checks share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course.grading import kit
+
+probes = kit.companion("validation", "probes")
+runs = kit.companion("validation", "probes_runs")
+shared = kit.companion("validation", "expectations")
+
+
+def expect_width(submission, rng, scale, offset):
+    """Intervals for the mean of correlated errors are about as wide as they must be, and lie around it."""
+    n, phi, block = 400, 0.9, 40
+    series = offset + scale * shared.correlated(int(rng.integers(2**31)), 30, n, phi)
+    calls = [(e, shared.MEAN, block, 70, 0.05, np.random.default_rng(rng.integers(2**31))) for e in series]
+    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", calls))
+    shown = {
+        "series": "30, each sample keeps 0.9 of the one before",
+        "N": n,
+        "block": block,
+        "n_boot": 70,
+        "alpha": 0.05,
+    }
+    kit.expect_bounded(
+        float(np.mean(ends[:, 1] - ends[:, 0])) / (2 * 1.96 * scale * shared.spread_of_mean(n, phi)),
+        low=0.55,
+        high=1.3,
+        source="correct variants over 200 seeds, one corrected for few blocks among them; resampling one by "
+        "one gives 0.22",
+        quantity="mean width over true width",
+        input=shown,
+        message="The intervals do not have the width that the scatter of the mean asks for.",
+        help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
+        diagnose=lambda: runs.of_interval(submission, 1),
+    )
+    expect_centred(submission, ends, np.mean(series, axis=1), shown)
+
+
+def expect_resamples(submission, seed):
+    """The resamples are n_boot, as long as the series, of blocks as asked for; the series stays as it was."""
+    found = runs.resample(submission, seed)
+    code = runs.of_resamples(found)
+    if code is not None:
+        kit.fail(
+            "The resamples that the statistic is asked about are not made as they should be.",
+            help="Join blocks of neighbours, drawn with replacement, until there are as many as in e.",
+            diagnose=probes.named(code),
+            expected="24 resamples of 250 samples in blocks of 12",
+            actual={
+                "resamples": len(found.drawn),
+                "lengths": sorted({len(samples) for samples in found.asked}),
+                "they begin": [samples[:8] for samples in found.asked[:3]],
+            },
+        )
+    code = runs.of_ends(found)
+    if code is not None:
+        kit.fail(
+            "The ends of the interval are not the quantiles that they should be.",
+            help="The alpha/2 and the 1 - alpha/2 quantile of the statistic over the resamples.",
+            diagnose=probes.named(code),
+            expected="quantiles at 0.1 and 0.9 of what the statistic said",
+            actual=found.inspected.value,
+        )
+    shared.expect_left_alone(found.inspected, [found.e], ["e"])
+
+
+def expect_centred(submission, ends, statistics, shown):
+    """Each interval has its statistic about in its middle, in the mean over all."""
+    middle = np.mean(ends, axis=1)
+    width = np.mean(ends[:, 1] - ends[:, 0])
+    kit.expect_bounded(
+        float(np.mean(np.abs(middle - statistics)) / width),
+        high=0.35,
+        source="correct variants stay below 0.2 over 200 seeds",
+        quantity="distance of the middle from the statistic, in widths",
+        input=shown,
+        message="The intervals do not lie where they should.",
+        help="The ends are quantiles of the statistic over the resamples.",
+        diagnose=lambda: runs.of_interval(submission, 1) or probes.named("NOT_CENTRED"),
+    )
+
+
+def expect_level(submission, rng, statistic):
+    """From alpha 0.32 to 0.05 an interval grows as the quantiles do; chance comes from rng alone."""
+    series = shared.correlated(int(rng.integers(2**31)), 8, 240, 0.6)
+    seeds = [int(s) for s in rng.integers(2**31, size=len(series))]
+    calls = [
+        (e, statistic, 16, 120, alpha, np.random.default_rng(seed))
+        for alpha in (0.05, 0.32)
+        for e, seed in zip(series, seeds, strict=True)
+    ]
+    again = [(*calls[0][:-1], np.random.default_rng(seed)) for seed in (seeds[0], seeds[0] + 1)]
+    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", calls + again))
+    shown = {"N": 240, "block": 16, "n_boot": 120, "statistic": "mean of e**2, times a number"}
+    _expect_chance(submission, ends[[0, -2, -1]], shown)
+    wide, narrow = ends[:8], ends[8:16]
+    values = np.array([statistic(e) for e in series])
+    expect_centred(submission, wide, values, shown)
+    ratio = float(np.mean(wide[:, 1] - wide[:, 0]) / np.mean(narrow[:, 1] - narrow[:, 0]))
+    kit.expect_bounded(
+        ratio,
+        low=1.55,
+        high=2.5,
+        source="1.97 for a normal distribution; correct variants over 200 seeds",
+        quantity="width at alpha 0.05 over width at alpha 0.32",
+        input=shown,
+        message="The width of the interval does not follow alpha as it should.",
+        help="alpha is the share outside, both sides together.",
+        diagnose=lambda: runs.of_interval(submission, 1) or probes.named("ONE_STANDARD_ERROR"),
+    )
+
+
+def _expect_chance(submission, ends, shown):
+    first, same, other = ends
+    kit.expect_true(
+        bool(np.array_equal(first, same)),
+        "Two calls with the same arguments and generators in the same state differ.",
+        help="All chance has to come from rng.",
+        input=shown,
+        diagnose=probes.named("GLOBAL_RNG"),
+    )
+    kit.expect_true(
+        not np.array_equal(first, other),
+        "Two calls with different generators give the same interval.",
+        help="All chance has to come from rng.",
+        input=shown,
+        diagnose=lambda: runs.of_interval(submission, 1) or probes.named("FIXED_SEED"),
+    )

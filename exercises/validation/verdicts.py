@@ -1,0 +1,263 @@
+"""Comparisons of a report of ``validate`` that the public and the hidden checks share."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+probes = kit.companion("validation", "probes_verdict")
+twins = kit.companion("validation", "twins")
+shared = kit.companion("validation", "expectations")
+named = probes.named
+
+KEYS = ("accepted", "reasons", *probes.MEASURES, "intervals", "runs_used")
+
+#: A lag is right to this share of the longest time between samples. Correct searches use a quarter of it
+#: (calibration table); one in whole samples is off by 0.3 or more here.
+LAG_SHARE = 0.2
+#: Ends of the lag's interval: the errors of searches with one run or another left out, times Student's t.
+LAG_END_SHARE = 0.5
+#: Ends of the other intervals, in halves of their width: Student's t has three digits in the table.
+END_SHARE = 2e-3
+
+#: Limits that nothing breaks.
+LENIENT = {
+    "rmse_max": 1e3,
+    "bias_max": 1e3,
+    "lag_max_s": 1.0,
+    "coverage_min": -1.0,
+    "coverage_max": math.inf,
+}
+
+
+def curves(recorded, sim, lates, mass=twins.MASS):
+    """What ``probes_verdict.Lags`` needs to know of recordings and of a simulation that is ``lates`` late."""
+    offsets = {run["id"]: run["y"][0] for run in sim["runs"]}
+    known = {}
+    for run, late in zip(recorded, np.broadcast_to(lates, len(recorded)), strict=True):
+        clean = lambda t, run=run, late=late: run.drive.speed(t - late, mass)  # noqa: E731
+        offset = offsets[run.id] - float(clean(run.t[:1])[0])
+        known[run.id] = (run.t, run.y, lambda t, clean=clean, offset=offset: clean(t) + offset)
+    return known
+
+
+def facts(recorded, sim, real, lates=0.0, mass=twins.MASS):
+    """The facts about a simulation of recorded carts."""
+    reach = float(np.max(np.abs(lates)))
+    return probes.facts(sim, real, probes.Lags(curves(recorded, sim, lates, mass), reach))
+
+
+def expect_report(submission, sim, real, spec, right, shown):
+    """``validate`` tells these facts, concludes from them what the limits say, and leaves its arguments.
+
+    Args:
+        right: the facts.
+        shown: what a finding says about the case.
+    """
+    inspected = submission.call_inspect("validate", sim, real, spec)
+    report = kit.as_record(inspected.value, KEYS, "the report")
+    expect_measures(report, sim, real, right, shown)
+    _expect_conclusion(report, right, spec, shown)
+    shared.expect_left_alone(inspected, [sim, real, spec], ["sim", "real", "spec"])
+
+
+def expect_measures(report, sim, real, right, shown):
+    """The runs, the four numbers and their intervals are right."""
+    expect_numbers(report, sim, real, right, shown)
+    _expect_lag(report, right, shown)
+    _expect_intervals(report, right, shown)
+
+
+def expect_numbers(report, sim, real, right, shown):
+    """The right runs, with the right rmse, bias and coverage."""
+    used = [str(item) for item in kit.as_list(report["runs_used"], "runs_used")]
+    kit.expect_equal(
+        sorted(used),
+        sorted(right.used),
+        message="The verdict rests on other runs than it should.",
+        help="Use the runs that both sides have, without those the simulation was calibrated on.",
+        input=shown,
+        diagnose=lambda: probes.of_used(used, sim, real),
+    )
+    for key in probes.NUMBERS:
+        value = kit.as_number(report[key], key)
+        kit.expect_close(
+            value,
+            right.numbers[key],
+            rel=1e-6,
+            abs=1e-9,
+            source="a closed formula: only rounding is allowed",
+            quantity=key,
+            message=f"`{key}` is wrong.",
+            help="Pool the samples of all runs that count, with errors simulated minus real.",
+            input=shown,
+            diagnose=lambda key=key, value=value: probes.of_number(key, value, sim, real),
+        )
+
+
+def _expect_lag(report, right, shown):
+    lag = kit.as_number(report["lag_s"], "lag_s")
+    kit.expect_close(
+        lag,
+        right.numbers["lag_s"],
+        abs=LAG_SHARE * right.dt,
+        source="a fifth of the longest time between samples; correct searches use a quarter of that",
+        quantity="lag_s",
+        units="s",
+        message="`lag_s` is not how late the simulation is.",
+        help="Find the one shift s for which sim(t + s) fits real(t) best, over the samples of all runs.",
+        input=shown,
+        diagnose=lambda: probes.of_lag(lag, _half(report), right),
+    )
+
+
+def _half(report):
+    """Half the width of the lag's interval, or nan."""
+    ends = kit.attempt(lambda: kit.as_vector(kit.as_record(report["intervals"], probes.MEASURES)["lag_s"], 2))
+    return math.nan if ends is None else float(ends[1] - ends[0]) / 2
+
+
+def _expect_intervals(report, right, shown):
+    found = kit.as_record(report["intervals"], probes.MEASURES, "`intervals`")
+    ends = {
+        key: kit.as_vector(kit.as_tuple(found[key], ("lo", "hi")), 2, f"the interval of {key}")
+        for key in probes.MEASURES
+    }
+    words = {
+        "help": "The number, and t times its standard error to either side; the error by leaving out one run "
+        "at a time.",
+        "input": shown,
+    }
+    for key in probes.NUMBERS:
+        kit.expect_array(
+            ends[key],
+            right.interval(key),
+            abs=1e-9 + END_SHARE * right.half(key),
+            source="three digits of Student's t",
+            quantity=f"{key} interval",
+            message=f"The interval of `{key}` does not reach from lo to hi as it should.",
+            diagnose=lambda: probes.of_intervals(ends, right),
+            **words,
+        )
+    kit.expect_array(
+        ends["lag_s"],
+        right.interval("lag_s"),
+        abs=LAG_END_SHARE * right.dt + 0.03 * right.half("lag_s"),
+        source="the search for the lag with one run or another left out",
+        quantity="lag_s interval",
+        message="The interval of `lag_s` does not reach from lo to hi as it should.",
+        diagnose=lambda: probes.of_lag_interval(report["lag_s"], right),
+        **words,
+    )
+
+
+def reasons_of(report):
+    """The reasons of a report, as they are listed."""
+    return [kit.as_text(item, "a reason") for item in kit.as_list(report["reasons"], "reasons")]
+
+
+def _expect_conclusion(report, right, spec, shown):
+    reasons = reasons_of(report)
+    expected = right.reasons(spec)
+    kit.expect_equal(
+        reasons,
+        expected,
+        message="The reasons are not the ones that apply.",
+        help="A reason for each interval that leaves its margin, sorted by alphabet.",
+        input=shown,
+        diagnose=lambda: probes.of_verdicts([(reasons, right, spec)]),
+    )
+    expect_accepted(report, not expected, shown)
+
+
+def expect_accepted(report, accepted, shown):
+    """The verdict goes with the reasons."""
+    kit.expect_equal(
+        kit.as_bool(report["accepted"], "accepted"),
+        accepted,
+        message="`accepted` is wrong.",
+        help="A simulation is accepted where there is no reason against it.",
+        input=shown,
+        diagnose=named("VERDICT_AGAINST_REASONS"),
+    )
+
+
+def expect_margins(submission, rng, count):
+    """Each measure is judged apart from the others, by its interval and not by the number alone.
+
+    The same runs are judged by many limits: some let everything pass, the others leave out one measure's
+    number, or the number lies inside and its interval does not.
+    """
+    recorded = [
+        twins.record(rng, f"run {i}", rng.uniform(5, 7), 0.02, rng.uniform(0.02, 0.03)) for i in range(count)
+    ]
+    # Early and too low: whoever looks at the upper end alone lets both pass.
+    lates = -rng.permutation(np.linspace(0.01, 0.07, count))
+    sim = twins.simulated(
+        recorded,
+        late=lates,
+        offset=-rng.permutation(np.linspace(0.01, 0.05, count)),
+        sigma_factor=rng.permutation(np.linspace(2.0, 8.0, count)),
+    )
+    real = twins.measured(recorded)
+    right = facts(recorded, sim, real, lates)
+    specs = _specs(right)
+    reports = submission.call_each("validate", [(sim, real, spec) for spec in specs])
+    found = [reasons_of(kit.as_record(report, KEYS, "the report")) for report in reports]
+    expect_measures(reports[0], sim, real, right, {"runs": count, "spec": specs[0]})
+    for spec, report, reasons in zip(specs, reports, found, strict=True):
+        expected = right.reasons(spec)
+        shown = {"runs": count, "spec": spec}
+        kit.expect_equal(
+            reasons,
+            expected,
+            message="The reasons are not the ones that apply.",
+            help="A reason for each interval that leaves its margin: no more, and no fewer.",
+            input=shown,
+            diagnose=lambda: probes.of_verdicts([(r, right, s) for r, s in zip(found, specs, strict=True)]),
+        )
+        expect_accepted(report, not expected, shown)
+
+
+def _specs(right):
+    """Limits: nothing is broken; one number is; one interval is, though its number is not."""
+    largest = {key: max(map(abs, right.interval(key))) for key in probes.MEASURES}
+    number = {key: abs(right.numbers[key]) for key in probes.MEASURES}
+    names = {"rmse": "rmse_max", "bias": "bias_max", "lag_s": "lag_max_s"}
+    lo, hi = right.interval("coverage")
+    share, half = right.numbers["coverage"], right.half("coverage")
+    kept = {name: 1.3 * largest[key] for key, name in names.items()}
+    limits = [kept | {"coverage_min": lo - 0.02, "coverage_max": hi + 0.02}]
+    for key, name in names.items():
+        limits += [{name: 0.6 * number[key]}, {name: (largest[key] + number[key]) / 2}]
+    limits += [{"coverage_min": share - 0.5 * half}, {"coverage_max": share + 0.5 * half}]
+    return [LENIENT | changed for changed in limits]
+
+
+def expect_nothing(submission, sim, real, spec, right, shown):
+    """``validate`` says that no run, or a single one, is nothing to judge by."""
+    report = kit.as_record(submission.call("validate", sim, real, spec), KEYS, "the report")
+    reasons, used = reasons_of(report), kit.as_list(report["runs_used"], "runs_used")
+    single = bool(right.used)
+    if single:
+        expect_numbers(report, sim, real, right, shown)
+        _expect_lag(report, right, shown)
+    told = report["intervals"] is None and (single or all(report[key] is None for key in probes.MEASURES))
+    kit.expect_true(
+        reasons == ["single_run" if single else "calibration_data"]
+        and told
+        and kit.as_bool(report["accepted"], "accepted") is False
+        and len(used) == len(right.used),
+        "A single run is left to judge by, and the report does not say that and nothing else."
+        if single
+        else "Every run was used to calibrate the simulation, and the report does not say that and nothing "
+        "else.",
+        help="With no run left the only reason is calibration_data and every number is None; with one, the "
+        "only reason is single_run. Then intervals is None, and it is not accepted.",
+        input=shown,
+        actual=report,
+        diagnose=lambda: named("CALIBRATION_RUNS_SCORED" if used and not single else "NOTHING_LEFT"),
+    )

@@ -1,0 +1,7 @@
+"""Wrong: the share of the speed that is lost in one second is the rate."""
+
+
+def _linear_damping(engine, dt):
+    n = 1000
+    _, v = engine.run("free", [0.0], [1.0], 1 / n, n, [0.0])
+    return 1 - v[-1][0]

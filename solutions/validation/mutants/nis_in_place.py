@@ -1,0 +1,7 @@
+"""Whitened innovations may take the place of the innovations."""
+
+
+def nis(nu, S):
+    for i in range(len(nu)):
+        nu[i] = np.linalg.solve(np.linalg.cholesky(S[i]), nu[i])
+    return np.sum(nu**2, axis=1)

@@ -1,0 +1,241 @@
+"""The roster is the spine: every enrolled student has a row, whoever's file says who is enrolled."""
+
+from __future__ import annotations
+
+import csv
+import unicodedata
+from functools import partial
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.errors import UsageError
+from course.grading.exports.formats import export
+from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook.book import Override
+from course.grading.gradebook.records import FromDownload
+from course.grading.intake.downloads import class_list
+from course.grading.results.override import override
+from course.grading.results.roster import Person, read_roster
+from course.grading.running.run import RunOptions, grade_class, open_results
+from course.scoring.terms import Terms
+from tests.unit.grading.pages import faults, read_page
+from tests.unit.grading.test_run import right
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+
+CANVAS = """\
+Student,ID,SIS User ID,SIS Login ID,Section,Doubling (4711),Current Score
+,,,,,Manual Posting,
+    Points Possible,,,,,10,(read only)
+"Lovelace, Ada",101,S1,ada,A,,
+"O'Neil, Bob",102,S2,bob,B,,
+"Hopper, Grace",103,S3,grace,A,,
+"Student, Test",999,,x,A,,
+"""
+MOODLE = """\
+Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,Feedback comments
+Participant 101,Ada Lovelace,ada@x.org,Submitted for grading,,100.00,Yes,
+Participant 102,Bob O'Neil,bob@x.org,No submission,,100.00,Yes,
+Participant 103,Grace Hopper,grace@x.org,Submitted for grading,,100.00,Yes,
+"""
+GRADESCOPE = """\
+First Name,Last Name,SID,Email,Role,Sections
+Ada,Lovelace,S1,ada@x.org,Student,A
+Bob,O'Neil,S2,bob@x.org,Student,B
+Grace,Hopper,S3,grace@x.org,Student,A
+Alan,Turing,,alan@x.org,Instructor,
+"""
+OURS = "student,name,email\nada,Ada Lovelace,ada@x.org\nbob,Bob O'Neil,\ngrace,Grace Hopper,\n"
+METADATA = """\
+submission_1:
+  :submitters:
+  - :name: Ada Lovelace
+    :sid: S1
+    :email: ada@x.org
+submission_3:
+  :submitters:
+  - :name: Grace Hopper
+    :sid: S3
+    :email: grace@x.org
+"""
+
+#: Roster -> files of a class in which the second of three handed in nothing -> names in the gradebook.
+PLATFORMS = {
+    "canvas": (
+        CANVAS,
+        ["lovelaceada_101_9001_doubling.py", "hoppergrace_LATE_103_9003_doubling.py"],
+        ["lovelaceada_101", "oneilbob_102", "hoppergrace_103"],
+    ),
+    "moodle": (
+        MOODLE,
+        [
+            "Ada Lovelace_101_assignsubmission_file/doubling.py",
+            "Grace Hopper_103_assignsubmission_file_doubling.py",
+        ],
+        ["Ada Lovelace_101", "Bob O'Neil_102", "Grace Hopper_103"],
+    ),
+    "gradescope": (
+        GRADESCOPE, ["submission_1/doubling.py", "submission_3/doubling.py"], ["S1", "S2", "S3"]
+    ),
+    "folders": (OURS, ["ada/doubling.py", "grace/doubling.py"], ["ada", "bob", "grace"]),
+}  # fmt: skip
+
+
+def made(folder: Path, platform: str) -> tuple[Path, Path]:
+    """A class and its roster."""
+    roster, files, _ = PLATFORMS[platform]
+    for name in files:
+        path = folder / "class" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("def double(x):\n    return 2 * x\n")
+    if platform == "gradescope":
+        (folder / "class" / "submission_metadata.yml").write_text(METADATA)
+    path = folder / "roster.csv"
+    path.write_text(roster, "utf-8-sig")
+    return folder / "class", path
+
+
+def graded(folder: Path, catalog: Catalog, platform: str):
+    submissions, roster = made(folder, platform)
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+    out = folder / "out"
+    return out, grade_class(submissions, out, catalog, options, lambda *_: None, grade=partial(right))
+
+
+def rows(path: Path) -> dict[str, dict[str, str]]:
+    with path.open(encoding="utf-8-sig", newline="") as handle:
+        return {row["student"]: row for row in csv.DictReader(handle)}
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_every_enrolled_student_has_one_row(tmp_path: Path, catalog: Catalog, platform: str) -> None:
+    if platform == "gradescope":
+        pytest.importorskip("yaml")
+    out, summary = graded(tmp_path, catalog, platform)
+    first, absent, third = PLATFORMS[platform][2]
+    assert (summary.missing, summary.strangers, summary.exit_code) == ([absent], [], 0)
+    found = rows(out / "grades.csv")
+    assert sorted(found) == sorted([first, absent, third])
+    assert (found[absent]["state"], found[absent]["score"], found[absent]["reason"]) == (
+        "missing", "", "not_submitted",
+    )  # fmt: skip
+    assert found[first]["state"] == found[third]["state"] == "graded"
+    listed = read_page(out / "students.html").tables["Students and their scores"]
+    assert next(row for row in listed if row[1] == absent)[-1] == "none missing"
+    report = read_page(out / "report.html")
+    assert "2 of 2; 1 missing" in str(report.tables["Students with a result, and their scores"])
+    for page in (report, *map(read_page, (out / "students").iterdir())):
+        assert faults(page, scripted=page is report) == []
+
+
+def test_missing_is_blank_or_zero_as_told(tmp_path: Path, catalog: Catalog) -> None:
+    out, _ = graded(tmp_path, catalog, "canvas")
+    scores = {}
+    for policy in ("blank", "zero"):
+        with open_results(out) as results:
+            options = ExportOptions(assignments={"doubling": "4711"}, missing=policy)
+            written = export(results, "canvas", out, tmp_path / f"{policy}.csv", options)
+        assert written.without_grade == []
+        with (tmp_path / f"{policy}.csv").open(encoding="utf-8-sig", newline="") as handle:
+            scores[policy] = {
+                row["ID"]: row["Doubling (4711)"] for row in csv.DictReader(handle) if row["ID"]
+            }
+    assert scores == {
+        "blank": {"101": "10", "102": "", "103": "10"},
+        "zero": {"101": "10", "102": "0", "103": "10"},
+    }
+
+
+def test_an_override_settles_what_is_missing(tmp_path: Path, catalog: Catalog) -> None:
+    out, _ = graded(tmp_path, catalog, "folders")
+    with open_results(out, writing=True) as results:
+        assert override(results, "bob", "doubling", 7.0, "oral exam").score == 7.0
+    found = rows(out / "grades.csv")
+    assert (found["bob"]["score"], found["bob"]["override_reason"]) == ("7", "oral exam")
+    with open_results(out) as results:
+        assert len(list(results.all())) == 3
+        assert not any(item.missing for item in results.all())
+        assert [item.student for item in results.all("bob")] == ["bob"]
+
+
+def test_work_of_somebody_who_is_not_enrolled_is_listed(tmp_path: Path, catalog: Catalog) -> None:
+    submissions, roster = made(tmp_path, "folders")
+    (submissions / "eve").mkdir()
+    (submissions / "eve" / "doubling.py").write_text("def double(x):\n    return 2 * x\n")
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    assert (summary.missing, summary.strangers) == (["bob"], ["eve"])
+    assert sorted(rows(tmp_path / "out" / "grades.csv")) == ["ada", "bob", "eve", "grace"]
+
+
+def test_two_spellings_of_an_accent_are_one_student(tmp_path: Path, catalog: Catalog) -> None:
+    name = "zoé"
+    submissions = tmp_path / "class"
+    (submissions / unicodedata.normalize("NFD", name)).mkdir(parents=True)
+    (submissions / unicodedata.normalize("NFD", name) / "doubling.py").write_text("double = abs\n")
+    (tmp_path / "roster.csv").write_text(f"student\n{unicodedata.normalize('NFC', name)}\n", "utf-8")
+    options = RunOptions(
+        exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(tmp_path / "roster.csv")
+    )
+    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    assert (summary.missing, summary.strangers) == ([], [])
+
+
+def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
+    path = tmp_path / "roster.csv"
+    path.write_text(CANVAS, "utf-8-sig")
+    assert read_roster(path).people[0] == Person(
+        "lovelaceada_101", "Lovelace, Ada", canvas_id="101", sis_user_id="S1", section="A"
+    )
+    path.write_text(MOODLE, "utf-8")
+    found = read_roster(path)
+    assert found.people[0] == Person("Ada Lovelace_101", "Ada Lovelace", "ada@x.org", moodle_key="101")
+    assert found.find("whatever", FromDownload("moodle", "103", "?")) == found.people[2]
+    path.write_text(GRADESCOPE, "utf-8")
+    assert [person.student for person in read_roster(path).people] == ["S1", "S2", "S3"]
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("Student,ID\nAda,abc\n", "line 2: ID 'abc' is not a number"),
+        ("Identifier,Full name\nsomebody,Ada\n", "line 2: Identifier 'somebody' ends in no number"),
+        ("Full name,Grade\nAda,1\n", "no heading 'student'"),
+        ("Student,ID\nAda,1,2\n", "another number of cells"),
+        ("Student,ID\nAda,7\nBob,7\n", "canvas_id '7' is in two rows"),
+    ],
+)
+def test_a_roster_that_cannot_be_used_says_where(tmp_path: Path, text: str, why: str) -> None:
+    path = tmp_path / "roster.csv"
+    path.write_text(text)
+    with pytest.raises(UsageError, match=why):
+        read_roster(path)
+
+
+def test_what_was_typed_into_canvas_and_who_is_anonymous_are_ordinary_rows(tmp_path: Path) -> None:
+    for name in (
+        "lovelaceada_101_9001_doubling.py", "hopper_102_text.html", "oneil_LATE_103_link.html",
+        "anon_Ab3dE_9004_doubling.py", "anon_LATE_x7KqZ_text.html",
+    ):  # fmt: skip
+        (tmp_path / name).write_text("x")
+    found = class_list(tmp_path)
+    assert (found.layout, found.unrecognised) == ("canvas", [])
+    files = {student.name: [name for name, _ in student.place.files or ()] for student in found.students}
+    assert files == {
+        "lovelaceada_101": ["doubling.py"], "hopper_102": [], "oneil_103": [],
+        "anon_Ab3dE": ["doubling.py"], "anon_x7KqZ": [],
+    }  # fmt: skip
+    late = {student.name for student in found.students if student.flagged_late}
+    assert late == {"oneil_103", "anon_x7KqZ"}
+
+
+def test_a_lifted_override_leaves_a_student_missing(tmp_path: Path, catalog: Catalog) -> None:
+    out, _ = graded(tmp_path, catalog, "folders")
+    with open_results(out, writing=True) as results:
+        results.book.add_override(Override("bob", "doubling", 7.0, "oral"))
+        results.book.add_override(Override("bob", "doubling", None, ""))
+    assert rows(out / "grades.csv")["bob"]["state"] == "missing"

@@ -30,6 +30,7 @@ from course.figures.registry import build, png
 from course.figures.style import house_style
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["Label", "TerminalFigure", "terminal_figure"]
@@ -38,6 +39,7 @@ __all__ = ["Label", "TerminalFigure", "terminal_figure"]
 _PAPER_PT = 1.3
 #: A marker is drawn this many pixels wide.
 _MARKER_PX = 2.0
+_LETTER_PX = 2.0
 _MATHS = re.compile(r"\\mathdefault\{([^}]*)\}|\\(?:mathrm|text)\{([^}]*)\}")
 _RAISED = str.maketrans("0123456789-−+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -85,6 +87,12 @@ def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
         dpi = columns / width
         figure.set_dpi(dpi)
         figure.set_size_inches(width, 2 * rows / dpi)
+        # Letters of two pixels are as wide as a cell, and still have exponents that a font can be scaled to.
+        size = _LETTER_PX * 72.0 / dpi
+        for text in figure.findobj(Text):
+            text.set_fontsize(size)
+        for axes in figure.axes:
+            axes.tick_params(which="both", labelsize=size)
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
         labels = _labels(figure, canvas, columns, rows)
@@ -122,9 +130,12 @@ def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]
     renderer: Any = canvas.get_renderer()
     suptitle = getattr(figure, "_suptitle", None)
     titles = {suptitle} | {getattr(axes, name) for axes in figure.axes for name in ("title", "_left_title")}
-    names = {axis.label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)}
+    names = {axis.label: axes for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)}
     ticks = {
-        label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()
+        label: axes
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for label in axis.get_ticklabels(which="both")
     }
     found: list[tuple[int, Label]] = []
     for text in figure.findobj(Text):
@@ -133,7 +144,7 @@ def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]
             continue
         box = text.get_window_extent(renderer)
         text.set_alpha(0.0)
-        if text in ticks and not _is_beside(text, box, renderer):
+        if text in ticks and not _is_beside(ticks[text], box, renderer):
             continue
         box_patch = text.get_bbox_patch()
         if box_patch is not None:
@@ -149,8 +160,7 @@ def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]
                 column, row = 0, number
             elif wide and text in names:
                 # The name of an upright axis lies over its upper end.
-                axes = text.axes
-                bounds = axes.get_window_extent(renderer) if axes is not None else box
+                bounds = names[text].get_window_extent(renderer)
                 column, row = round(bounds.x0) + 1, round(rows - bounds.y1 / 2.0)
             elif text in ticks and text.get_horizontalalignment() == "right":
                 column = round(box.x1) - len(line)
@@ -163,11 +173,9 @@ def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]
     return _apart(found, rows)
 
 
-def _is_beside(tick: Text, box: Any, renderer: Any) -> bool:
+def _is_beside(axes: Axes, box: Any, renderer: Any) -> bool:
     """Whether a tick's label stands beside its axes: those beyond the ends of an axis are never drawn."""
-    if tick.axes is None:
-        return False
-    bounds = tick.axes.get_window_extent(renderer)
+    bounds = axes.get_window_extent(renderer)
     x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
     return bool(bounds.x0 - 1 <= x <= bounds.x1 + 1 or bounds.y0 - 1 <= y <= bounds.y1 + 1)
 

@@ -242,8 +242,17 @@ class ReaderApp(App[None]):
             return
         book.build(self.page.room)
         at = book.layout.row(place)
+        self._draw_ahead(book)
         # Whoever opens a lesson anew sees its screens as they are cut; a kept place is kept to the line.
         self._show(at)
+
+    def _draw_ahead(self, book: Book) -> None:
+        """Have every figure of the lesson drawn, so that it is there when its reader is."""
+        from course.catalog import blocks as b
+
+        for block in b.walk_blocks(self.progress.script.blocks):
+            if isinstance(block, b.Figure):
+                self._picture(block.id, book.column)
 
     def _rebuild(self, *indices: int) -> None:
         """These blocks anew; the line at the top stays."""

@@ -25,6 +25,7 @@ _BOX = """
     border: round $primary; padding: 0 1; background: $surface; scrollbar-size-vertical: 1;
 }
 %(name)s OptionList { height: auto; max-height: 80vh; border: none; background: $surface; padding: 0; }
+%(name)s OptionList:focus { border: none; }
 %(name)s Input { width: 100%%; }
 """
 

@@ -59,6 +59,11 @@ class Book:
         self.layout = Layout((), 1)
         self.whole = False
 
+    @property
+    def column(self) -> int:
+        """Columns of prose, and of figures."""
+        return self._printer.column
+
     def build(self, height: int, first: int = -1, enough: int | None = None) -> None:
         """Lay out what is not laid out yet, and cut it into screens.
 
@@ -79,8 +84,7 @@ class Book:
             rows += made.rows
             if enough is not None and len(rows) >= enough:
                 break
-        else:
-            self.whole = True
+        self.whole = enough is None
         self.layout = Layout(rows, height)
 
     def forget(self, *indices: int) -> None:

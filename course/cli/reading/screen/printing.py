@@ -95,6 +95,11 @@ class ScreenPrinter(FancyPrinter):
         self._links = 0
 
     @property
+    def column(self) -> int:
+        """Columns of prose, and of figures."""
+        return self._prose
+
+    @property
     def wide(self) -> bool:
         """Two outputs fit beside each other."""
         return self._width >= _BESIDE + 4

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from course.isolation.failures import IsolationError, StudentFailure, printable
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
-from course.reading.textbook import textbook_for
+from course.reading.textbook import imported, textbook_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -114,6 +114,8 @@ class CellRunner:
         self._cells = cells
         self._source = source
         self._spawner: Spawner | None = None
+        self._packages: tuple[str, ...] = ()
+        self._imported: frozenset[str] = frozenset()
         self._connection: Connection | None = None
         self._ran: dict[str, str] = {}  # key of a cell: the code of it that ran in this process
         self._printed = 0
@@ -130,13 +132,20 @@ class CellRunner:
         Raises:
             IsolationError: it cannot be started.
         """
+        wanted = imported(self._source(cell) for cell in self._cells)
         if self._connection is not None and self._connection.alive:
-            return
+            if wanted == self._imported:
+                return
+            self.forget()  # a cell was changed to import more than this process was given
+        self._imported = wanted
         self._ran.clear()
         self._printed = 0
-        if self._spawner is None:
-            self._spawner = open_spawner(("numpy",))
         book = textbook_for(self._source(cell) for cell in self._cells)
+        if self._spawner is not None and self._packages != book.packages:
+            self._spawner.close()
+            self._spawner = None
+        if self._spawner is None:
+            self._spawner, self._packages = open_spawner(book.packages), book.packages
         beside = _BESIDE.format(absent=book.absent, main=_MAIN).encode()
         files = {_MAIN: beside, "course.py": b"", "course.zip": book.data}
         files |= {f"{name}.py": b"" for name in book.absent}

@@ -1,8 +1,9 @@
 """The modules of the course that a lesson's cells import, as one archive for the process they run in.
 
 A protected process sees nothing of this installation. So it is handed what the cells name, with what that
-imports in turn, found by reading and never by importing. Packages beyond numpy (matplotlib, which the figures
-draw with) are not part of it: their names import, and using them says that nothing is drawn there.
+imports in turn, found by reading and never by importing; where something there opens files of the package,
+the data beside those modules too. Packages beyond a few light ones (matplotlib, which the figures draw with)
+are not part of it: their names import, and using them says that nothing is drawn there.
 """
 
 from __future__ import annotations
@@ -18,12 +19,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-__all__ = ["Textbook", "textbook_for"]
+__all__ = ["Textbook", "imported", "textbook_for"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 _COURSE = "course"
-#: What the lessons' code reads as a file; sent along where a cell opens files of the package.
-_DATA = "course/lessons/data"
+#: Packages that a cell's process may have as they are: quick to load, and needing no others.
+_LIGHT = frozenset({"numpy", "msgspec"})
+_DATA = frozenset({".json", ".toml"})
 #: Archives are stamped alike, so that the same modules give the same bytes.
 _STAMP = (1980, 1, 1, 0, 0, 0)
 
@@ -34,10 +36,12 @@ class Textbook:
 
     Attributes:
         data: a zip file, to be put on the path.
-        absent: packages that they import and that are not in it.
+        packages: installed packages that they need.
+        absent: packages that they import and do without.
     """
 
     data: bytes
+    packages: tuple[str, ...]
     absent: tuple[str, ...]
 
 
@@ -45,28 +49,33 @@ def textbook_for(sources: Iterable[str]) -> Textbook:
     """What these pieces of code import of the course. Code that does not parse imports nothing."""
     texts = list(sources)
     files: dict[str, bytes] = {}
-    absent: set[str] = set()
+    others: set[str] = set()
     pending = [name for text in texts for name in _imports(text)]
     while pending:
         name = pending.pop()
         top = name.partition(".")[0]
         if top != _COURSE:
-            if top not in sys.stdlib_module_names and top not in {"numpy", "__future__"}:
-                absent.add(top)
+            if top not in sys.stdlib_module_names:
+                others.add(top)
             continue
         for path in _files_of(name):
             inside = path.relative_to(_ROOT).as_posix()
             if inside not in files:
                 files[inside] = path.read_bytes()
                 pending += _imports(files[inside].decode("utf-8"))
-    if any("importlib.resources" in text for text in texts):
-        files |= {
-            path.relative_to(_ROOT).as_posix(): path.read_bytes()
-            for path in sorted((_ROOT / _DATA).iterdir())
-            if path.is_file()
-        }
+    if any("importlib.resources" in text for text in (*texts, *(file.decode() for file in files.values()))):
+        for folder in {Path(name).parent for name in files}:
+            for path in sorted((_ROOT / folder).iterdir()):
+                if path.suffix in _DATA:
+                    files[path.relative_to(_ROOT).as_posix()] = path.read_bytes()
     files.setdefault("course/__init__.py", b"")
-    return Textbook(_zipped(files), tuple(sorted(absent)))
+    packages, absent = sorted(others & _LIGHT | {"numpy"}), sorted(others - _LIGHT)
+    return Textbook(_zipped(files), tuple(packages), tuple(absent))
+
+
+def imported(sources: Iterable[str]) -> frozenset[str]:
+    """The modules that these pieces of code name: as long as they are the same, so is the textbook."""
+    return frozenset(name for text in sources for name in _imports(text))
 
 
 def _files_of(name: str) -> Iterator[Path]:

@@ -12,7 +12,6 @@ from course.cli.frame.arguments import LessonName  # noqa: TC001 - typer reads a
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import find_workspace, load_catalog
 from course.cli.frame.replies import LessonReply, Lessons, NextStep
-from course.cli.work.overview import day, lesson_state, lesson_states
 from course.errors import CourseError, NotFoundError
 
 if TYPE_CHECKING:
@@ -29,6 +28,8 @@ def lessons() -> int:
 
     In the order to read them; inside a workspace also which ones you have read.
     """
+
+    from course.cli.work.overview import day, lesson_state, lesson_states
 
     console = current()
     here = find_workspace()

@@ -7,6 +7,7 @@ taken out line by line, so that every other line keeps its number within its cel
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 import warnings
 from dataclasses import dataclass, field
@@ -20,12 +21,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
+__all__ = ["MAX_CELLS", "MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
 
 #: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
 MAX_NOTEBOOK = 32 << 20
 #: Of all code cells together: what a module may be large. In characters.
 MAX_CODE = 1 << 20
+#: Code cells; the longest notebooks that people write have some hundreds.
+MAX_CELLS = 2000
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
 #: Cell magics whose body is Python of this notebook; the cells of all others are something else.
@@ -120,6 +123,12 @@ def typed_cell(number: int, text: str) -> CodeCell:
 
 def _must_be_small(sizes: list[tuple[int, int]], name: str) -> None:
     """Refuse more code than anyone writes before it is parsed: a syntax tree is far larger than its text."""
+    if len(sizes) > MAX_CELLS:
+        raise UngradableError(
+            f"{name} has {len(sizes):,} code cells.",
+            help=f"Hand in a notebook with at most {MAX_CELLS:,}.",
+            code="too_large",
+        )
     if sum(size for _, size in sizes) <= MAX_CODE:
         return
     number, size = max(sizes, key=lambda one: one[1])
@@ -210,9 +219,11 @@ def _without_shell(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
         return text, ()
     lines = text.split("\n")
     taken: list[tuple[int, str]] = []
-    for node in tree.body:
+    before = 0  # the last line of the statements so far
+    for node, following in itertools.zip_longest(tree.body, tree.body[1:]):
         first, last = node.lineno - 1, node.end_lineno or node.lineno
-        alone = sum(one.lineno <= last and first < (one.end_lineno or one.lineno) for one in tree.body) == 1
+        alone = before <= first and (following is None or following.lineno > last)
+        before = last
         if alone and _asks_shell(node):
             taken.append((node.lineno, lines[first].strip()))
             lines[first:last] = ["pass", *[""] * (last - first - 1)]
@@ -227,7 +238,8 @@ def _asks_shell(node: ast.stmt) -> bool:
 
 
 _PIECE = re.compile(
-    r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'|"(?:\\.|[^"\\\n])*")"""
+    # A string that is not closed ends with its line: looking for its end at each quote takes for ever.
+    r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'?|"(?:\\.|[^"\\\n])*"?)"""
     r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>.)""",
     re.DOTALL | re.VERBOSE,
 )
@@ -248,6 +260,8 @@ def _statement_lines(text: str) -> Iterator[int]:
             stop = len(text) if closed < 0 else closed + 3
             line += text.count("\n", position, stop)
             position = stop
+        elif kind == "string":
+            line += found.count("\n")  # escaped ones
         elif kind == "open":
             depth += 1
         elif kind == "close":

@@ -19,6 +19,7 @@ import msgspec
 
 from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
+from course.printable import one_line
 from course.scoring.places import Places
 from course.scoring.session import Submission
 
@@ -33,6 +34,8 @@ __all__ = ["RECORD", "SETUP", "SOLUTION", "NotebookSource", "notebook_source", "
 SOLUTION, SETUP = "solution", "setup"
 #: Under this name a submission says which cells its module was made of.
 RECORD = "notebook.json"
+#: Lines that are named, of those left out; the rest is a number.
+MAX_NOTES = 20
 
 
 class _Record(msgspec.Struct, frozen=True):
@@ -294,14 +297,20 @@ def _imports_future(tree: ast.Module) -> bool:
 
 
 def _notes(cells: list[CodeCell], chosen: list[CodeCell], exercise: str) -> tuple[str, ...]:
-    notes = [
-        f"Cell {cell.number}, line {line}: left out, since it is not Python: {text[:80]}"
+    dropped = [
+        (cell.number, line, text)
         for cell in cells
         if cell.tags.get("role") in (None, SOLUTION, SETUP)
         for line, text in cell.dropped
     ]
+    notes = [
+        f"Cell {number}, line {line}: left out, since it is not Python: {one_line(text, 80)}"
+        for number, line, text in dropped[:MAX_NOTES]
+    ]
+    if len(dropped) > MAX_NOTES:
+        notes.append(f"{len(dropped) - MAX_NOTES:,} more lines were left out, since they are not Python.")
     unmarked = [str(cell.number) for cell in chosen if cell.tags.get("exercise") != exercise]
     if unmarked:
-        numbers = ", ".join(unmarked)
+        numbers = ", ".join(unmarked[:MAX_NOTES]) + (" and more" if len(unmarked) > MAX_NOTES else "")
         notes.append(f"Taken for part of the solution by what they define: cells {numbers}.")
     return tuple(notes)

@@ -6,13 +6,12 @@ StudentFailure          the student's code, or the process it ran in, gave no va
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["FailureKind", "IsolationError", "StudentFailure", "printable"]
+__all__ = ["FailureKind", "IsolationError", "StudentFailure"]
 
 FailureKind = Literal["error", "timeout", "memory", "crash", "protocol", "missing"]
 
@@ -63,19 +62,3 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
     def is_a(self, exception: str) -> bool:
         """Whether the student's code raised this exception or one derived from it."""
         return self.kind == "error" and exception in self.bases
-
-
-def printable(text: str, limit: int | None = None) -> str:
-    """The text with every character that a terminal obeys, or that hides or reorders others, spelled out.
-
-    Whatever a stranger's code says passes through here before a person may see it.
-    """
-    return _UNUSUAL.sub(_spelled_out, text[:limit])
-
-
-_UNUSUAL = re.compile(r"[^\n\t -~]")
-
-
-def _spelled_out(match: re.Match[str]) -> str:
-    char = match[0]
-    return char if char.isprintable() else char.encode("unicode_escape").decode()

@@ -10,6 +10,7 @@ import select
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -17,10 +18,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.isolation import launch
+from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
+from course.isolation.frames import ENDED
 from course.isolation.levels import MAX_OUTPUT, START_TIMEOUT, Exit, Level
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from course.isolation.levels import Handle, Limits
     from course.isolation.view import View
 
@@ -39,6 +44,7 @@ class ZygoteSpawner:
         self._imports = imports
         self._limits = limits
         self._process: subprocess.Popen[bytes] | None = None
+        self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
         self._start()
 
     def _start(self) -> None:
@@ -170,11 +176,18 @@ class ZygoteSpawner:
         """
         try:
             self._send({"reap": pid})
-            answer, _ = self._receive()
-        except (OSError, ValueError) as error:
+            status, *times = ENDED.unpack(self._control.recv(4096))
+        except (OSError, struct.error) as error:
             raise IsolationError(f"the zygote does not answer: {self._stderr() or error}") from None
-        status = answer["status"]
-        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, answer["cpu_s"])
+        cpu_s = times[0] + times[2] + (times[1] + times[3]) / 1e6
+        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, cpu_s)
+
+    def leave(self, workdir: Path) -> None:
+        """Remember the folder of a worker that ended, for ``tidy``."""
+        self._left.append(launch.removing(workdir))
+
+    def tidy(self) -> None:
+        launch.tidy(self._left)
 
     def close(self) -> None:
         self._control.close()  # the zygote ends at end of file, and all it started with it
@@ -185,7 +198,7 @@ class ZygoteSpawner:
                 self._process.kill()
                 self._process.wait()
             self._process = None
-        launch.remove_tree(self._folder)
+        launch.sweep(self._folder)
 
 
 def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
@@ -245,6 +258,12 @@ def _open_to_others(view: View) -> bool:
     return True
 
 
+def _number_here(pidfd: int) -> int:
+    """The pid of a process as this process sees it; the zygote may live in a namespace of its own."""
+    lines = Path(f"/proc/self/fdinfo/{pidfd}").read_text("ascii").splitlines()
+    return next(int(line.partition(":")[2]) for line in lines if line.startswith("Pid:"))
+
+
 class _ForkedHandle:
     """A worker forked by the zygote, ended by its pidfd."""
 
@@ -258,6 +277,8 @@ class _ForkedHandle:
         self._workdir = workdir
         self._owner = owner
         self._exit: Exit | None = None
+        clock = ProcessClock(_number_here(pidfd))
+        self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
 
     def output(self) -> str:
         return os.pread(self._output, MAX_OUTPUT, 0).decode("utf-8", "replace")
@@ -278,5 +299,5 @@ class _ForkedHandle:
                 os.close(self._pidfd)
                 os.close(self._output)
                 if self._owner.level is Level.L2:
-                    launch.remove_tree(Path(self._workdir))
+                    self._owner.leave(Path(self._workdir))
         return self._exit

@@ -24,6 +24,9 @@ F64 = struct.Struct("<d")
 SHAPE = struct.Struct("<II")
 TABLE = b"\x00\x02"  # dtype and dimensions of a table of float64
 FLOAT64 = np.dtype(np.float64)
+#: How a worker ended, as its parent reports it: the status as wait(2) has it, then seconds and microseconds
+#: of user and of system time.
+ENDED = struct.Struct("@l4l")
 DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
 
 

@@ -10,12 +10,25 @@ import shutil
 import sys
 import tempfile
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from course.isolation.view import View
 
-__all__ = ["command", "copy_worker_files", "environment", "private_folder", "remove_tree"]
+__all__ = [
+    "command",
+    "copy_worker_files",
+    "environment",
+    "keep_private",
+    "private_folder",
+    "remove_tree",
+    "removing",
+    "sweep",
+    "tidy",
+]
 
 #: What runs beside a stranger's code is copied as a package of its own, laid out as here: its files import
 #: each other by the same relative names in both places.
@@ -26,6 +39,20 @@ _COPIED = (
     "physics/systems.py",
 )
 _PREFIX = "course-worker-"
+_TIDY_S = 1.0
+_SWEEP_S = 5.0  # wall seconds spent on what somebody left behind
+
+
+def keep_private() -> None:
+    """Close this process to others of the same user: its memory, its descriptors, its environment.
+
+    At L1 a submission runs as that user, and /proc would hand it the pipe that verdicts go through. Only
+    Linux has /proc, and the one call that closes it.
+    """
+    if sys.platform == "linux":
+        from course.isolation import lockdown
+
+        lockdown.not_dumpable()
 
 
 def private_folder() -> Path:
@@ -38,7 +65,7 @@ def private_folder() -> Path:
             owner = old.name.removeprefix(_PREFIX).partition("-")[0]
             with contextlib.suppress(OSError):
                 if owner.isdigit() and old.lstat().st_uid == os.getuid() and not _is_alive(int(owner)):
-                    remove_tree(old)
+                    sweep(old)
     return Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-"))
 
 
@@ -81,11 +108,38 @@ def environment() -> dict[str, str]:
     return {**kept, **threads, "LANG": "C.UTF-8", "HOME": "/nonexistent", "PYTHONHASHSEED": "0"}
 
 
+def sweep(folder: Path) -> None:
+    """Delete the folder of a session that ends; what cannot be deleted soon, a later session finds."""
+    _advance(removing(folder), _SWEEP_S)
+
+
+def tidy(left: list[Iterator[None]]) -> None:
+    """Go on with some removals for a second of wall time, and take those that are done off the list.
+
+    Deleting can take longer than making did, and a run must not stand still for that.
+    """
+    end = monotonic() + _TIDY_S
+    while left and _advance(left[-1], end - monotonic()):
+        left.pop()
+
+
+def _advance(removal: Iterator[None], seconds: float) -> bool:
+    """Whether a removal is done within so much time."""
+    end = monotonic() + seconds
+    return all(monotonic() < end for _ in removal)
+
+
 def remove_tree(folder: Path) -> None:
+    """Delete a folder that a stranger filled, however long it takes."""
+    for _ in removing(folder):
+        pass
+
+
+def removing(folder: Path) -> Iterator[None]:
     """Delete a folder that a stranger filled: of any depth, with any permissions, with links to anywhere.
 
     Folders inside folders are moved up before they are emptied, so that neither the length of a path nor
-    recursion sets a limit.
+    recursion sets a limit. Stops after each entry, so that whoever asks can go on with it later.
     """
     moved, prefix = 0, secrets.token_hex(8)  # no name that the stranger could have taken
     pending = [folder]
@@ -101,6 +155,7 @@ def remove_tree(folder: Path) -> None:
                     os.rename(entry.path, pending[-1])  # noqa: PTH104
                 else:
                     os.unlink(entry.path)  # noqa: PTH108
+                yield
             if here != folder:
                 here.rmdir()
     shutil.rmtree(folder, ignore_errors=True)

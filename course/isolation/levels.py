@@ -29,7 +29,7 @@ class Limits:
     """What one worker may use.
 
     Attributes:
-        cpu_s: seconds of CPU; the wall deadline ends a check long before.
+        cpu_s: seconds of CPU; the deadline ends a check long before.
         memory: bytes of address space.
         file_size: bytes per file, the captured output included.
         descriptors: open files.
@@ -61,8 +61,14 @@ class Handle(Protocol):
     def output(self) -> str:
         """What it printed so far."""
 
+    def cpu_s(self) -> float:
+        """Seconds of CPU time it has used so far; by the wall clock where the system does not tell."""
+
+    def asleep(self) -> bool:
+        """Whether it waits for something else than a processor or a disk, or was stopped."""
+
     def finish(self) -> Exit:
-        """Kill it if it lives, wait for its end, clean up after it."""
+        """Kill it if it lives, and wait for its end; what it wrote is left for ``Spawner.tidy``."""
 
 
 class Spawner(Protocol):
@@ -76,6 +82,9 @@ class Spawner(Protocol):
         Raises:
             IsolationError: it could not be started.
         """
+
+    def tidy(self) -> None:
+        """Delete what ended workers wrote: at no time when somebody's clock runs."""
 
     def close(self) -> None:
         """End everything that was started; safe to call twice."""

@@ -38,6 +38,7 @@ __all__ = [
     "landlock_ruleset",
     "mount_tmpfs",
     "new_pid_namespace",
+    "not_dumpable",
     "seccomp_program",
     "unshare_worker",
 ]
@@ -133,6 +134,11 @@ def drop_capabilities() -> None:
     header = struct.pack("=Ii", 0x20080522, 0)  # _LINUX_CAPABILITY_VERSION_3, this process
     _check(_libc.capset(header, b"\0" * 24), "capset")
     _check(_prctl(_PR_SET_NO_NEW_PRIVS, 1), "no_new_privs")
+    not_dumpable()
+
+
+def not_dumpable() -> None:
+    """Let no process of the same user read this one, trace it or open its descriptors; ptrace(2)."""
     _check(_prctl(_PR_SET_DUMPABLE, 0), "not dumpable")
 
 
@@ -265,9 +271,7 @@ _CALLS = """
     renameat2=316/276 ftruncate=77/46 fsync=74/82 fdatasync=75/83 dup=32/23 dup3=292/24 dup2=33/-
     pipe=22/- pipe2=293/59 umask=95/166 fadvise64=221/223 copy_file_range=326/285 sendfile=40/71
     # memory
-    mmap=9/222 munmap=11/215 mprotect=10/226 mremap=25/216 madvise=28/233 brk=12/214 futex=202/98
-    futex_waitv=449/449 set_robust_list=273/99 get_robust_list=274/100 rseq=334/293
-    membarrier=324/283
+    mmap=9/222 munmap=11/215 mprotect=10/226 mremap=25/216 brk=12/214 rseq=334/293
     # signals to itself and timers
     rt_sigaction=13/134 rt_sigprocmask=14/135 rt_sigreturn=15/139 rt_sigpending=127/136
     rt_sigtimedwait=128/137 sigaltstack=131/132 alarm=37/- setitimer=38/103 getitimer=36/102
@@ -275,34 +279,81 @@ _CALLS = """
     # itself
     getpid=39/172 gettid=186/178 getppid=110/173 getuid=102/174 geteuid=107/175 getgid=104/176
     getegid=108/177 getgroups=115/158 getresuid=118/148 getresgid=120/150 getpgrp=111/-
-    getpgid=121/155 getsid=124/156 uname=63/160 sysinfo=99/179 times=100/153 getrusage=98/165
-    getrlimit=97/163 getcpu=309/168 sched_yield=24/124 sched_getaffinity=204/123 getpriority=140/141
-    arch_prctl=158/- set_tid_address=218/96 exit=60/93 exit_group=231/94
-    # time and waiting; send and recv on the one socket that is open
-    clock_gettime=228/113 clock_getres=229/114 clock_nanosleep=230/115 nanosleep=35/101
-    gettimeofday=96/169 time=201/- getrandom=318/278 poll=7/- ppoll=271/73 select=23/-
-    pselect6=270/72 epoll_create1=291/20 epoll_ctl=233/21 epoll_wait=232/- epoll_pwait=281/22
-    eventfd2=290/19 sendto=44/206 recvfrom=45/207
+    uname=63/160 times=100/153 getrusage=98/165 getrlimit=97/163 getcpu=309/168 sched_yield=24/124
+    arch_prctl=158/- exit=60/93 exit_group=231/94
+    # time and waiting
+    nanosleep=35/101 gettimeofday=96/169 time=201/- getrandom=318/278 poll=7/- ppoll=271/73 select=23/-
+    pselect6=270/72
 """
-#: Allowed with these values of one argument only: name -> (x86_64, aarch64, argument, values).
-_FCNTL_COMMANDS = (0, 1, 2, 3, 4, 1030)  # DUPFD, GETFD, SETFD, GETFL, SETFL, DUPFD_CLOEXEC
-_IOCTL_REQUESTS = (0x5401, 0x541B, 0x5450, 0x5451)  # TCGETS, FIONREAD, FIONCLEX, FIOCLEX
+# Two workers that run at once must not talk to each other. So these are left out too: sysinfo (how much
+# memory others use), getpgid, getsid, getpriority and get_robust_list (whether a process exists),
+# membarrier (interrupts the others), futex_waitv (its flags are out of a filter's reach), set_robust_list
+# (wakes whoever waits at an address), file locks; and what follows is allowed with some arguments only.
 _OWN_PID = 0xFEEDFACE  # replaced by the worker's own pid when the filter is put in place
-_RESTRICTED = {
-    # Not SETOWN and SETSIG: they would send a signal of the student's choice to another process.
-    "fcntl": (72, 25, 1, _FCNTL_COMMANDS),
-    "ioctl": (16, 29, 1, _IOCTL_REQUESTS),
-    "tgkill": (234, 131, 0, (_OWN_PID,)),  # abort() works, signals to others do not
-}
+_FUTEX_PRIVATE = 128
+_MSG_NOSIGNAL = 0x4000
+
+
+def _one_of(argument: int, *values: int) -> list[bytes]:
+    """Refuse the call unless an argument, an int, is one of these."""
+    left = range(len(values), 0, -1)
+    tests = [_op(_IF_EQUAL, value, skip, 0) for value, skip in zip(values, left, strict=True)]
+    return [_op(_LOAD, _ARGUMENT[argument]), *tests, _op(_RETURN, _EPERM)]
+
+
+def _below(argument: int, bound: int) -> list[bytes]:
+    """Refuse the call unless an argument, an int, is less; negative ones are not."""
+    return [_op(_LOAD, _ARGUMENT[argument]), _op(_IF_AT_LEAST, bound, 0, 1), _op(_RETURN, _EPERM)]
+
+
+def _with_bit(argument: int, bit: int) -> list[bytes]:
+    """Refuse the call unless an argument has a bit."""
+    return [_op(_LOAD, _ARGUMENT[argument]), _op(_IF_BIT, bit, 1, 0), _op(_RETURN, _EPERM)]
+
+
+def _null(argument: int) -> list[bytes]:
+    """Refuse the call unless an argument is the null pointer: both halves of it are 0."""
+    offsets = (_ARGUMENT[argument], _ARGUMENT[argument] + 4)
+    halves = [[_op(_LOAD, offset), _op(_IF_EQUAL, 0, 1, 0), _op(_RETURN, _EPERM)] for offset in offsets]
+    return [*halves[0], *halves[1]]
+
+
 _CLONE3 = 435
 _AUDIT_ARCH = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 _ALLOW, _EPERM, _ENOSYS, _KILL = 0x7FFF0000, 0x00050001, 0x00050026, 0x80000000
-_LOAD, _IF_EQUAL, _IF_AT_LEAST, _RETURN = 0x20, 0x15, 0x35, 0x06
+_LOAD, _IF_EQUAL, _IF_AT_LEAST, _IF_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_ARGUMENT = tuple(range(16, 64, 8))  # where the lower half of each is; both machines are little-endian
 
 
 def _op(code: int, k: int, jump_true: int = 0, jump_false: int = 0) -> bytes:
     """One BPF instruction; the jumps skip that many of the next ones."""
     return struct.pack("=HBBI", code, jump_true, jump_false, k)
+
+
+def _restricted() -> dict[str, tuple[int, int, list[bytes]]]:
+    """Calls allowed with some arguments only: name -> (x86_64, aarch64, what refuses the others).
+
+    The most frequent first: each call that is one of them comes past those before it.
+    """
+    clocks = _below(0, 12)  # those of the system and one's own; a negative number is another process's
+    return {
+        # On the one socket that is open: to whoever is at the other end, and nothing out of band.
+        "sendto": (44, 206, [*_one_of(3, 0, _MSG_NOSIGNAL), *_null(4)]),
+        "recvfrom": (45, 207, _one_of(3, 0)),
+        # Others share the pages of libraries with us, and a futex in one of them wakes across processes.
+        "futex": (202, 98, _with_bit(1, _FUTEX_PRIVATE)),
+        # NORMAL to DONTNEED, FREE, HUGEPAGE, NOHUGEPAGE; not MERGEABLE, which shows what others have.
+        "madvise": (28, 233, _one_of(2, 0, 1, 2, 3, 4, 8, 14, 15)),
+        "clock_gettime": (228, 113, clocks),
+        "clock_getres": (229, 114, clocks),
+        "clock_nanosleep": (230, 115, clocks),
+        # DUPFD, GETFD, SETFD, GETFL, SETFL, DUPFD_CLOEXEC; not SETOWN and SETSIG, which would send a signal
+        # of the student's choice to another process, and no locks.
+        "fcntl": (72, 25, _one_of(1, 0, 1, 2, 3, 4, 1030)),
+        "ioctl": (16, 29, _one_of(1, 0x5401, 0x541B, 0x5450, 0x5451)),  # TCGETS, FIONREAD, FIO(N)CLEX
+        "tgkill": (234, 131, _one_of(0, _OWN_PID)),  # abort() works, signals to others do not
+        "sched_getaffinity": (204, 123, _one_of(0, 0, _OWN_PID)),
+    }
 
 
 def allowed_calls(machine: str) -> dict[str, int]:
@@ -328,12 +379,9 @@ def seccomp_program(machine: str = "") -> bytes:
     program += [_op(_IF_AT_LEAST, 0x40000000, 0, 1), _op(_RETURN, _KILL)]  # x32 numbers its calls anew
     # clone3 must look absent, so that the C library falls back to clone, whose flags it reports properly.
     program += [_op(_IF_EQUAL, _CLONE3, 0, 1), _op(_RETURN, _ENOSYS)]
-    for x86_64, aarch64, argument, values in _RESTRICTED.values():
-        number = (x86_64, aarch64)[column]
-        program += [_op(_IF_EQUAL, number, 0, 2 + 2 * len(values)), _op(_LOAD, 16 + 8 * argument)]
-        for value in values:
-            program += [_op(_IF_EQUAL, value, 0, 1), _op(_RETURN, _ALLOW)]
-        program.append(_op(_RETURN, _EPERM))
+    for *numbers, conditions in _restricted().values():
+        program += [_op(_IF_EQUAL, numbers[column], 0, len(conditions) + 1), *conditions]
+        program.append(_op(_RETURN, _ALLOW))
     program += _search(_verdicts(set(allowed_calls(machine).values())))
     return b"".join(program)
 

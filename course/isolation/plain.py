@@ -13,10 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.isolation import launch
+from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
 from course.isolation.levels import MAX_OUTPUT, Exit, Level
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from course.isolation.levels import Handle, Limits
     from course.isolation.view import View
 
@@ -34,6 +37,7 @@ class ProcessSpawner:
         self._imports = imports
         self._limits = limits
         self._standby: _ProcessHandle | None = None
+        self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
 
     def _start(self) -> _ProcessHandle:
         workdir = Path(tempfile.mkdtemp(dir=self._folder))
@@ -47,11 +51,15 @@ class ProcessSpawner:
         }
         ours, theirs = socket.socketpair()
         with theirs:
-            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir)
+            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir, self._left)
 
     def spawn(self) -> Handle:
-        handle = self._standby or self._start()
-        self._standby = None
+        handle, self._standby = self._standby, None
+        if handle is not None and not handle.alive():
+            # It ended with the thread that started it: that is what Linux takes for its parent.
+            handle.finish()
+            handle = None
+        handle = handle or self._start()
         try:
             self._standby = self._start()
         except OSError as error:
@@ -59,11 +67,14 @@ class ProcessSpawner:
             raise IsolationError(f"a worker process could not be started: {error}") from None
         return handle
 
+    def tidy(self) -> None:
+        launch.tidy(self._left)
+
     def close(self) -> None:
         if self._standby is not None:
             self._standby.finish()
             self._standby = None
-        launch.remove_tree(self._folder)
+        launch.sweep(self._folder)
 
 
 class _ProcessHandle:
@@ -77,8 +88,10 @@ class _ProcessHandle:
         folder: str,
         config: dict[str, Any],
         workdir: Path,
+        left: list[Iterator[None]],
     ) -> None:
         self.sock = ours
+        self._left = left
         self._workdir = workdir
         # Opened twice and at once: later that name may be anything the student's code put there.
         with (workdir / ".output").open("wb") as output:
@@ -95,6 +108,9 @@ class _ProcessHandle:
                     **streams,
                 )
 
+        clock = ProcessClock(self._process.pid)
+        self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
+
     @staticmethod
     def _start_windows(
         theirs: socket.socket, view: View, folder: str, config: dict[str, Any], streams: dict[str, Any]
@@ -107,6 +123,9 @@ class _ProcessHandle:
         process.stdin.write(theirs.share(process.pid))  # type: ignore[attr-defined]
         process.stdin.close()
         return process
+
+    def alive(self) -> bool:
+        return self._process.poll() is None
 
     def output(self) -> str:
         if self._output.closed:
@@ -124,5 +143,5 @@ class _ProcessHandle:
         code = self._process.wait()
         self.sock.close()
         self._output.close()
-        launch.remove_tree(self._workdir)
+        self._left.append(launch.removing(self._workdir))
         return Exit(max(code, 0), max(-code, 0))

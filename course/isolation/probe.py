@@ -12,8 +12,8 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from time import monotonic
 
+from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.session import Connection, LoadRefusedError
 from course.isolation.spawn import Level, Spawner, spawner
@@ -112,7 +112,7 @@ def _escapes(found: Spawner) -> list[str]:
         Path(folder).chmod(0o755)
         secret.chmod(0o644)
         try:
-            connection = Connection(found, {"canary.py": _CANARY}, "canary.py", monotonic() + _DEADLINE_S)
+            connection = Connection(found, {"canary.py": _CANARY}, "canary.py", Deadline(_DEADLINE_S))
             try:
                 done = connection.call("canary", str(secret))
             finally:

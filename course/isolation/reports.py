@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from course.isolation.failures import StudentFailure, printable
+from course.isolation.failures import StudentFailure
+from course.printable import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,8 +53,8 @@ def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | Non
 
 
 def claimed_text(value: Any, limit: int = 2000) -> str:
-    """Text that can be shown, nothing if it is no text."""
-    return printable(value, limit) if isinstance(value, str) else ""
+    """Text that can be shown on one line, nothing if it is no text."""
+    return one_line(value, limit) if isinstance(value, str) else ""
 
 
 def _items(value: Any) -> list[Any]:

@@ -12,10 +12,12 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from course.isolation import wire
-from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.deadline import Deadline
+from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.levels import START_TIMEOUT
 from course.isolation.reports import claimed_text, raised
 from course.physics import systems
+from course.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -72,14 +74,14 @@ class Connection:
         spawner: starts the worker.
         files: the submission: file name to content.
         main: the file whose functions are called.
-        deadline: ``time.monotonic()`` value by which loading must be done.
+        deadline: by which loading must be done.
 
     Raises:
         LoadRefusedError: the submission cannot be loaded.
         IsolationError: the worker could not be started or locked down.
     """
 
-    def __init__(self, spawner: Spawner, files: Mapping[str, bytes], main: str, deadline: float) -> None:
+    def __init__(self, spawner: Spawner, files: Mapping[str, bytes], main: str, deadline: Deadline) -> None:
         self._files = files
         self._main = main
         self._codec = wire.Codec(self)
@@ -89,7 +91,7 @@ class Connection:
         self._refused: AssertionError | None = None
         self._received = 0  # bytes, since the call began
         self._printed = ""
-        self.deadline = deadline
+        self._deadline = deadline
         self.alive = True
         self.cpu_s = 0.0
         self._handle: Handle = spawner.spawn()
@@ -100,6 +102,17 @@ class Connection:
         except BaseException:
             self.close()
             raise
+
+    @property
+    def deadline(self) -> Deadline:
+        """By which the next answers must be there."""
+        return self._deadline
+
+    @deadline.setter
+    def deadline(self, deadline: Deadline) -> None:
+        self._deadline = deadline
+        if self.alive:
+            deadline.watch(self._handle)
 
     # -- names: how functions and right-hand sides appear here ----------------------------------------
 
@@ -187,6 +200,7 @@ class Connection:
             return None
         self.alive = False
         self._printed = printable(self._handle.output())
+        self._deadline.watch(None)
         end = self._handle.finish()
         self.cpu_s = end.cpu_s
         return end
@@ -205,6 +219,7 @@ class Connection:
             frame = self._codec.encode(kind, request)
         except wire.UnsupportedValueError as error:
             raise IsolationError(f"a check passes {error} to {name}") from None
+        self._deadline.waiting()
         self._send(frame)
         return self._await_result()
 
@@ -267,10 +282,9 @@ class Connection:
     def _await_lockdown(self) -> None:
         """The first word of a worker, said before it is given a stranger's code: only here is it believed.
 
-        Starting is our own time: the deadline moves by as much.
+        Starting is our own time: none of it counts.
         """
-        start, deadline = monotonic(), self.deadline
-        self.deadline = start + START_TIMEOUT
+        deadline, self._deadline = self._deadline, Deadline(START_TIMEOUT, START_TIMEOUT)
         try:
             kind, value = self._receive()
         except StudentFailure as failure:
@@ -278,7 +292,8 @@ class Connection:
         if kind != Kind.READY:
             self.close()
             raise IsolationError(f"a worker could not be locked down: {value}")
-        self.deadline = deadline + monotonic() - start
+        deadline.postpone(self._deadline.wall)
+        self.deadline = deadline
 
     def _raised(self, value: Any) -> StudentFailure:
         """The exception a worker reports."""
@@ -316,8 +331,8 @@ class Connection:
             self._buffer = buffer[end:]
         else:
             body, self._buffer = self._read_rest(buffer, end)[5:], b""
-        if monotonic() > self.deadline:
-            raise self._timeout()  # a worker that keeps calling back never lets a read block
+        if monotonic() > self._deadline.earliest:
+            self._check_deadline()  # a worker that keeps calling back never lets a read block
         try:
             return kind, self._codec.decode(body)
         except wire.WireError as error:
@@ -344,7 +359,7 @@ class Connection:
             return received
 
     def _check_deadline(self) -> None:
-        if monotonic() > self.deadline:
+        if self._deadline.passed():
             raise self._timeout()
 
     def _timeout(self) -> StudentFailure:

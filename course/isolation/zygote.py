@@ -9,14 +9,19 @@ the course.
 from __future__ import annotations
 
 import array
+import contextlib
 import ctypes
+import errno
 import gc
 import importlib
 import json
 import os
+import select
 import socket
 import sys
-from typing import Any
+import threading
+import time
+from typing import Any, NamedTuple
 
 # What submissions commonly import: loaded here once, it is in every worker for nothing.
 _COMMON = (
@@ -30,7 +35,9 @@ _NUMPY = (
 )  # fmt: skip
 
 _SOCKET, _RULES = 3, 4  # descriptors of a forked worker
-_libc = ctypes.CDLL(None)
+_LOOK_S = 0.5
+_ended = (ctypes.c_long * 24)()  # frames.ENDED, and room for the rest of what wait4(2) writes
+_libc = ctypes.CDLL(None, use_errno=True)
 
 
 def main() -> None:
@@ -43,39 +50,71 @@ def main() -> None:
     from course_worker.isolation import worker  # type: ignore[import-not-found]
 
     imports = frozenset(config["imports"])
-    if config["level"] == "L1":
-        _serve_here(config, imports, worker)
-    else:
-        _fork_on_request(config, imports, worker)
-
-
-def _serve_here(config: dict[str, Any], imports: frozenset[str], worker: Any) -> None:
-    """L1: this process is the worker. Its socket comes by number, or on Windows as shared bytes on stdin."""
-    if config.get("share"):
-        sock = socket.fromshare(sys.stdin.buffer.read(int(config["share"])))  # type: ignore[attr-defined]
-    else:
-        sock = socket.socket(fileno=config["control"])
-    os.chdir(config["workdir"])
-    if sys.platform != "win32":
-        import resource
-
-        _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-        size = config["limits"]["file_size"]
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size if hard < 0 else min(hard, size)))
-    sock.setblocking(True)
+    sock = _here(config) if config["level"] == "L1" else _become_worker(config, _fork_on_request(config))
     worker.run(sock, imports)
 
 
-def _fork_on_request(config: dict[str, Any], imports: frozenset[str], worker: Any) -> None:
+def _here(config: dict[str, Any]) -> socket.socket:
+    """L1: this process is the worker. Its socket comes by number, or on Windows as shared bytes on stdin."""
+    if config.get("share"):
+        sock: socket.socket = socket.fromshare(sys.stdin.buffer.read(int(config["share"])))  # type: ignore[attr-defined]
+    else:
+        sock = socket.socket(fileno=config["control"])
+    os.chdir(config["workdir"])
+    if sys.platform == "linux":
+        from course_worker.isolation import lockdown
+
+        lockdown.die_with_parent()
+        lockdown.drop_bounding_set()
+        lockdown.drop_capabilities()
+    else:
+        threading.Thread(target=_end_with_grader, args=(sock,), daemon=True).start()
+    if sys.platform != "win32":
+        import resource
+
+        for kind, name in ((resource.RLIMIT_FSIZE, "file_size"), (resource.RLIMIT_CPU, "cpu_s")):
+            limit, (_, hard) = config["limits"][name], resource.getrlimit(kind)
+            resource.setrlimit(kind, (limit, limit if hard < 0 else min(hard, limit)))
+    sock.setblocking(True)
+    return sock
+
+
+def _end_with_grader(sock: socket.socket) -> None:
+    """End this process, whatever it does, when the other end of its socket is gone.
+
+    Linux does the same for a process that asks for it; elsewhere someone has to look.
+    """
+    with contextlib.suppress(OSError):
+        while not select.select([sock], [], [], None)[0] or sock.recv(1, socket.MSG_PEEK):
+            time.sleep(_LOOK_S)  # there is something to read: the worker itself will
+    os._exit(1)
+
+
+class _Newborn(NamedTuple):
+    """What a fork needs to become a worker."""
+
+    descriptors: list[int]
+    workdir: str
+    rules: int
+    program: bytes
+
+
+def _fork_on_request(config: dict[str, Any]) -> _Newborn:
+    """Fork for each request until the grader goes away; returns in the forks alone.
+
+    A fork inherits every object of this process and could walk its frames. So it returns from here before a
+    stranger's code is loaded, and what is learnt of a worker that ended never becomes an object (``_reap``).
+    """
     from course_worker.isolation import lockdown
 
     control = socket.socket(fileno=config["control"])
     control.set_inheritable(False)
     program = lockdown.seccomp_program()
     rules = -1
-    if config["readable"]:  # one long list for all workers
+    if config["readable"]:  # one long list for all workers, which are not to read it
         with open(config["readable"], encoding="utf-8") as handle:  # noqa: PTH123
             rules = lockdown.landlock_ruleset(json.load(handle), [config["workdir"]])
+        os.unlink(config["readable"])  # noqa: PTH108
     own_namespace = (
         os.open("/proc/self/ns/pid", os.O_RDONLY | os.O_CLOEXEC) if config["level"] == "L3" else -1
     )
@@ -87,46 +126,62 @@ def _fork_on_request(config: dict[str, Any], imports: frozenset[str], worker: An
     numpy = sys.modules["numpy"]
     _reply(control, {"prefix": sys.prefix, "numpy": numpy.__file__, "version": list(sys.version_info[:3])})
     while True:
-        request, descriptors = _request(control)
-        if request is None:
-            os._exit(0)
-        if "reap" in request:
-            _, status, usage = os.wait4(request["reap"], 0)
-            cpu = usage.ru_utime + usage.ru_stime
-            _reply(control, {"status": status, "cpu_s": cpu, "peak_kb": usage.ru_maxrss})
-            continue
-        try:
-            if own_namespace >= 0:
-                lockdown.new_pid_namespace(own_namespace)
-            pid = os.fork()
-        except OSError as error:
-            _reply(control, {"error": str(error)})
-        else:
-            if pid == 0:
-                _become_worker(config, request, descriptors, program, rules, imports, worker)
-            pidfd = os.pidfd_open(pid)
-            _reply(control, {"pid": pid}, pidfd)
-            os.close(pidfd)
-        for descriptor in descriptors:
-            os.close(descriptor)
+        newborn = _answer(control, own_namespace)
+        if newborn is not None:
+            return _Newborn(*newborn, rules, program)
 
 
-def _become_worker(
-    config: dict[str, Any],
-    request: dict[str, Any],
-    descriptors: list[int],
-    program: bytes,
-    rules: int,
-    imports: frozenset[str],
-    worker: Any,
-) -> None:
-    """In the fork: keep one socket and one output file, give everything else up, serve. Never returns."""
+def _answer(control: socket.socket, own_namespace: int) -> tuple[list[int], str] | None:
+    """One request of the grader's: in a new fork its descriptors and folder, here None."""
     from course_worker.isolation import lockdown
 
+    request, descriptors = _request(control)
+    if request is None:
+        os._exit(0)
+    if "reap" in request:
+        _reap(control, request["reap"])
+        return None
     try:
-        _keep_only(descriptors[0], descriptors[1], rules)
+        if own_namespace >= 0:
+            lockdown.new_pid_namespace(own_namespace)
+        pid = os.fork()
+    except OSError as error:
+        _reply(control, {"error": str(error)})
+    else:
+        if pid == 0:
+            return descriptors, request["workdir"]
+        pidfd = os.pidfd_open(pid)
+        _reply(control, {"pid": pid}, pidfd)
+        os.close(pidfd)
+    for descriptor in descriptors:
+        os.close(descriptor)
+    return None
+
+
+def _reap(control: socket.socket, pid: int) -> None:
+    """Collect a worker, and tell how it ended and its user and system time, as ``frames.ENDED`` has it.
+
+    By the C library and out of one buffer that is wiped: what a student's process was like would otherwise
+    stay in this one's memory, for the next students' to find.
+    """
+    from course_worker.isolation import frames
+
+    status, usage = ctypes.addressof(_ended), ctypes.addressof(_ended) + ctypes.sizeof(ctypes.c_long)
+    while _libc.wait4(ctypes.c_int(pid), ctypes.c_void_p(status), 0, ctypes.c_void_p(usage)) < 0:
+        if ctypes.get_errno() != errno.EINTR:
+            raise OSError(ctypes.get_errno(), "wait4")
+    control.send(memoryview(_ended).cast("B")[: frames.ENDED.size])
+    ctypes.memset(_ended, 0, ctypes.sizeof(_ended))
+
+
+def _become_worker(config: dict[str, Any], newborn: _Newborn) -> socket.socket:
+    """In the fork: keep one socket and one output file, and give everything else up."""
+    from course_worker.isolation import lockdown
+
+    workdir = newborn.workdir
+    try:
+        _keep_only(newborn.descriptors[0], newborn.descriptors[1], newborn.rules)
         sock = socket.socket(fileno=_SOCKET)
-        workdir = request["workdir"]
         root = os.getuid() == 0
         if config["level"] == "L3":
             lockdown.unshare_worker()
@@ -141,15 +196,15 @@ def _become_worker(
         own = lockdown.landlock_ruleset(["/"], [workdir])  # after the mounts: rules are about inodes
         lockdown.landlock_apply(own)
         os.close(own)
-        if rules >= 0:
+        if newborn.rules >= 0:
             lockdown.landlock_apply(_RULES)
             os.close(_RULES)
         lockdown.apply_limits(**config["limits"])
-        lockdown.apply_seccomp(program)
+        lockdown.apply_seccomp(newborn.program)
     except BaseException as error:  # noqa: BLE001 - fail closed, and say which layer it was
         _refuse(sock, f"{type(error).__name__}: {error}")
         os._exit(1)
-    worker.run(sock, imports)
+    return sock
 
 
 def _keep_only(sock: int, output: int, rules: int) -> None:

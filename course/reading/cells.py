@@ -9,12 +9,14 @@ from __future__ import annotations
 import ast
 import threading
 from dataclasses import dataclass
-from time import monotonic, perf_counter
+from time import perf_counter
 from typing import TYPE_CHECKING
 
-from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.deadline import Deadline
+from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
+from course.printable import printable
 from course.reading.textbook import imported, textbook_for
 
 if TYPE_CHECKING:
@@ -150,7 +152,7 @@ class CellRunner:
         files = {_MAIN: beside, "course.py": b"", "course.zip": book.data}
         files |= {f"{name}.py": b"" for name in book.absent}
         try:
-            self._connection = Connection(self._spawner, files, _MAIN, monotonic() + DEADLINE_S)
+            self._connection = Connection(self._spawner, files, _MAIN, Deadline(DEADLINE_S))
         except LoadRefusedError as refused:
             raise IsolationError(f"the cells' process did not load: {refused.failure}") from None
 
@@ -178,7 +180,7 @@ class CellRunner:
         self._interrupted.set()
         connection = self._connection
         if connection is not None:
-            connection.deadline = 0.0
+            connection.deadline.end()
 
     def forget(self) -> None:
         """Begin anew with the next run, as after changes to the modules a cell imports."""
@@ -214,7 +216,9 @@ class CellRunner:
             raise IsolationError("the cells' process has ended")
         name = f"cell {cell.number}" if cell.number else "a hidden cell"
         start = perf_counter()
-        connection.deadline = 0.0 if self._interrupted.is_set() else monotonic() + DEADLINE_S
+        connection.deadline = Deadline(DEADLINE_S)
+        if self._interrupted.is_set():
+            connection.deadline.end()
         try:
             error = printable(str(connection.call("run", source, name)))
         except StudentFailure as failure:

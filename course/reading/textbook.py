@@ -23,8 +23,8 @@ __all__ = ["Textbook", "imported", "textbook_for"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 _COURSE = "course"
-#: Packages that a cell's process may have as they are: quick to load, and needing no others.
-_LIGHT = frozenset({"numpy", "msgspec"})
+#: Packages that a cell's process may have as they are, quick to load, each with what it needs itself.
+_LIGHT = {"numpy": (), "msgspec": (), "pymunk": ("cffi",)}
 _DATA = frozenset({".json", ".toml"})
 #: Archives are stamped alike, so that the same modules give the same bytes.
 _STAMP = (1980, 1, 1, 0, 0, 0)
@@ -69,7 +69,9 @@ def textbook_for(sources: Iterable[str]) -> Textbook:
                 if path.suffix in _DATA:
                     files[path.relative_to(_ROOT).as_posix()] = path.read_bytes()
     files.setdefault("course/__init__.py", b"")
-    packages, absent = sorted(others & _LIGHT | {"numpy"}), sorted(others - _LIGHT)
+    light = {"numpy", *others} & _LIGHT.keys()
+    packages = sorted(light.union(*(_LIGHT[name] for name in light)))
+    absent = sorted(others - _LIGHT.keys())
     return Textbook(_zipped(files), tuple(packages), tuple(absent))
 
 

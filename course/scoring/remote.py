@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from course.isolation.deadline import WALL, Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection, LoadRefusedError
 from course.scoring.places import Places
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["BUDGET_S", "RemoteSubmission"]
 
-#: Wall seconds one submission has in all; what is left over when they are gone ends as a timeout.
+#: Seconds of CPU time one submission has in all; what is left over when they are gone ends as a timeout. By
+#: the wall clock it has ``WALL`` times as many.
 BUDGET_S = 60.0
 
 
@@ -31,7 +32,7 @@ class RemoteSubmission:
         spawner: starts workers.
         files: file name to content.
         main: the file whose functions are checked.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         seed: seed of the grading run.
         places: how its lines are told; failures carry it.
 
@@ -55,10 +56,10 @@ class RemoteSubmission:
         self._files = files
         self._main = main
         self._timeout = timeout
-        self._end = monotonic() + BUDGET_S
-        self._deadline = min(monotonic() + timeout, self._end)
+        self._cpu_left, self._wall_left = BUDGET_S, WALL * BUDGET_S
+        self._deadline = Deadline(min(timeout, self._cpu_left))
         self._printed_before = 0
-        self._task, self._began = "", monotonic()
+        self._task = ""
         self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
@@ -170,14 +171,17 @@ class RemoteSubmission:
         """Start the clock of one check.
 
         The checks of a task have together half of the time that is left when the first of them begins: a
-        function that never answers costs its own task, however many checks that has.
+        function that never answers costs its own task, however many checks that has. What workers left
+        behind is deleted before the clock starts.
         """
-        now = monotonic()
+        self._cpu_left -= self._deadline.used
+        self._wall_left -= self._deadline.wall
         if self._task:
-            self._left[self._task] -= now - self._began
-        left = self._left.setdefault(task, (self._end - now) / 2)
-        self._task, self._began = task, now
-        self._deadline = min(now + min(self._timeout, left), self._end)
+            self._left[self._task] -= self._deadline.used
+        self._spawner.tidy()
+        left = min(self._left.setdefault(task, self._cpu_left / 2), self._cpu_left)
+        self._task = task
+        self._deadline = Deadline(min(self._timeout, left), min(WALL * self._timeout, self._wall_left))
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 
@@ -187,11 +191,13 @@ class RemoteSubmission:
 
     def give_up(self) -> None:
         """From another thread: its time is over, for what is asked now and for all after it."""
-        self._end = self._deadline = self._connection.deadline = 0.0
+        self._cpu_left = self._wall_left = 0.0
+        self._deadline.end()
 
     def close(self) -> None:
-        """End the worker."""
+        """End the worker, and delete what it left."""
         self._connection.close()
+        self._spawner.tidy()
 
     def _connect(self) -> Connection:
         return Connection(self._spawner, self._files, self._main, self._deadline)
@@ -206,7 +212,7 @@ class RemoteSubmission:
             raise
 
     def _live(self) -> Connection:
-        if monotonic() > self._deadline:
+        if self._deadline.passed():
             raise StudentFailure("timeout", message="it ran out of time")
         if not self._connection.alive:
             self._printed_before = 0

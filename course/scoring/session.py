@@ -7,10 +7,8 @@ with GradingSession(exercise, catalog, scope="public") as session:
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import os
 import random
-from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
@@ -18,6 +16,7 @@ import msgspec
 
 from course.errors import InternalError, MissingCapabilityError, UngradableError
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.launch import keep_private
 from course.isolation.probe import open_spawner
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
@@ -26,11 +25,12 @@ from course.scoring.failures import CheckFailed, finding_of
 from course.scoring.outcomes import found, load_problem, no_functions, result, skipped
 from course.scoring.places import Places
 from course.scoring.remote import RemoteSubmission
+from course.scoring.submission import Submission
 from course.scoring.terms import Terms
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, bounded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from course.catalog.load import Catalog
@@ -49,30 +49,6 @@ _STATUS = {
     "memory": Status.MEMORY,
     "crash": Status.CRASH,
 }
-
-
-@dataclass(frozen=True)
-class Submission:
-    """What one student handed in for one exercise.
-
-    Attributes:
-        files: file name to content, exactly as handed in.
-        places: how its lines are told; None if the module is what the student wrote.
-        notes: what was left out or taken for granted when it was read, a sentence each.
-    """
-
-    files: Mapping[str, bytes]
-    places: Places | None = None
-    notes: tuple[str, ...] = ()
-
-    @property
-    def sha256(self) -> str:
-        """Over names and contents, in a fixed order."""
-        digest = hashlib.sha256()
-        for name in sorted(self.files):
-            digest.update(f"{len(name)}:{name}:{len(self.files[name])}:".encode())
-            digest.update(self.files[name])
-        return digest.hexdigest()
 
 
 class GradingSession:
@@ -106,6 +82,8 @@ class GradingSession:
         self.scope = scope
         self._terms = terms
         self._processor = _choose(processor)
+        if scope == "full":
+            keep_private()
         self._checks = CollectedChecks(check_files(exercise, catalog, scope))
         with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, terms)
@@ -215,9 +193,9 @@ class GradingSession:
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
-        start = perf_counter()
         self.running = check.title
         remote.begin_check(check.task)
+        start = perf_counter()
         outcome = self._checks.run(check, remote)
         duration_ms = (perf_counter() - start) * 1e3
         if outcome is None:
@@ -246,8 +224,8 @@ class GradingSession:
             problem = Problem(
                 "check_failed", f"{broken.id}: {broken.message}", "Regrade once it is repaired."
             )
-            return self._verdict("grader_error", score, tuple(results), error=problem)
-        return self._verdict("graded", score, tuple(results), most=most)
+            return bounded(self._verdict("grader_error", score, tuple(results), error=problem))
+        return bounded(self._verdict("graded", score, tuple(results), most=most))
 
     def _ungradable(self, problem: Problem) -> Verdict:
         return self._verdict("ungradable", 0.0, (), error=problem)

@@ -13,7 +13,7 @@ class Terms(msgspec.Struct, frozen=True):
     Attributes:
         level: protection level to insist on; None takes the best one not below ``at_least``.
         at_least: the weakest level to accept when ``level`` is None.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         seed: of the run, for checks that draw their inputs.
     """
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from course.isolation.failures import printable
+from course.printable import one_line
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding
 
@@ -221,14 +221,14 @@ def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per 
         return f"({type(value).__name__} of {len(value)})"
     if isinstance(value, dict):
         shown = list(value.items())[:_SHOWN]
-        return {printable(str(key), 80): plain(item, depth - 1) for key, item in shown}
+        return {one_line(str(key), 80): plain(item, depth - 1) for key, item in shown}
     if isinstance(value, list | tuple):
         more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
         return [plain(item, depth - 1) for item in value[:_SHOWN]] + more
     if value is None or isinstance(value, bool | int | float):
         return value
     text = str(value) if isinstance(value, str | complex) else f"({type(value).__name__})"
-    return printable(text, 200)
+    return one_line(text, 200)
 
 
 def _real(value: Any) -> Array | None:

@@ -20,6 +20,7 @@ __all__ = [
     "Status",
     "Tolerance",
     "Verdict",
+    "bounded",
     "finite",
     "for_student",
 ]
@@ -146,13 +147,15 @@ def for_student(result: CheckResult) -> CheckResult:
     """A check's result as its student may see it.
 
     A public check is shown whole. A hidden one keeps title, message, advice, diagnosis and points; input,
-    expected and actual values, tolerance, divergence, traceback and output are dropped. Every export that
-    a student may read goes through here.
+    expected and actual values, tolerance, divergence, traceback, output and time are dropped. If the
+    student's code gave no value that could be looked at, one of a few sentences says so in place of what it
+    said itself: it has met the hidden input by then, and whatever it may choose would tell of that. Every
+    export that a student may read goes through here.
     """
     if result.visibility is Visibility.PUBLIC:
         return result
     return msgspec.structs.replace(
-        result,
+        _unspoken(result),
         input=None,
         expected=None,
         actual=None,
@@ -161,7 +164,71 @@ def for_student(result: CheckResult) -> CheckResult:
         first_divergence=None,
         traceback=None,
         stdout=None,
+        duration_ms=0.0,
     )
+
+
+#: What is said of a hidden check without a value, by its status: (diagnosis, message, advice).
+_NO_VALUE = {
+    Status.ERROR: (
+        "RAISED",
+        "`{}` raises an exception for an input that is not shown here.",
+        "Call it yourself with other inputs than the README's example: small, large and unusual ones.",
+    ),
+    Status.TIMEOUT: (
+        "TIMEOUT",
+        "`{}` had not answered when the time was up, for an input that is not shown here.",
+        "Look for a loop whose condition never becomes false, or one that takes far more steps than asked.",
+    ),
+    Status.MEMORY: (
+        "OUT_OF_MEMORY",
+        "`{}` asks for more memory than a check may use, for an input that is not shown here.",
+        "Look for a list or array that grows in a loop without end.",
+    ),
+    Status.CRASH: (
+        "CRASHED",
+        "The Python process that ran `{}` ended, for an input that is not shown here.",
+        "Look for exit(), os._exit(), or a recursion without an end.",
+    ),
+}
+#: The fifth: what came is no value of ours, or one of another form than was asked for.
+_OTHER_FORM = frozenset(
+    {"NOT_PLAIN_DATA", "WRONG_TYPE", "WRONG_KEYS", "WRONG_SHAPE", "NOT_A_PAIR", "RETURNS_NOTHING"}
+)
+
+
+def _unspoken(result: CheckResult) -> CheckResult:
+    """A hidden result in words that the student's code had no choice of, but for which of five they are."""
+    if result.diagnosis == "MISSING_FUNCTION":
+        return result  # known before the code met any input
+    if result.diagnosis in _OTHER_FORM:
+        return msgspec.structs.replace(
+            result,
+            status=Status.FAIL,
+            diagnosis="OTHER_FORM",
+            message=f"What `{result.task}` returns has not the form that was asked for.",
+            help="Compare it with the README's contract, also for other inputs than those of its example.",
+        )
+    if result.status not in _NO_VALUE:
+        return result
+    diagnosis, message, advice = _NO_VALUE[result.status]
+    return msgspec.structs.replace(
+        result, diagnosis=diagnosis, message=message.format(result.task), help=advice
+    )
+
+
+#: Bytes of a verdict as JSON: what one submission may add to a gradebook, a page or a line.
+MAX_VERDICT = 192 << 10
+
+
+def bounded(verdict: Verdict) -> Verdict:
+    """The verdict in at most ``MAX_VERDICT`` bytes: what is needed least goes first."""
+    for field in ("stdout", "traceback", "actual", "input", "expected"):
+        if len(msgspec.json.encode(verdict)) <= MAX_VERDICT:
+            return verdict
+        kept = tuple(msgspec.structs.replace(check, **{field: None}) for check in verdict.checks)
+        verdict = msgspec.structs.replace(verdict, checks=kept)
+    return verdict
 
 
 def finite(value: Any) -> Any:

@@ -77,7 +77,16 @@ def of_motor(submission):
     values = [kit.as_number(value, "w_next") for value in values]
     # With several mistakes at once: the first call has neither dead band nor saturation in it.
     lags = [(code, row[:1]) for code, row in _motor_slips() if code.startswith("LAG")]
-    return _matching(values, _motor_slips()) or _matching(values[:1], lags)
+    found = _matching(values, _motor_slips()) or _matching(values[:1], lags)
+    if found:
+        return found
+    brief, long = (
+        kit.as_number(value, "w_next")
+        for value in submission.call_each(
+            "motor_step", [(1.0, 6.0, dt, 0.5, 10.0, 2.0) for dt in (0.01, 1.0)]
+        )
+    )
+    return named("LAG_WITHOUT_DT") if brief == long else None
 
 
 def _matching(values, slips):
@@ -132,6 +141,8 @@ def of_backlash(submission):
     found = _matching(outputs, _play_slips())
     if found:
         return found
+    if _remembers(submission):
+        return named("STATE_IN_MODULE")
     right = [min(max(s, x - 0.5), x + 0.5) for x, s in _PLAY]
     if np.allclose(outputs, right, rtol=0, atol=1e-12):
         states = [kit.as_number(state, "state_next") for _, state in pairs]
@@ -141,6 +152,14 @@ def of_backlash(submission):
         (y - s) / (r - s) for y, r, (_, s) in zip(outputs, right, _PLAY, strict=True) if abs(r - s) > 1e-9
     ]
     return named("BACKLASH_RATE_DEPENDENT") if all(0 < share < 1 for share in shares) else None
+
+
+def _remembers(submission):
+    """Whether one and the same call gives something else after another call."""
+    far = (-9.0, 1.0, -9.0), (9.0, 1.0, 9.0)
+    values = submission.call_each("backlash", [far[0], (0.3, 1.0, 0.1), far[1], (0.3, 1.0, 0.1)])
+    first, again = (kit.as_number(kit.as_tuple(values[i], ("y", "state_next"))[0], "y") for i in (1, 3))
+    return first != again and not (math.isnan(first) and math.isnan(again))
 
 
 # -- delay ----------------------------------------------------------------------------------------------

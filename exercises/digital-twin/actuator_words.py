@@ -8,6 +8,11 @@ ACTUATORS: dict[str, tuple[str, str]] = {
         "The lag is stepped with dt / tau. That overshoots from dt = tau on and explodes beyond 2 tau.",
         "Solve it exactly: the share of the way that is gone after dt is 1 - exp(-dt / tau).",
     ),
+    "LAG_WITHOUT_DT": (
+        "A hundred times as long a step takes the speed no further: the share of the way does not follow dt.",
+        "The share is 1 - exp(-dt / tau), with the dt and the tau of this very call; keep none from an "
+        "earlier one.",
+    ),
     "LAG_IMPLICIT": (
         "The share of the way is dt / (tau + dt): stable, but a little too slow at every step.",
         "Solve it exactly: the share is 1 - exp(-dt / tau).",
@@ -81,6 +86,10 @@ ACTUATORS: dict[str, tuple[str, str]] = {
     "BACKLASH_ONE_SIDED": (
         "The output is pushed one way and not the other.",
         "The gap has two edges: clip the state to [x - gap/2, x + gap/2].",
+    ),
+    "STATE_IN_MODULE": (
+        "The same call gives another output after another call: something is remembered in between.",
+        "Start from the state that is passed in. There may be two gears, each with a state of its own.",
     ),
     "STATE_IS_NOT_OUTPUT": (
         "What is handed on as state is not the output.",

@@ -10,13 +10,17 @@ import pytest
 
 from course.grading import kit
 
+actuators = kit.companion("digital-twin", "actuator_bundles")
 bundles = kit.companion("digital-twin", "bundles")
 scenes = kit.companion("digital-twin", "scenes")
-actuators, sensors, twins = bundles.actuators, bundles.sensors, bundles.twins
+sensors = kit.companion("digital-twin", "sensor_bundles")
+twins = kit.companion("digital-twin", "twin_bundles")
 
 #: The std of 4000 samples scatters by 1.1 %, so this is five times that.
 _SPREAD = 0.06
 _SPREAD_SOURCE = "five times the scatter of a std from 4000 samples"
+
+# Checks of no points look at clauses of the README that hidden checks score, on other numbers.
 
 
 @pytest.mark.task("encoder")
@@ -24,60 +28,62 @@ _SPREAD_SOURCE = "five times the scatter of a std from 4000 samples"
 def test_encoder_counts(submission):
     """An encoder counts whole steps, over several turns and on both sides of zero"""
     theta = np.linspace(-9.0, 9.0, 401) + 0.001
-    bundles.expect_counts(submission.call("encoder", theta, 64), theta, 64)
+    sensors.expect_counts(submission.call("encoder", theta, 64), theta, 64)
+
+
+@pytest.mark.task("encoder")
+@pytest.mark.points(0)
+def test_encoder_keeps(submission):
+    """The encoder leaves its angles as they are"""
+    theta = np.linspace(-2.0, 2.0, 21) + 0.001
+    bundles.expect_clean(submission, "encoder", (theta, 64), ("theta", None))
 
 
 @pytest.mark.task("imu")
 @pytest.mark.points(3)
 def test_imu_white_noise(submission):
     """White noise is as strong as its density says, at two sampling rates"""
-    n, density = 4000, 0.002
     calls = [
-        (np.zeros(n), dt, density, 0.0, 0.1, np.random.default_rng(seed))
+        (np.zeros(4000), dt, 0.002, 0.0, 0.1, np.random.default_rng(seed))
         for seed, dt in enumerate((0.01, 0.09))
     ]
-    for call, (measured, bias) in zip(calls, bundles.imu_pairs(submission, calls), strict=True):
-        bundles.expect_std(
-            measured - bias,
-            density / math.sqrt(call[1]),
-            _SPREAD,
-            _SPREAD_SOURCE,
-            "Without a walk, the spread of the measured rate is not noise_density / sqrt(dt).",
-            lambda: sensors.of_imu(submission),
-            quantity="std of measured - bias",
-            help="A density is per square root of hertz: how many samples share a second?",
-            input={"dt": call[1], "noise_density": density, "bias_random_walk": 0.0, "samples": n},
-        )
+    sensors.expect_white(submission, calls, _SPREAD, _SPREAD_SOURCE)
 
 
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_bias(submission):
-    """The bias starts at bias0, is on the measured rate, and takes steps of the right size"""
+    """The bias starts at bias0, each time, is on the measured rate, and takes steps of the right size"""
     n, dt, walk = 4000, 0.04, 0.01
     true = np.linspace(1.0, -1.0, n)
-    given = {"dt": dt, "noise_density": 0.0, "bias_random_walk": walk, "bias0": 0.25, "samples": n}
-    calls = [(true, dt, 0.0, walk, 0.25, np.random.default_rng(8))]
-    ((measured, bias),) = bundles.imu_pairs(submission, calls)
+    given = {"dt": dt, "noise_density": 0.0, "bias_random_walk": walk, "samples": n}
+    firsts = (0.25, -0.4)
+    calls = [(true, dt, 0.0, walk, first, np.random.default_rng(8 + i)) for i, first in enumerate(firsts)]
+    for first, (measured, bias) in zip(firsts, sensors.imu_pairs(submission, calls), strict=True):
+        _expect_bias(submission, measured, bias, true, walk * math.sqrt(dt), {**given, "bias0": first})
+
+
+def _expect_bias(submission, measured, bias, true, step, given):
+    ask = lambda: sensors.sensors.of_imu(submission, bias_first=True)  # noqa: E731
     kit.expect_close(
         bias[0],
-        0.25,
-        abs=1e-12,
+        given["bias0"],
+        abs=1e-9,
         source="exact",
         quantity="bias[0]",
         units="rad/s",
         input=given,
         message="The first bias is not bias0.",
         help="bias[0] = bias0; the first step leads to bias[1].",
-        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+        diagnose=ask,
     )
-    bundles.expect_std(
+    sensors.expect_std(
         np.diff(bias),
-        walk * math.sqrt(dt),
+        step,
         _SPREAD,
         _SPREAD_SOURCE,
         "The bias does not step as its random walk says.",
-        lambda: sensors.of_imu(submission, bias_first=True),
+        ask,
         quantity="std of the steps",
         help="bias[k+1] = bias[k] + bias_random_walk * sqrt(dt) * a standard normal number.",
         input=given,
@@ -85,33 +91,57 @@ def test_imu_bias(submission):
     kit.expect_array(
         measured,
         true + bias,
-        abs=1e-12,
+        abs=1e-9,
         source="rounding",
         quantity="measured",
         units="rad/s",
         input=given,
         message="Without white noise, the measured rate is not the true one plus the bias.",
         help="measured[k] = true[k] + bias[k] + white noise.",
-        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+        diagnose=ask,
     )
+
+
+@pytest.mark.task("imu")
+@pytest.mark.points(0)
+def test_imu_draws(submission):
+    """Noise and bias come from the generator that is passed in, and are independent of each other"""
+    sensors.expect_gyroscope_draws(submission, 5, 0.02)
+    sensors.expect_walk(submission, 20000, 0.02, 0.01, 0.3, np.random.default_rng(6))
+
+
+@pytest.mark.task("imu")
+@pytest.mark.points(0)
+def test_imu_keeps(submission):
+    """The true rate is left as it is, and is in the measured one unchanged"""
+    true = 2.0 * np.sin(np.linspace(0, 6, 40))
+    sensors.expect_rate_kept(submission, true, 0.05, -0.2, np.random.default_rng(7))
 
 
 @functools.cache
 def _recordings():
     """Eight recordings of gyroscopes that drift a lot, two minutes at 100 Hz each."""
     rng = np.random.default_rng(2026)
-    cases = []
-    for _ in range(8):
-        numbers = 0.002 * rng.uniform(0.7, 1.4), 0.003 * rng.uniform(0.7, 1.4), rng.uniform(-0.1, 0.1)
-        cases.append((scenes.recording(rng, 12000, 0.01, *numbers), 0.01, *numbers))
-    return cases
+    return sensors.recordings(
+        rng,
+        8,
+        lambda: (0.01, 0.002 * rng.uniform(0.7, 1.4), 0.003 * rng.uniform(0.7, 1.4), rng.uniform(0.03, 0.1)),
+    )
 
 
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(4)
 def test_fit_noise_recordings(submission):
     """From eight recordings at rest, the numbers they were made with are found again"""
-    bundles.expect_fits(submission, _recordings(), (0.03, 0.38, 2.1))
+    sensors.expect_fits(submission, _recordings())
+
+
+@pytest.mark.task("fit_noise")
+@pytest.mark.points(0)
+def test_fit_noise_short(submission):
+    """A short recording tells the noise density, and is left as it is"""
+    still = scenes.recording(np.random.default_rng(3), 2000, 0.02, 0.002, 0.003, -0.5)
+    sensors.expect_density_of_short(submission, still, 0.02, 0.002)
 
 
 @pytest.mark.task("lidar")
@@ -132,33 +162,78 @@ def test_lidar_room(submission):
             input={"pose": pose, "r_max": 3.5, "sigma": 0.0, "room": "6 m by 4 m, door in the right wall"},
             message="In a known room, without noise, a distance is wrong.",
             help="Take one beam and one wall by hand, then the smallest of all hits.",
-            diagnose=lambda: sensors.of_lidar(submission),
+            diagnose=lambda: sensors.sensors.of_lidar(submission),
         )
+
+
+@pytest.mark.task("lidar")
+@pytest.mark.points(0)
+def test_lidar_nearest(submission):
+    """Of walls in a row the nearest counts; one behind, and those that a beam misses, do not"""
+    across = ((2.0, 1.0), (1.0, 0.2), (3.5, 2.0), (-1.0, 3.0))  # at x, from -y to y
+    walls = np.array([[[x, -y], [x, y]] for x, y in across])
+    angles = np.array([0.0, 0.3, -0.49, 0.7])
+    expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0]
+    value = submission.call("lidar", np.zeros(3), walls, angles, 5.0, 0.0, np.random.default_rng(1))
+    kit.expect_array(
+        kit.as_vector(value, 4, "ranges"),
+        expected,
+        abs=1e-9,
+        source="rounding",
+        quantity="ranges",
+        units="m",
+        input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
+        message="Of several walls, another one than the nearest that the beam hits is read.",
+        help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
+        diagnose=lambda: sensors.sensors.of_lidar(submission),
+    )
+
+
+@pytest.mark.task("lidar")
+@pytest.mark.points(0)
+def test_lidar_noise_on_hits(submission):
+    """Noise of std sigma is on hits only, from the generator passed in; nothing is below zero"""
+    sensors.expect_scan_noise(submission, 7.0, 0.05, np.random.default_rng(9))
+    sensors.expect_scan_draws(submission, 11)
+
+
+@pytest.mark.task("lidar")
+@pytest.mark.points(0)
+def test_lidar_keeps(submission):
+    """The scanner leaves pose, walls and angles as they are"""
+    call = (
+        np.array([2.0, 1.7, 0.35]),
+        scenes.ROOM,
+        np.linspace(-1, 1, 9),
+        3.5,
+        0.0,
+        np.random.default_rng(1),
+    )
+    bundles.expect_clean(submission, "lidar", call, ("pose", "segments", "angles", *[None] * 3))
 
 
 @pytest.mark.task("motor_step")
 @pytest.mark.points(4)
 def test_motor_response(submission):
     """A motor approaches its command as 1 - exp(-t/tau), in fine steps and in coarse ones"""
-    tau = 0.2
-    dts = np.array([0.05] * 8 + [0.4] * 3 + [5.0] * 3)
+    dts = [0.05] * 8 + [0.4] * 3 + [5.0] * 3
     commands = [6.0] * 11 + [25.0, -25.0, 0.3]  # the last three: too large both ways, and swallowed
-    t = np.cumsum(dts)
-    expected = [*(6.0 * (1 - np.exp(-t[:11] / tau))), 10.0, -10.0, 0.0]
-    calls = [(u, float(dt), tau, 10.0, 0.5) for u, dt in zip(commands, dts, strict=True)]
-    kit.expect_array(
-        [kit.as_number(value, "w_next") for value in submission.fold("motor_step", 0.0, calls)[1:]],
-        expected,
-        abs=1e-9,
-        source="closed form; after 25 time constants the lag is gone",
-        quantity="w",
-        units="rad/s",
-        t=t,
-        input={"u": commands, "dt": dts, "tau": tau, "u_max": 10.0, "deadband": 0.5},
-        message="The speed of the motor is not what its command, limits and lag make of it.",
-        help="In this order: dead band, saturation, then the exact lag.",
-        diagnose=lambda: actuators.of_motor(submission),
+    actuators.expect_motor(
+        submission,
+        0.0,
+        [(u, dt, 0.2, 10.0, 0.5) for u, dt in zip(commands, dts, strict=True)],
+        "The speed of the motor is not what its command, limits and lag make of it.",
+        source="closed form",
     )
+
+
+@pytest.mark.task("motor_step")
+@pytest.mark.points(0)
+def test_motor_limits(submission):
+    """At the edge of the dead band nothing happens, and a motor beyond u_max runs out gradually"""
+    calls = [(0.5, 0.1, 0.2, 10.0, 0.5), (-0.5, 0.1, 0.2, 10.0, 0.5), (4.0, 0.1, 0.2, 10.0, 0.5)]
+    message = "A motor that was pushed beyond u_max does not run out as its lag says."
+    actuators.expect_motor(submission, 25.0, calls, message)
 
 
 @pytest.mark.task("backlash")
@@ -167,8 +242,18 @@ def test_backlash_there_and_back(submission):
     """There and back, the output starts late, stays half the gap behind, and rests before it returns"""
     inputs = [0.0, 0.3, 1.0, 2.0, 3.0, 2.6, 2.0, 1.0, 0.0, 0.5, 1.5]
     outputs = [0.0, 0.0, 0.5, 1.5, 2.5, 2.5, 2.5, 1.5, 0.5, 0.5, 1.0]
-    expect = bundles.expect_play
+    expect = actuators.expect_play
     expect(submission, inputs, 1.0, [0.0, *outputs[:-1]], outputs)
+
+
+@pytest.mark.task("backlash")
+@pytest.mark.points(0)
+def test_backlash_of_two(submission):
+    """Of two gears that are asked in turn, each goes on from its own state"""
+    inputs = [0.0, 5.0, 1.0, 5.4, 2.0, 4.0, 1.8, 4.2]
+    states = [0.2, 4.9, 0.2, 4.9, 0.5, 5.0, 1.5, 4.5]
+    outputs = [0.2, 4.9, 0.5, 4.9, 1.5, 4.5, 1.5, 4.5]
+    actuators.expect_play(submission, inputs, 1.0, states, outputs)
 
 
 @pytest.mark.task("delay_line")
@@ -177,7 +262,16 @@ def test_delay_between_samples(submission):
     """A delay that is no whole number of samples interpolates, and nothing comes out before it"""
     x = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 2.0])
     expected = [0.0, 0.0, 0.0, 2.75, 1.5, 4.0, 4.25, 4.0]
-    bundles.expect_delayed(submission.call("delay_line", x, 0.1, 0.225), x, 0.1, 0.225, expected)
+    actuators.expect_delayed(submission.call("delay_line", x, 0.1, 0.225), x, 0.1, 0.225, expected)
+
+
+@pytest.mark.task("delay_line")
+@pytest.mark.points(0)
+def test_delay_none_and_all(submission):
+    """Without latency a new array like the old one comes out; of a latency beyond the signal only zeros do"""
+    x = np.array([2.0, -3.0, 1.0, 5.0])
+    actuators.expect_new_signal(submission, x, 0.1)
+    actuators.expect_delayed(submission.call("delay_line", x, 0.1, 0.75), x, 0.1, 0.75, np.zeros(4))
 
 
 @pytest.mark.task("diff_drive_step")
@@ -191,33 +285,66 @@ def test_drive_known_arcs(submission):
         ((0.0, 0.0, 0.0), (0.8 * quarter, 1.2 * quarter, 0.4, 1.0), (1.0, 1.0, quarter)),
         ((0.0, 0.0, 3.0), (0.3, 0.3 + 0.4 * quarter, 0.4, 4.0), None),
     )
-    calls = [(np.array(pose), *rest) for pose, rest, _ in cases]
-    for (pose, rest, end), value in zip(cases, submission.call_each("diff_drive_step", calls), strict=True):
-        bundles.expect_pose(
-            submission, value, pose, rest, bundles.arc_end(pose, *rest) if end is None else end
-        )
+    calls = [(np.array(pose), *wheels) for pose, wheels, _ in cases]
+    values = submission.call_each("diff_drive_step", calls)
+    for (pose, wheels, end), value in zip(cases, values, strict=True):
+        actuators.expect_pose(submission, value, pose, wheels, end)
+
+
+@pytest.mark.task("diff_drive_step")
+@pytest.mark.points(0)
+def test_drive_ever_slower(submission):
+    """Ever slower turns go over into a straight line, and the old pose is left as it is"""
+    actuators.expect_slow_turns(submission, np.random.default_rng(12))
+    pose, wheels = np.array([1.0, 2.0, 0.5]), (0.3, 0.5, 0.4, 1.0)
+    value = bundles.expect_clean(submission, "diff_drive_step", (pose, *wheels), ("pose", *[None] * 4))
+    actuators.expect_pose(submission, value, pose, wheels)
 
 
 @pytest.mark.task("sync")
-@pytest.mark.points(6)
+@pytest.mark.points(4)
 def test_sync_follows(submission):
     """A twin that is measured ten times a second keeps up when the friction of the cart jumps"""
-    calls, truth = _public_run()
-    bundles.expect_follows(
+    cart, rng = scenes.Cart(((0.0, 0.5), (8.0, 0.8)), v=1.0), np.random.default_rng(4)
+    twins.expect_follows(
         submission,
         scenes.new_twin(0.5, 0.5, speed=1.0),
-        calls,
-        truth,
-        settled=((2.0, 8.0), (12.0, 24.0)),
+        scenes.measured(cart, 0.5, scenes.moments(rng, 24.0), rng),
+        settled=((2.0, 8.0), (14.0, 24.0)),
         frictions=((3.0, 8.0, 0.5), (16.0, 24.0, 0.8)),
         message="The twin does not stay with its cart.",
     )
 
 
-@functools.cache
-def _public_run():
-    cart = scenes.Cart(((0.0, 0.5), (8.0, 0.8)), v=1.0)
-    return scenes.measured(cart, 0.5, 0.1 * np.arange(1, 241), np.random.default_rng(4))
+@pytest.mark.task("sync")
+@pytest.mark.points(1)
+def test_sync_backwards(submission):
+    """A twin keeps up with a cart that rolls backwards"""
+    message = "The twin does not stay with a cart that rolls backwards."
+    twins.expect_keeps_up(submission, np.random.default_rng(5), sign=-1.0, late=0.0, message=message)
+
+
+@pytest.mark.task("sync")
+@pytest.mark.points(1)
+def test_sync_some_late(submission):
+    """A twin keeps up although one measurement in three comes late"""
+    message = "With measurements that come late and out of order, the twin does not stay with its cart."
+    twins.expect_keeps_up(submission, np.random.default_rng(6), sign=1.0, late=0.33, message=message)
+
+
+@pytest.mark.task("sync")
+@pytest.mark.points(0)
+@pytest.mark.requires("sync_follows")  # a twin that never changes passes this one as well
+def test_sync_keeps(submission):
+    """The old twin is kept, the same call gives the same twin again, and the memory stays small"""
+    twins.expect_twin_contract(submission, np.random.default_rng(7))
+
+
+@pytest.mark.task("sync")
+@pytest.mark.points(0)
+def test_sync_in_a_loop(submission):
+    """A cart that is driven by what the twin has learned gets back to its speed"""
+    twins.expect_sync_closes_loop(submission, np.random.default_rng(8))
 
 
 @pytest.mark.task("command")
@@ -225,4 +352,11 @@ def _public_run():
 def test_command_balances(submission):
     """At the target speed, the drive is as large as the friction that the twin believes in"""
     cases = [(0.5, 1.0), (0.8, 1.0), (0.8, 0.4), (0.6, -0.7), (0.8, 0.0)]
-    bundles.expect_drives(submission, cases)
+    twins.expect_drives(submission, cases)
+
+
+@pytest.mark.task("command")
+@pytest.mark.points(0)
+def test_command_in_a_loop(submission):
+    """Driven by command, carts whose friction jumps get to their speed and back to it, both ways"""
+    twins.expect_command_closes_loop(submission, np.random.default_rng(9))

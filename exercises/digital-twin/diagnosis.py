@@ -55,6 +55,22 @@ WORDS: dict[str, tuple[str, str]] = {
         "Between two measurements the twin stands still.",
         "First predict to t_measured with speed, drive and friction, then correct.",
     ),
+    "SHARE_TOO_LARGE": (
+        "The position is moved nearly all the way to the measurement, and takes nearly all of its noise.",
+        "Move only a share of the way to z, a third say: the prediction knows something, too.",
+    ),
+    "STEP_FIXED": (
+        "It predicts over a fixed time, whenever the measurement was taken.",
+        'Measurements come at uneven times: predict over t_measured - twin["t"].',
+    ),
+    "DRIVE_CHANGED": (
+        "It is for others to change.",
+        'Pass drive and sigma on as they are: {**twin, "t": ..., "position": ...}.',
+    ),
+    "MEMORY_GROWS": (
+        "Everything ever measured is kept.",
+        "Keep the last second or two of the history, and drop what is older.",
+    ),
     "DRIVE_NOT_USED": (
         "The prediction does not feel the drive.",
         'dv/dt = drive - friction * speed, with twin["drive"].',
@@ -71,6 +87,11 @@ WORDS: dict[str, tuple[str, str]] = {
     "FRICTION_LEARNS_BACKWARDS": (
         "The friction moves away from the true one.",
         "Mind the sign: a cart ahead of its prediction has less friction.",
+    ),
+    "LEARNS_FORWARDS_ONLY": (
+        "When the cart rolls backwards, the friction moves away from the true one.",
+        "Friction slows down either way: whether a surprise means more of it or less depends on the sign of "
+        "the speed.",
     ),
     "LATE_USED_AS_CURRENT": (
         "A measurement that comes late is compared with where the twin is now, not with where it was then, "
@@ -117,6 +138,10 @@ WORDS: dict[str, tuple[str, str]] = {
     "BRAKES": (
         "The drive points the wrong way.",
         "Friction slows down, so the drive points along the target speed.",
+    ),
+    "PUSHES_AWAY": (
+        "Where the twin is slower than asked, the drive is smaller: the correction has the wrong sign.",
+        'Add a share of target_speed - twin["speed"], not of the speed minus the target.',
     ),
     "ADDS_CURRENT_DRIVE": (
         "The result depends on the drive that acts just now.",

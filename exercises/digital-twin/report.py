@@ -51,7 +51,8 @@ def _replay(submission):
     """One minute with a fixed drive: a copy that is never measured, and the student's twin."""
     cart = scenes.Cart(_JUMP, v=_TARGET)
     times = 0.1 * np.arange(1, 601)
-    calls, truth = scenes.measured(cart, 0.5, times, np.random.default_rng(7), late=0.15)
+    run = scenes.measured(cart, 0.5, times, np.random.default_rng(7), late=0.15)
+    calls, truth = run.calls, run.truth
     t = truth[:, 0]
     alone = scenes.Cart(((0.0, 0.5),), v=_TARGET)
     unmeasured = []
@@ -98,8 +99,8 @@ def _loop(submission):
     twin = scenes.new_twin(0.5, 0.5, speed=_TARGET)
     speeds, planned = [], []
     for second in range(60):
-        calls, truth = scenes.measured(cart, twin["drive"], second + 0.1 * np.arange(1, 11), rng)
-        _, twin = _folded(submission, twin, calls)
+        run = scenes.measured(cart, twin["drive"], second + 0.1 * np.arange(1, 11), rng)
+        truth, (_, twin) = run.truth, _folded(submission, twin, run.calls)
         twin = {**twin, "drive": kit.as_number(submission.call("command", twin, _TARGET), "the drive")}
         speeds += truth[:, 2].tolist()
         for moment in truth[:, 0]:

@@ -15,7 +15,7 @@ KEYS = ("t", "position", "speed", "friction", "drive", "sigma", "memory")
 #: What checks look at along a run; of the other keys only the last twin's cross, for they can be large.
 SEEN = KEYS[:4]
 #: Std of a measured position, m.
-SIGMA = 0.01
+SIGMA = 0.02
 
 
 @dataclass
@@ -43,14 +43,36 @@ class Cart:
             self.t = stop
 
 
+@dataclass(frozen=True)
+class Run:
+    """What was measured of a cart, in the order in which it arrived.
+
+    Attributes:
+        calls: the measurements as arguments (z, t_measured) of ``sync``.
+        truth: t (s), x (m) and v (m/s) at the time of the twin after each, shape (n, 3).
+        late: which of them arrived after a newer one, shape (n,).
+        errors: how far each was off when it was taken, m, shape (n,).
+    """
+
+    calls: list[tuple[float, float]]
+    truth: np.ndarray
+    late: np.ndarray
+    errors: np.ndarray
+
+
+def moments(rng, seconds, start=0.0):
+    """Times of measurements about every 0.1 s until ``start + seconds``, never evenly spaced, s."""
+    times = start + np.cumsum(rng.uniform(0.05, 0.15, math.ceil(seconds / 0.05)))
+    return times[times < start + seconds]
+
+
 def measured(cart, drive, times, rng, *, late=0.0, delay=(0.15, 0.45), sigma=SIGMA):
     """Roll the cart through ``times`` and measure at each.
 
     late: share of the measurements that arrive later than they were taken, by ``delay`` (low, high) s.
 
     Returns:
-        (calls, truth): the measurements as arguments (z, t_measured) of ``sync``, in the order in which they
-        arrive, and the truth at the time of the twin after each: t, x, v of shape (n, 3).
+        A ``Run``.
     """
     rows, arrivals = [], []
     for t in times:
@@ -59,10 +81,10 @@ def measured(cart, drive, times, rng, *, late=0.0, delay=(0.15, 0.45), sigma=SIG
         lateness = rng.uniform(*delay) if rng.uniform() < late else 0.0
         arrivals.append(t + lateness)
     order = np.argsort(arrivals, kind="stable")
-    z = np.array([x for _, x, _ in rows]) + sigma * rng.standard_normal(len(rows))
-    calls = [(float(z[i]), float(rows[i][0])) for i in order]
+    errors = sigma * rng.standard_normal(len(rows))
+    calls = [(float(rows[i][1] + errors[i]), float(rows[i][0])) for i in order]
     newest = np.maximum.accumulate(order)  # the twin is at the latest time it has heard of
-    return calls, np.array(rows)[newest]
+    return Run(calls, np.array(rows)[newest], order < newest, errors[order])
 
 
 def new_twin(friction, drive, *, speed=0.0, position=0.0, t=0.0, sigma=SIGMA):

@@ -102,14 +102,32 @@ def _of_bias(pairs, true):
     code = _of_power([np.diff(bias) for bias in biases], 0.5, powers, "BIAS_CONSTANT", "BIAS_FACTOR")
     if code:
         return code
-    if abs(biases[0][0] - 0.3) > 1e-12:
-        return "BIAS_STARTS_LATE"
+    if any(abs(bias[0] - 0.3) > 1e-12 for bias in biases):
+        return _of_first(biases)
     measured = pairs[2][0]
     looks = (("BIAS_NOT_ADDED", true), ("BIAS_SUBTRACTED", true - biases[0]))
     for name, values in looks:
         if np.allclose(measured, values, rtol=0, atol=1e-12):
             return name
     return None if np.allclose(measured, true + biases[0], rtol=0, atol=1e-9) else "BIAS_OUT_OF_STEP"
+
+
+def _of_first(biases):
+    """Why two walks do not start at their bias0, 0.3 rad/s."""
+    steps = [5 * float(np.std(np.diff(bias))) for bias in biases]  # a first step is hardly ever larger
+
+    def starts(*places):
+        return all(
+            abs(bias[0] - place) < step for bias, step, place in zip(biases, steps, places, strict=True)
+        )
+
+    looks = (
+        ("BIAS_WALKS_TO_BIAS0", all(abs(bias[-1] - 0.3) < 1e-12 for bias in biases)),
+        ("BIAS_STARTS_LATE", starts(0.3, 0.3)),
+        ("BIAS0_IGNORED", starts(0.0, 0.0)),
+        ("BIAS_CARRIED_OVER", abs(biases[1][0] - biases[0][-1]) < max(steps)),
+    )
+    return next((code for code, seen in looks if seen), None)
 
 
 def _of_power(noise, right, powers, missing, factor):
@@ -134,10 +152,20 @@ def _of_both(pairs):
 
 def of_randomness(submission):
     """Whether the randomness comes from the generator that is passed in."""
-    seeds = (5, 5, 6)
     call = np.zeros(8), 0.1, 0.1, 0.1, 0.0
-    runs = submission.call_each("imu", [(*call, np.random.default_rng(seed)) for seed in seeds])
-    first, again, other = (kit.as_vector(kit.as_tuple(run, _NAMES)[0], 8, "measured") for run in runs)
+    runs = submission.call_each("imu", [(*call, np.random.default_rng(seed)) for seed in _SEEDS])
+    pairs = [[kit.as_vector(part, 8, "measured") for part in kit.as_tuple(run, _NAMES)] for run in runs]
+    if pairs[0][1][0] != pairs[1][1][0]:  # bias0 is the same
+        return named("BIAS_CARRIED_OVER")
+    return _of_draws([measured - bias for measured, bias in pairs]) or _of_draws([bias for _, bias in pairs])
+
+
+#: Of three calls that differ in nothing else: the first two draws must be the same, the last another.
+_SEEDS = (5, 5, 6)
+
+
+def _of_draws(draws):
+    first, again, other = draws
     if np.array_equal(first, other):
         return named("GENERATOR_IGNORED")
     return None if np.array_equal(first, again) else named("GLOBAL_RANDOMNESS")
@@ -147,10 +175,11 @@ def of_randomness(submission):
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_density(found, still, dt, right):
-    """The mistake behind a noise density, from one recording."""
-    std, step = float(np.std(still)), float(np.std(np.diff(still)))
-    root = math.sqrt(dt)
+def of_density(found, cases):
+    """The mistake behind noise densities found in recordings; found (n,), cases as of ``expect_fits``."""
+    stills, dts, right = [case[0] for case in cases], *np.array([case[1:3] for case in cases]).T
+    std, step = (np.array([np.std(f(still)) for still in stills]) for f in (np.asarray, np.diff))
+    root = np.sqrt(dts)
     looks = (
         ("DENSITY_NOT_SCALED_BY_SQRT_DT", step / math.sqrt(2)),
         ("DENSITY_NOT_SCALED_BY_SQRT_DT", std),
@@ -159,22 +188,42 @@ def of_density(found, still, dt, right):
         ("DRIFT_COUNTED_AS_NOISE", std * root),
         ("DENSITY_FROM_DIFFERENCES", step * root),
     )
-    for code, value in looks:
-        if abs(found - value) < 0.01 * value:
+    for code, values in looks:
+        if np.all(np.abs(found - values) < 0.01 * values):
             return named(code)
-    return None
+    return named("DENSITY_FROM_DIFFERENCES") if _off_by(found / right, math.sqrt(2), 0.03) else None
 
 
-def of_walk(found, right):
-    """The mistake behind a random walk."""
-    return named("NOISE_COUNTED_AS_DRIFT" if found > 2 * right else "WALK_TOO_SMALL")
+def _off_by(ratios, factor, rel):
+    """Whether ratios of found to right are this factor in the middle, and scatter about it."""
+    return bool(abs(np.median(ratios) / factor - 1) < rel)
 
 
-def of_bias0(found, still):
-    """The mistake behind the first bias."""
-    if abs(found - still[0]) < 1e-9:
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_walk(found, cases):
+    """The mistake behind random walks found in recordings; as ``of_density``."""
+    ratios = found / np.array([case[3] for case in cases])
+    steps = np.array([np.std(np.diff(still)) / math.sqrt(dt) for still, dt, *_ in cases])
+    if any(_off_by(found / steps, factor, 0.1) for factor in (1.0, 1 / math.sqrt(2))):
+        return named("NOISE_COUNTED_AS_DRIFT")
+    # A median over eight recordings or more is known to some ten per cent.
+    if _off_by(ratios, 1 / math.sqrt(3), 0.15):
+        return named("WALK_WITHOUT_THREE")
+    if not np.all(np.isfinite(ratios)):
+        return None
+    return named("WALK_TOO_LARGE" if np.median(ratios) > 1 else "WALK_TOO_SMALL")
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_bias0(found, cases):
+    """The mistake behind first biases found in recordings; as ``of_density``."""
+    right = np.array([case[4] for case in cases])
+    if np.all(np.abs(found - [case[0][0] for case in cases]) < 1e-9):
         return named("FIRST_SAMPLE_AS_BIAS")
-    return named("WHOLE_MEAN_AS_BIAS") if abs(found - np.mean(still)) < 1e-9 else None
+    if np.all(np.abs(found - [np.mean(case[0]) for case in cases]) < 1e-9):
+        return named("WHOLE_MEAN_AS_BIAS")
+    signless = np.all(found >= 0) and np.median(np.abs(found / np.abs(right) - 1)) < 0.2
+    return named("BIAS0_WITHOUT_SIGN") if signless else None
 
 
 # -- lidar ----------------------------------------------------------------------------------------------
@@ -237,6 +286,10 @@ _PLAIN = (
 )
 
 
+#: One wall in three places; what a beam at it reads has to differ.
+_SHIFTS = ((0.0, 0.0), (1.0, 0.0), (-0.7, 0.0))
+
+
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_lidar(submission):
     """The mistake that ``lidar`` makes, from a room and from scenes with one wall or two, without noise.
@@ -246,13 +299,16 @@ def of_lidar(submission):
     scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
     calls = [((_X, _Y, heading), _ROOM, _FAN) for heading in (_HEADING, 0.0)]
     calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
+    calls += [(_ORIGIN, _WALL + shift, np.array([0.05])) for shift in _SHIFTS]
     calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
     results = submission.call_each("lidar", calls)
     turned, ahead = (kit.as_vector(result, len(_FAN), "ranges") for result in results[:2])
     for code, readings in _lidar_slips():
         if np.allclose(turned, readings, rtol=0, atol=1e-9):
             return named(code)
-    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[2:]])
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[2:-3]])
+    if len({float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-3:]}) == 1:
+        return named("WALLS_NOT_READ")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
     if np.all(right) and np.allclose(turned, _seen(_FAN + _HEADING), rtol=0, atol=1e-9):
         return of_lidar_noise(submission)
@@ -282,11 +338,14 @@ def of_lidar_noise(submission):
     """The mistake in the noise of ``lidar``, from two fans of beams on one wall and one fan on none."""
     fan = np.linspace(-0.4, 0.4, 2000)
     near, none = (1.95, 0.0, 0.0), (-20.0, 0.0, 0.0)
+    ahead = np.linspace(-0.01, 0.01, 2000)
+    places = ((_ORIGIN, fan), (none, fan), (near, fan), ((-2.95, 0.0, 0.0), ahead))
     calls = [
-        (pose, _WALL, fan, 5.0, 0.1, np.random.default_rng(seed))
-        for seed, pose in enumerate((_ORIGIN, none, near))
+        (pose, _WALL, beams, 5.0, 0.1, np.random.default_rng(seed))
+        for seed, (pose, beams) in enumerate(places)
     ]
-    hits, misses, close = (kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls))
+    scans = [kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls)]
+    hits, misses, close, far = scans
     noise = hits - 2.0 / np.cos(fan)
     spread = float(np.std(noise))
     if not np.all(misses == 5.0):
@@ -295,4 +354,18 @@ def of_lidar_noise(submission):
         return named("LIDAR_NOISE_SHARED" if abs(noise[0]) > 1e-9 else "LIDAR_NOISE_MISSING")
     if np.any(close < 0):
         return named("NEGATIVE_RANGE")
-    return named("LIDAR_SIGMA_WRONG") if not 0.09 < spread < 0.11 else None
+    if not 0.09 < spread < 0.11:
+        return named("LIDAR_SIGMA_WRONG")
+    if not np.any(far > 5.0):  # the wall is 4.95 m away
+        return named("NOISE_CUT_AT_MAX")
+    return of_scan_draws(submission)
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_scan_draws(submission):
+    """Whether the noise of ``lidar`` comes from the generator that is passed in."""
+    calls = [(_ORIGIN, _WALL, _AHEAD, 5.0, 0.1, np.random.default_rng(seed)) for seed in _SEEDS]
+    return _of_draws([kit.as_vector(r, 8, "ranges") for r in submission.call_each("lidar", calls)])
+
+
+_AHEAD = np.linspace(-0.4, 0.4, 8)

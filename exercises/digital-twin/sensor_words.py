@@ -92,6 +92,18 @@ SENSORS: dict[str, tuple[str, str]] = {
         "The first bias has already taken a step.",
         "bias[0] is bias0 itself; N samples join N - 1 steps.",
     ),
+    "BIAS0_IGNORED": (
+        "The bias starts at zero, whatever bias0 is.",
+        "bias[0] is bias0: add it to the running sum of the steps.",
+    ),
+    "BIAS_WALKS_TO_BIAS0": (
+        "bias0 stands at the end: the walk is laid out backwards.",
+        "bias[0] is bias0, and each step leads to the next sample: bias0 + np.cumsum(steps), a 0 in front.",
+    ),
+    "BIAS_CARRIED_OVER": (
+        "The bias goes on where the call before ended: something is remembered between two calls.",
+        "Start each call at the bias0 that it is given, and keep nothing outside the function.",
+    ),
     "BIAS_NOT_ADDED": (
         "The bias is returned but is not on the measured rate.",
         "measured = true + bias + white noise.",
@@ -135,10 +147,23 @@ SENSORS: dict[str, tuple[str, str]] = {
         "Between neighbouring samples the white noise drowns the walk. Average over ever longer blocks: "
         "the noise fades as 1/T, the walk grows as T/3.",
     ),
+    "WALK_WITHOUT_THREE": (
+        "The random walk comes out too small by the square root of three.",
+        "A mean over T smooths the walk: its part of the Allan variance is K² T/3, not K² T.",
+    ),
     "WALK_TOO_SMALL": (
         "The random walk comes out too small.",
-        "Means over blocks hold N²/T of noise and K² T/3 of walk in their (Allan) variance; fit both terms, "
-        "and mind the factor 3.",
+        "Means over blocks hold N²/T of noise and K² T/3 of walk in their (Allan) variance, half the mean "
+        "square of their differences: fit both terms. The walk shows in long blocks.",
+    ),
+    "WALK_TOO_LARGE": (
+        "The random walk comes out too large.",
+        "Means over blocks hold N²/T of noise and K² T/3 of walk in their (Allan) variance, half the mean "
+        "square of their differences: fit both terms, or the noise is taken for walk.",
+    ),
+    "BIAS0_WITHOUT_SIGN": (
+        "bias0 has the right size and is never negative.",
+        "A bias has a sign: return the mean itself, not its absolute value.",
     ),
     "FIRST_SAMPLE_AS_BIAS": (
         "bias0 is a single sample, with all its white noise.",
@@ -173,6 +198,10 @@ SENSORS: dict[str, tuple[str, str]] = {
     "POSITION_IGNORED": (
         "Moving the robot does not change what it sees.",
         "Subtract the robot's position from the end points of the walls first.",
+    ),
+    "WALLS_NOT_READ": (
+        "A wall that is moved nearer or further off still reads the same.",
+        "Look at the segments of this very call, and keep none from an earlier one.",
     ),
     "WALLS_BEHIND_SEEN": (
         "A wall behind the robot is measured by the beam that points away from it.",
@@ -209,6 +238,10 @@ SENSORS: dict[str, tuple[str, str]] = {
     "LIDAR_SIGMA_WRONG": (
         "The noise of the hits does not have the std sigma.",
         "Add sigma * rng.standard_normal(...), not its square, its root, or a share of the distance.",
+    ),
+    "NOISE_CUT_AT_MAX": (
+        "A wall just within reach never reads more than r_max, whatever the noise.",
+        "Decide without noise whether a beam hits, then add the noise and leave it: it may exceed r_max.",
     ),
     "NEGATIVE_RANGE": (
         "Close to a wall, noise makes some distances negative.",

@@ -28,6 +28,15 @@ def _rows(twins):
     return np.array([[kit.as_number(twin[key], key) for key in scenes.SEEN] for twin in twins])
 
 
+def numbers_in(value):
+    """How many numbers there are in plain data."""
+    if isinstance(value, dict):
+        return sum(map(numbers_in, value.values()))
+    if isinstance(value, list | tuple):
+        return sum(map(numbers_in, value))
+    return int(np.size(value))
+
+
 def same(a, b):
     """Whether two plain values are equal, arrays and lists alike, to rounding."""
     if isinstance(a, dict) and isinstance(b, dict):
@@ -45,7 +54,13 @@ def of_sync(submission, late=True):
 
     late: whether a late measurement may have to do with it
     """
-    code = _speeding(submission) or _in_one_step(submission, late) or _learning(submission)
+    looks = (
+        lambda: _speeding(submission),
+        lambda: _in_one_step(submission, late),
+        lambda: _backwards(submission),
+        lambda: _learning(submission),
+    )
+    code = next(filter(None, (look() for look in looks)), None)
     return named(code) if code else None
 
 
@@ -57,9 +72,9 @@ def _run(submission, friction, frictions, seconds, seed=3):
     """The twins along a run without late measurements, and the truth beside them."""
     cart = scenes.Cart(frictions, v=1.0)
     times = 0.1 * np.arange(1, round(10 * seconds) + 1)
-    calls, truth = scenes.measured(cart, 0.5, times, np.random.default_rng(seed))
-    twins = submission.fold("sync", scenes.new_twin(friction, 0.5, speed=1.0), calls)
-    return twins, truth
+    run = scenes.measured(cart, 0.5, times, np.random.default_rng(seed))
+    twins = submission.fold("sync", scenes.new_twin(friction, 0.5, speed=1.0), run.calls)
+    return twins, run.truth
 
 
 def _warm(submission):
@@ -98,8 +113,7 @@ def _in_one_step(submission, late):
     if not math.isfinite(t + x + v):
         return None  # what it has made of a steady cart is beyond experiments
     b = b if 0.01 < b < 100.0 else 0.5
-    reach = -math.expm1(-b * 0.2) / b
-    expected = x + v * reach + warm["drive"] * (0.2 - reach) / b
+    soon, expected = (_predicted(warm, b, dt) for dt in (0.1, 0.2))
     pushed = {**warm, "drive": warm["drive"] + 4.0}
     calls = [
         (warm, expected, t + 0.2),
@@ -107,24 +121,43 @@ def _in_one_step(submission, late):
         (warm, expected, t + 0.2),
         (pushed, expected, t + 0.2),
         (warm, x - 0.4 * v, t - 0.4),
+        (warm, soon, t + 0.1),
     ]
     twins = submission.call_each("sync", calls)
     rows = states(twins)
-    (t0, x0, v0, b0), (_, ahead, _, b_ahead), _, (_, driven, v_driven, _), (t_late, x_late, _, _) = rows
+    (t0, x0, v0, b0), (_, ahead, _, b_ahead), _, (_, driven, v_driven, _), (t_late, x_late, _, _) = rows[:5]
+    kept = [kit.as_number(twin["drive"], "drive") for twin in twins[:2]] == [warm["drive"]] * 2
     moved = (ahead - x0) / _SURPRISE
+    stuck = x0 - x < 0.75 * (expected - x)
+    same_way_at_first = rows[5, 1] - x > 0.95 * (soon - x)
     tests = (
         ("GLOBAL_MEMORY", not same(twins[0], twins[2])),
+        ("DRIVE_CHANGED", not kept),
         ("TIME_NOT_ADVANCED", t0 < t + 0.1),
         ("TIME_RUNS_BACK", late and t_late < t - 1e-9),
         ("SURPRISE_INVERTED", moved < -1e-6),
         ("NO_CORRECTION", abs(moved) <= 1e-6),
         ("BELIEVES_MEASUREMENT", abs(ahead - expected - _SURPRISE) < 1e-9),
-        ("NO_PREDICTION", x0 - x < 0.75 * (expected - x)),
+        ("STEP_FIXED", stuck and same_way_at_first),
+        ("NO_PREDICTION", stuck),
         ("DRIVE_NOT_USED", abs(v_driven - v0) < 0.05 and abs(driven - x0) < 1e-6),
         ("LATE_USED_AS_CURRENT", late and x_late - x < -0.02 * abs(v)),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
     )
     return next((code for code, seen in tests if seen), None)
+
+
+def _predicted(twin, b, dt):
+    """Where a twin that believes in the friction b expects its cart dt later, m."""
+    reach = -math.expm1(-b * dt) / b
+    return twin["position"] + twin["speed"] * reach + twin["drive"] * (dt - reach) / b
+
+
+def _backwards(submission):
+    """Whether a twin of a cart that rolls backwards learns the wrong way from a surprise."""
+    calls = [(scenes.new_twin(0.5, -0.5, speed=-1.0), z, 0.1) for z in (-0.1, -0.1 + _SURPRISE)]
+    friction = states(submission.call_each("sync", calls))[:, 3]
+    return "LEARNS_FORWARDS_ONLY" if friction[1] - friction[0] < -1e-9 else None
 
 
 def _learning(submission):
@@ -135,9 +168,15 @@ def _learning(submission):
         return "FRICTION_NOT_LEARNED"
     if not np.all(np.isfinite(friction)):
         return None
-    memory = twins[-1]["memory"]
-    if isinstance(memory, dict) and not memory and _share(submission, twins[-1]) > 0.6:
-        return "MEMORY_DROPPED"
+    share = _share(submission, twins[-1])
+    if share > 0.6:
+        # Constant shares do not ask how good a measurement is; a filter that begins afresh each time does.
+        constant = abs(_share(submission, {**twins[-1], "sigma": 5 * twins[-1]["sigma"]}) - share) < 1e-6
+        memory = twins[-1]["memory"]
+        if constant:
+            return "SHARE_TOO_LARGE"
+        if isinstance(memory, dict) and not memory:
+            return "MEMORY_DROPPED"
     if abs(np.mean(friction[-20:]) - 0.8) > 0.08:
         return None  # it has not learned well at first
     twins, _ = _run(submission, 0.5, ((0.0, 0.5), (30.0, 0.8)), 42.0)
@@ -163,13 +202,14 @@ def of_command(submission):
         base | {"target": -1.5, "speed": -1.5},
         base | {"drive": 0.5},
         base | {"target": 3.0},
+        base | {"speed": 0.75},
     ]
     calls = [
         (scenes.new_twin(case["friction"], case["drive"], speed=case["speed"]), case["target"])
         for case in tries
     ]
     values = [kit.as_number(value, "the drive") for value in submission.call_each("command", calls)]
-    first, slower, slick, back, driven, faster = values
+    first, slower, slick, back, driven, faster, behind = values
     tests = (
         ("BRAKES", first < 0),
         ("ADDS_CURRENT_DRIVE", abs(driven - first) > 1e-9),
@@ -178,5 +218,6 @@ def of_command(submission):
         ("FRICTION_IGNORED", abs(slick - first) < 1e-9),
         ("DIVIDES_BY_FRICTION", slick > first),
         ("BACKWARDS_NOT_DRIVEN", abs(back + first) > 1e-9),
+        ("PUSHES_AWAY", behind < first - 1e-9),
     )
     return next((named(code) for code, seen in tests if seen), None)

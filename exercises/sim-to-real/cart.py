@@ -22,6 +22,13 @@ U_BENCH, BUDGET_S, NOISE_SPEED = 3.0, 20.0, 0.01
 #: The cart that public checks and reports use: what its measurements say is known here.
 PUBLIC = {"m": 1.15, "b": 0.68, "Fc": 0.36, "tau": 0.075, "latency": 0.09}
 
+#: Three types that public checks execute a plan's gaps on: light and slow, as on the sheet, heavy and quick.
+PUBLIC_TYPES = (
+    {"m": 1.0, "b": 0.55, "Fc": 0.42, "tau": 0.075, "latency": 0.1},
+    SHEET,
+    {"m": 2.3, "b": 0.68, "Fc": 0.36, "tau": 0.048, "latency": 0.064},
+)
+
 
 def rollout(kp, kd, cart, rng):
     """Settling times of a step to 1 m, for every cart and every pair of gains, s.
@@ -144,6 +151,24 @@ def fleet(cart, n, rng):
     return {k: cart[k] * np.exp(FLEET[k] * rng.uniform(-1, 1, n)) for k in NAMES}
 
 
+def drawn(cart, box, n, rng):
+    """n carts about ``cart``, each parameter log-uniform over a box of factors; arrays (n,)."""
+    return {k: cart[k] * np.exp(rng.uniform(*np.log(box[k]), n)) for k in NAMES}
+
+
+def shifted_box(share, **shifts):
+    """A box ``share`` times as wide as the fleet in the logarithm, some parameters shifted by a factor."""
+    return {
+        k: [shifts.get(k, 1.0) * math.exp(-share * w), shifts.get(k, 1.0) * math.exp(share * w)]
+        for k, w in FLEET.items()
+    }
+
+
+#: A fleet that hardly varies, carries a load and hears its commands late; one that is light and prompt.
+LOADED = shifted_box(0.5, m=1.6, latency=1.5)
+PROMPT = shifted_box(0.3, m=0.7, latency=0.6)
+
+
 def positions(kp, kd, carts, rng):
     """The paths behind ``rollout`` for one pair of gains: positions (300, D), m, at the end of each step."""
     m, b, Fc, tau, latency = (np.asarray(carts[k], dtype=float) for k in NAMES)
@@ -166,11 +191,11 @@ def positions(kp, kd, carts, rng):
     return paths
 
 
-def prbs_recordings(carts, seconds, rng):
-    """One bench recording of each cart under random full force: a list of (t, u, y)."""
+def prbs_recordings(carts, seconds, force, rng):
+    """One bench recording of each cart under random force of one size: a list of (t, u, y)."""
     recordings = []
     for cart in carts:
-        u = prbs(round(seconds / H), U_BENCH, rng)
+        u = prbs(round(seconds / H), force, rng)
         recordings.append((*record(cart, u, rng), u))
     return [(t, u, y) for t, y, u in recordings]
 
@@ -188,8 +213,17 @@ MATCHED = {k: [math.exp(-w), math.exp(w)] for k, w in FLEET.items()}
 PUBLIC_BEST_S = 1.636
 
 
-def public_success(kp, kd):
-    """min(1, best/own) on 300 carts of the public type, and their settling times, shape (300,), s."""
-    carts = fleet(PUBLIC, 300, np.random.default_rng(11))
+#: The same on carts drawn from ``LOADED`` and ``PROMPT`` about the public one.
+LOADED_BEST_S, PROMPT_BEST_S = 1.411, 0.764
+
+
+def public_success(kp, kd, box=None):
+    """min(1, best/own) on 300 carts of the public type, and their settling times, shape (300,), s.
+
+    box: ``LOADED`` or ``PROMPT``, where the carts are drawn from one of these instead of the fleet
+    """
+    rng = np.random.default_rng(11)
+    carts = fleet(PUBLIC, 300, rng) if box is None else drawn(PUBLIC, box, 300, rng)
+    best = PUBLIC_BEST_S if box is None else LOADED_BEST_S if box is LOADED else PROMPT_BEST_S
     settling = rollout(kp, kd, carts, np.random.default_rng(12))[:, 0]
-    return min(1.0, PUBLIC_BEST_S / float(settling.mean())), settling
+    return min(1.0, best / float(settling.mean())), settling

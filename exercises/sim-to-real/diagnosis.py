@@ -61,8 +61,20 @@ WORDS: dict[str, tuple[str, str]] = {
         "Check the unit too: a share of 0.03 is 3 %.",
     ),
     "METRIC_DOES_NOT_JUDGE": (
-        "The plan as a whole is not judged by what the carts achieve, or promises next to nothing.",
-        'The metric of the whole plan is "success", with a threshold of 0.90 or more and below 1.',
+        "The plan as a whole is not judged by what the carts achieve.",
+        'The metric of the whole plan is "success".',
+    ),
+    "PROMISE_TOO_SMALL": (
+        "The plan as a whole promises less than the README asks for.",
+        "The threshold of the whole plan is 0.90 or more and below 1.",
+    ),
+    "PROMISE_NOT_A_SHARE": (
+        "The promise of the whole plan is given in per cent.",
+        "Success is a share, and there is no unit beside this threshold: 92 % is 0.92.",
+    ),
+    "PROMISE_OF_PERFECTION": (
+        "The plan promises that its gains are the best there are on every fleet, or better than those.",
+        "Success is 1 only for the best of all gains. Promise 0.90 or more and below 1.",
     ),
     # -- plan: the box
     "BOX_TOO_WIDE": (
@@ -141,6 +153,26 @@ WORDS: dict[str, tuple[str, str]] = {
         "show the two frictions at different speeds.",
     ),
     # -- identify: values
+    "VALUES_OFF": (
+        "The values themselves are too far off: what misses the truth is not the intervals' fault.",
+        "Mend the values first; the checks of them say which.",
+    ),
+    "TIME_FROM_SHEET": (
+        "tau or the latency is the data sheet's, whatever the cart.",
+        "The sheet's times are where a search starts: try a grid of both, and keep what leaves the least.",
+    ),
+    "FRICTIONS_SWAPPED": (
+        "b and Fc are exchanged.",
+        "b goes with the integral of the speed, Fc with the integral of its sign.",
+    ),
+    "VISCOUS_MISSING": (
+        "Viscous friction is missing or far too small.",
+        "Give it a column of its own, the integral of the speed; b is minus its coefficient times m.",
+    ),
+    "COULOMB_MISSING": (
+        "Coulomb friction is missing or far too small.",
+        "Give it a column of its own, the integral of the speed's sign; Fc is minus its coefficient times m.",
+    ),
     "ESTIMATE_HARD_CODED": (
         "It returns the same values for different carts.",
         "Everything must come from t, u and y; the data sheet is where a search starts, not where it ends.",
@@ -191,8 +223,8 @@ WORDS: dict[str, tuple[str, str]] = {
         "Try a whole grid of delays first, keep the best, and refine only from there.",
     ),
     "NOISE_DIFFERENTIATED": (
-        "The mass is far too large or the frictions far too small, as happens if the measured speed is "
-        "differentiated or noisy columns are fitted.",
+        "The mass is as much too small as differentiating the measured speed makes it: noise in the "
+        "acceleration passes for motion.",
         "Integrate the equation instead of differentiating the data: sums average noise, differences "
         "amplify it.",
     ),
@@ -205,8 +237,14 @@ WORDS: dict[str, tuple[str, str]] = {
     "INTERVAL_OVERCONFIDENT": (
         "The truth lies outside twice the interval, again and again.",
         "The residuals of neighbouring samples hang together, because integrals add noise up, and an "
-        "uncertain delay makes everything else uncertain. Leave out one block after the other, refit all "
-        "parameters, and take the spread of those fits.",
+        "uncertain delay makes everything else uncertain. Leave out one block after the other and refit all "
+        "parameters, times too. Fits that share all blocks but one are alike, so their plain spread is far "
+        "too small: the standard error is sqrt((n-1)/n * sum((each - mean)**2)), with its factor n - 1.",
+    ),
+    "INTERVAL_WITHOUT_RECORDING": (
+        "Their widths do not follow from what the recording tells.",
+        "A short or weak recording tells less and needs wider intervals, a good one allows narrow ones. "
+        "Compute them from the spread of refits to parts of this very recording.",
     ),
     "INTERVAL_USELESS": (
         "The interval is so wide that it would be true of almost any cart.",
@@ -214,7 +252,12 @@ WORDS: dict[str, tuple[str, str]] = {
         "that a jackknife's spread is already that of the whole recording.",
     ),
     # -- tune
-    "TOO_SLOW": (
+    "IDENTIFY_TOO_SLOW": (
+        "There was no answer when the time was up.",
+        "motor_impulse is the slow part: call it once for each tau, not once for each pair of times, and fit "
+        "on a coarse grid before you refine. Refits without a block need no new columns, only other sums.",
+    ),
+    "TUNE_TOO_SLOW": (
         "There was no answer when the time was up.",
         "rollout takes arrays: give it all gains of a grid and all carts at once, not one after the other, "
         "and search coarsely on few carts before finely on all.",
@@ -232,6 +275,15 @@ WORDS: dict[str, tuple[str, str]] = {
         "Draw each parameter between value * low and value * high of the box that is passed in, and take "
         "the mean over the draws.",
     ),
+    "NO_DAMPING": (
+        "kd is zero, or next to nothing beside kp: nothing brakes the cart before its mark.",
+        "Search over the ratio kd/kp as well, from 0.25 to 0.7 say.",
+    ),
+    "GAINS_BY_FORMULA": (
+        "The gains follow the mass, and neither the latency nor the box: no rollout is behind them.",
+        "Draw carts from the box that is passed in, about the estimate, roll them out, and take the gains "
+        "that do best on them.",
+    ),
     "GAINS_SWAPPED": (
         "With kp and kd exchanged it would do well.",
         "kp multiplies the distance, kd the speed.",
@@ -241,10 +293,12 @@ WORDS: dict[str, tuple[str, str]] = {
         "Search among positive gains only; a logarithmic grid has no others.",
     ),
     "SEARCH_ENDED_EARLY": (
-        "Other gains do clearly better on the very carts it was asked about: the search stopped in a local "
-        "minimum, at its edge, or between coarse points.",
-        "Search on a grid first, over kp and the ratio kd/kp, and refine around the best; use the same noise "
-        "for all gains, and some hundred carts.",
+        "Other gains do clearly better, on average, on the very carts it was asked about: the search stopped "
+        "in a local minimum, at its edge, or between coarse points, or it looked for something else than the "
+        "mean.",
+        "Take the mean settling time over the carts. Search on a grid first, over kp from 2 to 40 and the "
+        "ratio kd/kp from 0.25 to 0.7, and refine around the best; use the same noise for all gains, and "
+        "some hundred carts.",
     ),
 }
 

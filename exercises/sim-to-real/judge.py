@@ -8,6 +8,7 @@ import numpy as np
 
 from course.grading import kit
 
+bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")
 words = kit.companion("sim-to-real", "words")
 probes = kit.companion("sim-to-real", "probes")
@@ -83,17 +84,72 @@ def expect_shows(u, carts):
             input={"parameter": name},
             diagnose=lambda: probes.of_command(u),
         )
+    errors = np.max([bench.fit_errors(u, each) for each in carts], axis=0)
+    for (name, limit), error in zip(GIVEN_FIT.items(), errors, strict=True):
+        kit.expect_bounded(
+            float(error),
+            high=limit,
+            source="the README's; random full force leaves a tenth of it, a chirp four fifths",
+            quantity=f"rms error of {name} in the given fit, as a share",
+            message="From a recording with this excitation, the README's fit does not find every parameter.",
+            input={"parameter": name},
+            diagnose=lambda: probes.of_command(u),
+        )
+
+
+#: How far the README's fit may be off on a recording with the excitation (rms over draws of the noise, worst
+#: cart). A chirp reaches 20 % in Fc and a multisine 3 % in m and 5 % in the lag; one push of 2 s leaves 9 to
+#: 16 % in the lag, and a sine of 0.05 Hz 100 % and more.
+GIVEN_FIT = {"m": 0.06, "b": 0.25, "Fc": 0.25, "lag": 0.07}
+
+
+def expect_kept(i, gap, seconds, carts, seed):
+    """A gap, executed on these carts, comes out as the plan says: its threshold can be kept, and matters."""
+    asked = gap["excitation"], gap["parameter"]
+    reach = bench.reach(*asked, seconds, carts, seed)
+    threshold, needed = words.threshold_of(gap), words.NEEDED[gap["parameter"]]
+    if reach > needed:
+        enough = bench.reach(*asked, cart.BUDGET_S, carts, seed) <= needed
+        wrong = "BUDGET_TOO_SHORT" if enough else "EXCITATION_CANNOT_SHOW"
+    elif threshold > needed * _ROUNDING:
+        wrong = "PROMISES_TOO_LITTLE"
+    elif not threshold >= reach:
+        wrong = "PROMISES_TOO_MUCH"
+    else:
+        return
+    kit.fail(
+        "A gap of the plan was executed, and its measurement did not come out as the plan says.",
+        diagnose=named(wrong),
+        input={"gap": i, "parameter": gap["parameter"], "excitation": gap["excitation"]},
+        expected=[reach, needed],
+        actual=threshold,
+        units="1",
+    )
+
+
+#: What is at a limit but for rounding, (1.03 - 0.97)/2 against 0.03 say, is within it.
+_ROUNDING = 1 + 1e-9
+
+
+@functools.cache
+def weak_recordings():
+    """Short and weak recordings of the same three carts as ``public_recordings``."""
+    carts = public_recordings()[1]
+    return cart.prbs_recordings(carts, 8.0, 1.2, np.random.default_rng(22))
 
 
 @functools.cache
 def public_recordings():
     """Two bench recordings of the public cart and one of the data sheet's, and whose they are."""
     carts = [cart.PUBLIC, cart.PUBLIC, cart.SHEET]
-    return cart.prbs_recordings(carts, 20.0, np.random.default_rng(21)), carts
+    return cart.prbs_recordings(carts, 20.0, cart.U_BENCH, np.random.default_rng(21)), carts
 
 
-def expect_accurate(estimates, carts):
-    """The values are as near the truth as the README asks."""
+def expect_accurate(estimates, carts, recordings=()):
+    """The values are as near the truth as the README asks.
+
+    recordings: (t, u, y) of each, where there is one, for a diagnosis
+    """
     for estimate, truth in zip(estimates, carts, strict=True):
         known = {**truth, "lag": truth["tau"] + truth["latency"]}
         for name, rel in cart.SCORED.items():
@@ -107,7 +163,7 @@ def expect_accurate(estimates, carts):
                 message="A parameter identified from a bench recording is too far from the cart's own.",
                 help="Try it on a recording that you make yourself with `record`, where you know the cart.",
                 input={"parameter": name},
-                diagnose=lambda: probes.of_values(estimates, carts),
+                diagnose=lambda: probes.of_values(estimates, carts, recordings),
             )
         kit.expect_close(
             estimate["lag"][0],
@@ -124,7 +180,7 @@ def expect_accurate(estimates, carts):
 _UNITS = {"m": "kg", "b": "N s/m", "Fc": "N", "lag": "s"}
 
 
-def expect_intervals(estimates):
+def expect_intervals(estimates, carts):
     """Low, value and high are in order, and the scored ones are narrow enough to say something."""
     for estimate in estimates:
         for name, (value, low, high) in estimate.items():
@@ -139,14 +195,62 @@ def expect_intervals(estimates):
             value, low, high = estimate[name]
             kit.expect_bounded(
                 (high - low) / 2,
-                high=limit * abs(value),
+                high=limit * abs(value) * _ROUNDING,
                 source="the README's; correct solutions use a third of it",
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
                 message="An interval is too wide to say anything.",
-                diagnose=named("INTERVAL_USELESS"),
+                diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
                 input={"parameter": name, "value": value},
             )
+
+
+def _shares(estimate):
+    """Half-widths of the scored intervals as shares of their values, (4,)."""
+    entries = (estimate[name] for name in cart.SCORED)
+    return np.array([(high - low) / 2 / abs(value) if value else np.inf for value, low, high in entries])
+
+
+def expect_honest_widths(estimates, recordings, carts):
+    """On average over recordings, no interval is far wider than the best that anyone could give."""
+    bounds = [
+        cart.attainable(u, [each])[0, list(_COLUMN.values())]
+        for (_, u, _), each in zip(recordings, carts, strict=True)
+    ]
+    widths = np.mean([_shares(each) for each in estimates] / np.array(bounds), axis=0)
+    for name, width in zip(cart.SCORED, widths, strict=True):
+        kit.expect_bounded(
+            float(width),
+            high=WIDEST,
+            source="the README's; correct solutions are 1 to 8 times as wide",
+            quantity=f"mean half-width of {name} over the narrowest possible",
+            message="The intervals are far wider than what the recordings hold.",
+            diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_WITHOUT_RECORDING"),
+            input={"parameter": name},
+        )
+
+
+def expect_growth(full, weak):
+    """Intervals from short and weak recordings are wider than those from full ones of the same carts."""
+    with np.errstate(all="ignore"):
+        ratios = np.mean([_shares(each) for each in weak], axis=0) / np.mean(
+            [_shares(each) for each in full], axis=0
+        )
+        growth = float(np.exp(np.mean(np.log(ratios))))
+    kit.expect_bounded(
+        growth,
+        low=WIDER,
+        source="the README's; those of correct solutions are 2.4 to 13 times as wide",
+        quantity="half-widths from the weak recordings over those from the full ones, geometric mean",
+        message="The intervals do not grow when the recording tells less.",
+        diagnose=named("INTERVAL_WITHOUT_RECORDING"),
+        input={"weak recordings": "8 s at 1.2 N", "full ones": "20 s at 3 N"},
+    )
+
+
+#: How many times as wide as the narrowest possible intervals may be, and how many times as wide those of a
+#: weak recording have to be.
+WIDEST, WIDER = 12.0, 1.5
 
 
 def misses(estimates, carts):

@@ -12,6 +12,7 @@ import numpy as np
 
 from course.grading import kit
 
+bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")
 named = kit.companion("sim-to-real", "diagnosis").named
 NAMES = cart.NAMES
@@ -21,14 +22,14 @@ ALL = (*NAMES, "lag")
 # -- reading what came back -----------------------------------------------------------------------------
 
 
-def patient(call):
-    """``call()``; where time runs out, a finding that says how such code is made quick."""
+def patient(call, slow):
+    """``call()``; where time runs out, a finding with the code ``slow``, which says how it is made quick."""
     try:
         return call()
     except kit.StudentFailure as failure:
         if failure.kind != "timeout":
             raise
-        kit.fail("It is too slow to be executed.", diagnose=named("TOO_SLOW"))
+        kit.fail("It is too slow to be executed.", diagnose=named(slow))
 
 
 def command_of(value, seconds, u_max):
@@ -128,15 +129,34 @@ def of_command(u):
 # -- identify -------------------------------------------------------------------------------------------
 
 
-def of_values(estimates, truths):
-    """What the values of several estimates look like beside the true carts."""
+def of_values(estimates, truths, recordings=()):
+    """What the values of several estimates look like beside the true carts.
+
+    recordings: (t, u, y) of each, where there is one
+    """
     got = {k: np.array([estimate[k][0] for estimate in estimates]) for k in ALL}
     true = {k: np.array([_known(truth)[k] for truth in truths]) for k in ALL}
     for code, looks in _LIKENESSES:
         with np.errstate(all="ignore"):
             if looks(got, true):
                 return named(code)
+    wrong = [bench.differentiated(u, y, truth) for (_, u, y), truth in zip(recordings, truths, strict=False)]
+    for masses in zip(*wrong, strict=True):  # by either way to differentiate
+        if _alike(got["m"], np.array(masses), 0.1) and not _right(got, true, "m"):
+            return named("NOISE_DIFFERENTIATED")
     return None
+
+
+def of_misses(estimates, truths, recordings=()):
+    """Why intervals miss the truth: values that are off by themselves come first."""
+    found = of_values(estimates, truths, recordings)
+    if found:
+        return found
+    for estimate, truth in zip(estimates, truths, strict=True):
+        known = _known(truth)
+        if any(abs(estimate[k][0] / known[k] - 1) > limit for k, limit in cart.SCORED.items()):
+            return named("VALUES_OFF")
+    return named("INTERVAL_OVERCONFIDENT")
 
 
 def _known(truth):
@@ -177,6 +197,10 @@ _LIKENESSES = (
     ),
     ("LATENCY_IGNORED", lambda got, true: np.median(np.abs(got["latency"])) < 0.012),
     ("LAG_IGNORED", lambda got, true: np.median(np.abs(got["tau"])) < 0.012),
+    (
+        "TIME_FROM_SHEET",
+        lambda got, true: len(got["tau"]) > 1 and any(_sheet(got, true, k) for k in ("tau", "latency")),
+    ),
     ("LOCAL_MINIMUM", lambda got, true: np.median(np.abs(got["lag"] / true["lag"] - 1)) > 0.25),
     ("FRICTION_SIGN", lambda got, true: _share(got, true, "b") < -0.5 or _share(got, true, "Fc") < -0.5),
     (
@@ -190,10 +214,17 @@ _LIKENESSES = (
     ("COULOMB_AS_VISCOUS", lambda got, true: _share(got, true, "Fc") < 0.3 and _share(got, true, "b") > 1.05),
     ("VISCOUS_AS_COULOMB", lambda got, true: _share(got, true, "b") < 0.3 and _share(got, true, "Fc") > 1.05),
     (
-        "NOISE_DIFFERENTIATED",
-        lambda got, true: _share(got, true, "m") > 1.03 or _share(got, true, "b") < 0.9,
+        "FRICTIONS_SWAPPED",
+        lambda got, true: _alike(got["b"], true["Fc"], 0.1) and _alike(got["Fc"], true["b"], 0.1),
     ),
+    ("VISCOUS_MISSING", lambda got, true: abs(_share(got, true, "b")) < 0.3),
+    ("COULOMB_MISSING", lambda got, true: abs(_share(got, true, "Fc")) < 0.3),
 )
+
+
+def _sheet(got, true, name):
+    """Whether a time is the data sheet's each time, to many digits, though the carts have others."""
+    return bool(np.all(np.abs(got[name] / cart.SHEET[name] - 1) < 1e-6)) and bool(np.ptp(true[name]) > 0)
 
 
 def _right(got, true, name):
@@ -204,7 +235,10 @@ def _right(got, true, name):
 
 
 def of_gains(submission, estimate, box, gains, success):
-    """Why gains do badly: what becomes of them when the estimate or the box changes.
+    """Why gains do badly: what they are best for, and what becomes of them when the question changes.
+
+    Gains that stay as they are prove nothing while the search may have ended at its edge, so that is looked
+    at first; and each question is changed both ways, or so far that other gains must come out.
 
     Args:
         estimate, box: what they were asked for.
@@ -213,36 +247,62 @@ def of_gains(submission, estimate, box, gains, success):
     kp, kd = gains
     if success(kd, kp) > 1.2 * success(kp, kd):
         return named("GAINS_SWAPPED")
-    heavy = {**estimate, "m": [1.7 * x for x in estimate["m"]], "b": [1.7 * x for x in estimate["b"]]}
-    late = {k: [1.8 * x for x in v] if k in ("latency", "lag") else v for k, v in estimate.items()}
-    one = {k: [1.0, 1.0] for k in NAMES}
-    other = kit.attempt(
-        lambda: [
-            gains_of(each)
-            for each in submission.call_each("tune", [(heavy, box), (late, box), (estimate, one)])
-        ]
+    if kd < 0.05 * kp:
+        return named("NO_DAMPING")
+    heavy, light = (_with(estimate, ("m", "b"), factor) for factor in (2.5, 0.4))
+    late = _with(estimate, ("latency", "lag"), 2.2)
+    loaded = {k: [_LOAD.get(k, 1.0) * end for end in ends] for k, ends in box.items()}
+    questions = [(heavy, box), (light, box), (late, box), (estimate, loaded)]
+    other = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", questions)])
+    if other is None:
+        return None
+    same = [math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in other]
+    better = _better(gains, success)
+    ended_early = success(*better) > 1.03 * success(kp, kd)
+    # One kp for most questions, with others better: the grid ends there, or the search never leaves it.
+    stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other) >= 3
+    prompt = {**estimate, "latency": [0.001] * 3}
+    looks = (
+        ("GAINS_HARD_CODED", lambda: all(same)),
+        ("SEARCH_ENDED_EARLY", lambda: stays and ended_early),
+        ("GAINS_BY_FORMULA", lambda: same[2] and same[3] and not (same[0] or same[1])),
+        ("DELAY_IGNORED", lambda: same[2] and _is_best(kp, kd, prompt, box)),
+        ("RANDOMIZATION_IGNORED", lambda: same[3]),
+        ("SEARCH_ENDED_EARLY", lambda: ended_early),
     )
-    if other is not None:
-        same = [math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in other]
-        if same[0] and same[1]:
-            return named("GAINS_HARD_CODED")
-        if same[1]:
-            prompt = {**estimate, "latency": [0.001] * 3}
-            return named("DELAY_IGNORED" if _is_best(kp, kd, prompt, box) else "SEARCH_ENDED_EARLY")
-        if same[2]:
-            return named("RANDOMIZATION_IGNORED")
-    return named("SEARCH_ENDED_EARLY")
+    return next((named(code) for code, seen in looks if seen()), None)
+
+
+#: How a box is shifted to see whether it is read: a load, and everything later.
+_LOAD = {"m": 2.0, "latency": 1.8, "tau": 1.5}
+
+
+def _with(estimate, names, factor):
+    return {k: [factor * x for x in v] if k in names else v for k, v in estimate.items()}
+
+
+_AROUND = [(a, b) for a in (1.0, 0.6, 1.6) for b in (1.0, 0.6, 1.6)]  # (1, 1) first: the gains themselves
+
+
+def _better(gains, success):
+    """The best of some gains about these."""
+    kp, kd = gains
+    return max(((kp * a, kd * b) for a, b in _AROUND), key=lambda pair: success(*pair))
 
 
 def _is_best(kp, kd, estimate, box):
     """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate."""
+    factors = np.array(_AROUND).T
+    mean = _settling((kp * factors[0], kd * factors[1]), estimate, box).mean(axis=0)
+    return bool(mean.min() > 0.85 * mean[0])
+
+
+def _settling(gains, estimate, box):
+    """Settling times on a hundred carts drawn from the box about the estimate, (100, G), s."""
     share = (cart.stratified(100, np.random.default_rng(31)) + 1) / 2
     ends = [np.log(box[k]) for k in NAMES]
     carts = {
         k: estimate[k][0] * np.exp(low + share[:, j] * (high - low))
         for j, (k, (low, high)) in enumerate(zip(NAMES, ends, strict=True))
     }
-    around = [(a, b) for a in (1.0, 0.6, 1.6) for b in (1.0, 0.6, 1.6)]  # (1, 1) first: the gains themselves
-    factors = np.array(around).T
-    mean = cart.rollout(kp * factors[0], kd * factors[1], carts, np.random.default_rng(32)).mean(axis=0)
-    return bool(mean.min() > 0.85 * mean[0])
+    return cart.rollout(*gains, carts, np.random.default_rng(32))

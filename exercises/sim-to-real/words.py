@@ -59,6 +59,15 @@ def threshold_of(gap):
     return number / 100 if gap["unit"] == "%" else number
 
 
+def of_promise(metric, threshold):
+    """What is wrong with a promise of the plan as a whole, (metric, threshold)."""
+    if metric != "success":
+        return named("METRIC_DOES_NOT_JUDGE")
+    if threshold < 0.90:
+        return named("PROMISE_TOO_SMALL")
+    return named("PROMISE_NOT_A_SHARE" if threshold > 1.5 else "PROMISE_OF_PERFECTION")
+
+
 def budget_of(plan):
     """Bench time, s, if it is what there is of it.
 
@@ -109,12 +118,16 @@ def box_of(plan):
 def inside(name, low, high):
     """Share of the fleet's draws of a parameter that lie between these factors."""
     w = cart.FLEET[name]
-    return max(0.0, min(w, math.log(high)) - max(-w, math.log(low))) / (2 * w)
+    return max(0.0, min(w, math.log(high)) - max(-w, math.log(low))) / (2 * w) + _ROUNDING
 
 
 def width(name, low, high):
     """How many times as wide as the fleet an interval of factors is, in the logarithm."""
-    return (math.log(high) - math.log(low)) / (2 * cart.FLEET[name])
+    return (math.log(high) - math.log(low)) / (2 * cart.FLEET[name]) - _ROUNDING
+
+
+#: In the caller's favour: log(exp(x)) is not always x.
+_ROUNDING = 1e-9
 
 
 def of_box(box):

@@ -331,12 +331,12 @@ _SIGNS = [
 _SLIPS = (
     ("POINT_ESTIMATE_JUDGED", {"points": True}),
     *(("SIGN_OF_LIMIT_IGNORED", {"wrong": wrong}) for wrong in _SIGNS),
-    *(("SIGN_OF_LIMIT_IGNORED", {"wrong": wrong, "points": True}) for wrong in _SIGNS),
     ("OVER_COVERAGE_ACCEPTED", {"wrong": {"coverage": lambda i, m: i[0] < m[0]}}),
     ("BURDEN_REVERSED", {"wrong": dict.fromkeys(MEASURES, _beyond)}),
     ("RMSE_ALONE_JUDGED", {"wrong": {"bias": _NEVER, "lag_s": _NEVER, "coverage": _NEVER}}),
-    ("RMSE_ALONE_JUDGED", {"wrong": {"bias": _NEVER, "lag_s": _NEVER, "coverage": _NEVER}, "points": True}),
 )
+#: Each of those with the number in place of its interval: looked at only where no single slip explains it.
+_PAIRS = tuple((code, {**slip, "points": True}) for code, slip in _SLIPS if "wrong" in slip)
 
 
 def of_verdicts(judged_cases):
@@ -347,12 +347,17 @@ def of_verdicts(judged_cases):
     """
     if all(sorted(reasons) == right.reasons(spec) for reasons, right, spec in judged_cases):
         return named("NOT_SORTED")
-    fitting = {
-        code
-        for code, slip in _SLIPS
-        if all(sorted(reasons) == _concluded(right, spec, **slip) for reasons, right, spec in judged_cases)
-    }
+    fitting = _explaining(_SLIPS, judged_cases) or _explaining(_PAIRS, judged_cases)
     if len(fitting) == 1:
         return named(fitting.pop())
     missing = any(set(right.reasons(spec)) - set(reasons) for reasons, right, spec in judged_cases)
     return named("REASON_MISSING" if missing else "REASON_TOO_MANY")
+
+
+def _explaining(slips, judged_cases):
+    """The codes of slips that give all of these reasons."""
+    return {
+        code
+        for code, slip in slips
+        if all(sorted(reasons) == _concluded(right, spec, **slip) for reasons, right, spec in judged_cases)
+    }

@@ -30,6 +30,7 @@ from course.authoring.exercises.variants import (  # noqa: E402
     solution_path,
 )
 from course.catalog.load import Catalog  # noqa: E402
+from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
 from course.scoring.session import GradingSession, Submission, kept_on  # noqa: E402
 
@@ -148,7 +149,7 @@ def worker_start(session: GradingSession, source: bytes, module: str) -> None:
     times = []
     for _ in range(200):
         start = time.perf_counter()
-        connection = Connection(session._spawner, {module: source}, module, time.monotonic() + 10)
+        connection = Connection(session._spawner, {module: source}, module, Deadline(10))
         connection.call("observed_order", [0.1, 0.05], [0.01, 0.0025])
         times.append((time.perf_counter() - start) * 1e3)
         connection.close()
@@ -164,7 +165,7 @@ def spin(f, n):
     for i in range(n):
         f(0.1, q, q)
 """
-    connection = Connection(session._spawner, {"m.py": source}, "m.py", time.monotonic() + 60)
+    connection = Connection(session._spawner, {"m.py": source}, "m.py", Deadline(60))
     rates = []
     for _ in range(5):
         start = time.perf_counter()

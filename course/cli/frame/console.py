@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import sys
 import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from course.errors import InternalError
+from course.printable import steady
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -49,9 +49,6 @@ STATUS_STYLE = {
 }
 
 Piece = str | tuple[str, str]
-
-#: Control characters other than tab and newline.
-_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -375,7 +372,7 @@ def _text(pieces: Sequence[Piece]) -> Text:
 
 def _harmless(text: str) -> str:
     """Text that cannot steer the terminal: what a student's code printed or raised is shown, not obeyed."""
-    return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text.replace("\r\n", "\n"))
+    return steady(text.replace("\r\n", "\n"))
 
 
 _installed: Console | None = None

@@ -21,6 +21,7 @@ from course.grading.results.late import in_days, read_policy, unknown_names
 from course.grading.results.roster import read_roster
 from course.grading.results.times import read_times
 from course.grading.similar.page import page
+from course.printable import one_line
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def _show_change(console: Console, change: Change) -> None:
         scores += f"; the override stands at {_points(change.score_after)}"
     elif (change.score_before, change.score_after) != (change.raw_before, change.raw_after):
         scores += f"; counting {_points(change.score_before)} -> {_points(change.score_after)}"
-    console.item(f"{change.student} {change.exercise}", scores)
+    console.item(f"{one_line(change.student)} {change.exercise}", scores)
     for check in change.checks:
         delta = f", {check.points_after - check.points_before:+g} points"
         console.item(
@@ -155,10 +156,10 @@ def override(
     if console.json and now is not None:
         console.emit(grade_line(now, course))
     if now is None:
-        console.line(f"{student} {exercise}: nothing was handed in, and no score counts.")
+        console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
         counts = f"{_points(now.score)} of {format_points(now.max_score)} counts"
-        console.line((f"{student} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
+        console.line((f"{one_line(student)} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
     return 0
 
 
@@ -253,7 +254,7 @@ def _show_late(
         else:
             cost = f"{format_points(item.penalty)} points" if item.penalty else "no penalty"
             words = f"{in_days(item.late)} late, {cost} ({item.submitted_at}, by {item.witness})"
-        console.item(f"{item.student} {item.exercise}", words)
+        console.item(f"{one_line(item.student)} {item.exercise}", words)
     if results.policy is not None:
         console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
         if unknown_time:

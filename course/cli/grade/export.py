@@ -18,6 +18,7 @@ from course.grading.exports.lines import grade_line
 from course.grading.exports.selection import ExportOptions, select
 from course.grading.results.effective import Results
 from course.grading.results.roster import read_roster
+from course.printable import one_line
 from course.scoring.numbers import LARGEST_SEED
 
 if TYPE_CHECKING:
@@ -142,7 +143,7 @@ def _print_lines(console: Console, results: Results, options: ExportOptions) -> 
     for effective in selection.each():
         console.emit_line(grade_line(effective, results.course))
     for student in selection.written.unmatched:
-        console.warn(f"Left out, not in the roster: {student}")
+        console.warn(f"Left out, not in the roster: {one_line(student)}")
 
 
 def _assignments(given: tuple[str, ...]) -> dict[str, str]:

@@ -18,6 +18,7 @@ from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
+from course.printable import one_line
 from course.scoring.numbers import LARGEST_SEED, format_points
 from course.scoring.terms import Terms
 
@@ -149,7 +150,7 @@ def _show_people(console: Console, summary: Summary) -> None:
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))
         for entry in listed[:_MOST_TROUBLED]:
-            console.line(entry, indent=2)
+            console.line(one_line(entry), indent=2)
         if len(listed) > _MOST_TROUBLED:
             console.line(f"and {len(listed) - _MOST_TROUBLED} more.", indent=2)
 
@@ -227,7 +228,9 @@ class _progress:  # noqa: N801 - used as a function
     def _line(self, result: Effective, done: int, total: int) -> None:
         verdict = result.verdict
         ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
-        self._console.line(f"{done}/{total} {result.student} {result.exercise} {verdict.state} {ending}")
+        self._console.line(
+            f"{done}/{total} {one_line(result.student)} {result.exercise} {verdict.state} {ending}"
+        )
 
     def _json(self, result: Effective, _done: int, _total: int) -> None:
         self._console.emit_line(grade_line(result, self._course))
@@ -268,7 +271,7 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
         if rows:
             console.line((f"{len(rows)} {words}:", "bold"))
         for row in rows[:_MOST_TROUBLED]:
-            console.item(f"{row.student} {row.exercise}", f"{row.code}: {row.message}")
+            console.item(f"{one_line(row.student)} {row.exercise}", f"{row.code}: {one_line(row.message)}")
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
     _show_people(console, summary)
@@ -287,7 +290,7 @@ def _show_result(console: Console, catalog: Catalog, found: Effective, history: 
     verdict, result = found.verdict, found.result
     passed = "passed" if found.passed else "not passed"
     score = "none" if found.score is None else format_points(found.score)
-    console.heading(f"{found.student}, {found.exercise}", verdict.state)
+    console.heading(f"{one_line(found.student)}, {found.exercise}", verdict.state)
     console.item("score", f"{score} of {format_points(found.max_score)}, {passed}", width=10)
     if found.override is not None:
         at = found.override.at
@@ -308,7 +311,7 @@ def _show_result(console: Console, catalog: Catalog, found: Effective, history: 
             was = f"{format_points(older.verdict.score)}, {older.verdict.state}"
             console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
     if verdict.error is not None:
-        console.item("reason", f"{verdict.error.code}: {verdict.error.message}", width=10)
+        console.item("reason", f"{verdict.error.code}: {one_line(verdict.error.message)}", width=10)
         console.item("advice", verdict.error.help, width=10)
     console.blank()
     known = catalog.exercise_ids()

@@ -221,7 +221,9 @@ class _Coordinator:
                 said = Problem(problem.code, f"Worker on {reply.host}: {problem.message}", problem.help)
                 self._failure = as_error(said, answer.exit_code)
                 return
-            if answer.verdict is None:
+            if not answer.is_about(work.job):
+                self._lost([work], Lost())
+            elif answer.verdict is None:
                 self._blame(work, killed_its_grader())
             else:
                 self._done.append(Graded(work.entry, answer.verdict))

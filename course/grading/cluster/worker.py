@@ -21,8 +21,10 @@ import msgspec
 
 from course.errors import CourseError, InternalError
 from course.grading.cluster.messages import FORMAT, Answers, decode_batch, encode
-from course.grading.running.batch import MAX_TRIES, hang_s, start_grader
-from course.grading.running.grader import Answer, Config, read_frame, write_frame
+from course.grading.pipes import read_frame, write_frame
+from course.grading.running.batch import MAX_TRIES, answer_to, hang_s, start_grader
+from course.grading.running.grader import Answer, Config
+from course.scoring.submission import Submission
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
@@ -109,7 +111,7 @@ class _WarmGrader:
             if answer is not None:
                 return answer
             self.close()
-        return Answer()
+        return Answer(number=job.number, sha256=Submission(job.files).sha256)
 
     def _ask(self, job: Job) -> Answer | None:
         process = self._process or self._start()
@@ -125,7 +127,7 @@ class _WarmGrader:
             frame = read_frame(process.stdout)
         finally:
             too_long.cancel()
-        return None if frame is None else msgspec.msgpack.decode(frame, type=Answer)
+        return answer_to(job, frame)
 
     def _start(self) -> subprocess.Popen[bytes]:
         for _ in range(MAX_TRIES):

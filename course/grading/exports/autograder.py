@@ -82,7 +82,7 @@ def write_autograder(
 
     Args:
         seed: of the hidden inputs; every submission meets the same.
-        timeout: wall seconds per check.
+        timeout: seconds of CPU time per check.
         asked: the exercises were named, so that one that is not handed in is reported.
 
     Raises:

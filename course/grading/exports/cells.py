@@ -9,13 +9,14 @@ import os
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError, UsageError
+from course.printable import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
     from typing import IO
 
-__all__ = ["csv_bytes", "is_safe", "number", "replacing", "safe_cell", "spelled_out", "write_bytes"]
+__all__ = ["csv_bytes", "is_safe", "number", "replacing", "safe_cell", "write_bytes"]
 
 #: A spreadsheet takes a cell that begins with one of these for a formula; with a full-width one in some
 #: languages. The apostrophe that disarms them is itself doubled, so that no two texts become one.
@@ -25,19 +26,9 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "'", "\uff1d", "\uff0b", "\uff
 _DATABASE = b"SQLite format 3\0"
 
 
-def spelled_out(text: str) -> str:
-    """Text in which every character that steers, hides or reorders others is spelled out."""
-    if text.isprintable():
-        return text
-    return "".join(
-        character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
-        for character in text
-    )
-
-
 def safe_cell(text: str) -> str:
     """A cell that a spreadsheet shows as it is: formulas are disarmed, control characters are escaped."""
-    shown = spelled_out(text)
+    shown = one_line(text)
     return "'" + shown if text.lstrip().startswith(_FORMULA) or text.startswith(_FORMULA) else shown
 
 

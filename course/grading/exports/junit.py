@@ -10,9 +10,10 @@ import re
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
-from course.grading.exports.cells import number, replacing, spelled_out
+from course.grading.exports.cells import number, replacing
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.selection import ExportOptions, Written, select
+from course.printable import one_line
 from course.scoring.verdict import CheckResult, Problem, Status
 
 if TYPE_CHECKING:
@@ -53,7 +54,8 @@ def _attribute(text: str) -> bytes:
 def suite(effective: Effective) -> ET.Element:
     """The suite of one student and exercise."""
     verdict = effective.verdict
-    cases = [_case(effective, check) for check in checks_for_student(verdict)]
+    checks = checks_for_student(verdict)
+    cases = [_case(effective, check) for check in checks]
     problem = problem_for_student(verdict)
     if problem is not None:
         cases.append(_not_graded(effective, problem))
@@ -66,7 +68,7 @@ def suite(effective: Effective) -> ET.Element:
             "failures": str(kinds.count("failure")),
             "errors": str(kinds.count("error")),
             "skipped": str(kinds.count("skipped")),
-            "time": f"{sum(check.duration_ms for check in verdict.checks) / 1e3:.3f}",
+            "time": f"{sum(check.duration_ms for check in checks) / 1e3:.3f}",
             "timestamp": effective.result.graded_at.removesuffix("Z"),
         },
     )
@@ -122,5 +124,5 @@ def _not_graded(effective: Effective, error: Problem) -> ET.Element:
 
 def _text(text: str) -> str:
     """Text that XML can hold; what it cannot, and what steers or hides, is spelled out."""
-    lines = _IMPOSSIBLE.sub(lambda match: spelled_out(match[0]), text).split("\n")
-    return "\n".join(spelled_out(line) for line in lines)
+    lines = _IMPOSSIBLE.sub(lambda match: one_line(match[0]), text).split("\n")
+    return "\n".join(one_line(line) for line in lines)

@@ -9,7 +9,6 @@ import contextlib
 import functools
 import hashlib
 import json
-import os
 import stat
 import zipfile
 import zlib
@@ -17,6 +16,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from course.grading.intake.downloads import IGNORED
+from course.printable import one_line
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class RefusedError(Exception):
 
     def __init__(self, code: str, message: str, advice: str) -> None:
         super().__init__(message)
-        self.problem = Problem(code, message, advice)
+        self.problem = Problem(code, one_line(message), advice)
 
 
 def manifest_of(path: Path) -> dict[str, Any]:
@@ -113,8 +113,9 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, dict[str, zipfile.ZipIn
 
 
 def _refused(path: Path, why: str) -> RefusedError:
-    name = os.fsencode(path.name).decode("utf-8", "backslashreplace")
-    return RefusedError("refused_archive", f"{name}: {why}.", "Hand in the zip that `course submit` writes.")
+    return RefusedError(
+        "refused_archive", f"{path.name}: {why}.", "Hand in the zip that `course submit` writes."
+    )
 
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> dict[str, zipfile.ZipInfo]:

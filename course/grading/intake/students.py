@@ -7,7 +7,8 @@
 or ``<module>.ipynb`` in place of ``<module>.py``: the module that a notebook stands for is graded.
 
 ``course.grading.intake.downloads`` says who the students are and where their files lie. Only files an
-exercise declares are read; nothing here executes, unpacks to disk or follows anything.
+exercise declares are read; nothing here executes, unpacks to disk or follows anything. What has to be parsed
+for that, notebooks and archives, is read by a process of its own (``reading``).
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ from typing import TYPE_CHECKING, Any
 
 from course.errors import UngradableError
 from course.grading.gradebook.book import SubmittedAt
-from course.grading.intake.archives import MAX_FILE, RefusedError, manifest_of, module_in
+from course.grading.intake.archives import MAX_FILE, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
+from course.grading.intake.reading import reader
 from course.handed_in.cells import MAX_NOTEBOOK
-from course.handed_in.notebook import RECORD, notebook_source
+from course.handed_in.notebook import RECORD
 from course.scoring.session import Submission
 from course.scoring.verdict import Problem
 
@@ -143,7 +145,7 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> tuple[Submi
     notebooks = place.find(notebook, f"{exercise.id}/{notebook}")
     packed: list[tuple[Path, str, bytes]] = []
     for archive in archives:
-        held = module_in(archive, exercise)
+        held = reader.module_in(archive, exercise)
         if held is not None:
             packed.append((archive, *held))
     files = [*plain, *notebooks]
@@ -173,14 +175,11 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")
     if not name.endswith(".ipynb"):
         return Submission({exercise.module: content})
-    try:
-        module = notebook_source(content, exercise, shown)
-    except UngradableError as error:
-        raise RefusedError(error.code, error.message, error.help) from None
-    if len(module.source) > MAX_FILE:
+    source, record = reader.notebook(content, exercise, shown)
+    if len(source) > MAX_FILE:
         message = f"The functions of {shown} are larger than 1 MB."
         raise RefusedError("too_large", message, "Hand in source code only.")
-    return Submission({exercise.module: module.source, RECORD: module.record()})
+    return Submission({exercise.module: source, RECORD: record})
 
 
 def _read_regular(path: Path, shown: str, limit: int) -> bytes:
@@ -218,7 +217,7 @@ def read_quiz(student: Student) -> tuple[Any, Path | None]:
             return [], None
         for path in place.archives():
             with contextlib.suppress(RefusedError):
-                record = manifest_of(path).get("quiz")
+                record = reader.quiz_in(path)
                 found += [(record, path)] if record else []
     if len(found) > 1:
         raise UngradableError(

@@ -20,7 +20,10 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.errors import CourseError, InternalError
-from course.grading.running.grader import Answer, Config, Job, read_frame, write_frame
+from course.grading.pipes import read_frame, write_frame
+from course.grading.running.grader import Answer, Config, Job
+from course.isolation.deadline import WALL
+from course.isolation.launch import keep_private
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict
 
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MAX_TRIES",
     "Graded",
+    "answer_to",
     "as_error",
     "grade_all",
     "hang_s",
@@ -57,6 +61,7 @@ class Graded:
 @dataclass
 class _Work:
     entry: Entry
+    job: Job
     tries: int = 0
 
 
@@ -89,6 +94,7 @@ def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> It
 
 def start_grader(config: Config) -> subprocess.Popen[bytes]:
     """A grader process, told how to grade. Its first answer says that it has started."""
+    keep_private()  # what graders say, and what they are given, passes through here
     # -P: the folder the command is run in, which may be a student's, never becomes importable.
     command = [sys.executable, "-P", "-m", "course.grading.running.grader"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
@@ -105,8 +111,8 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
 
 
 def hang_s(timeout: float) -> float:
-    """Seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
-    return BUDGET_S + timeout + 30.0
+    """Wall seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
+    return WALL * (BUDGET_S + timeout) + 30.0
 
 
 class _Coordinator:
@@ -160,7 +166,7 @@ class _Coordinator:
             return self._again.popleft()
         for entry in self._entries:
             if entry.submission is not None:
-                return _Work(entry)
+                return _Work(entry, Job(entry.exercise.id, dict(entry.submission.files)))
             if entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
         return None
@@ -173,11 +179,9 @@ class _Coordinator:
         grader = self._graders.get(number) or self._start(number)
         grader.work = work
         grader.since = time.monotonic()
-        assert work.entry.submission is not None
-        job = Job(work.entry.exercise.id, dict(work.entry.submission.files))
         assert grader.process.stdin is not None
         with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
-            write_frame(grader.process.stdin, job)
+            write_frame(grader.process.stdin, work.job)
         return True
 
     def _start(self, number: int) -> _Grader:
@@ -199,15 +203,14 @@ class _Coordinator:
         if not grader.ready:
             self._start_again(grader, work)
             return
-        if frame is None:
+        answer = answer_to(work.job, frame) if work is not None else None
+        if answer is None or work is None:
             self._bury(grader)
             if work is not None:
                 self._retry(work)
+        elif answer.error is not None:
+            raise as_error(answer.error, answer.exit_code)
         else:
-            answer = msgspec.msgpack.decode(frame, type=Answer)
-            if answer.error is not None:
-                raise as_error(answer.error, answer.exit_code)
-            assert work is not None
             assert answer.verdict is not None
             self._done.append(Graded(work.entry, answer.verdict))
         self._feed(grader.number)
@@ -249,8 +252,31 @@ class _Coordinator:
     def _end_hung(self) -> None:
         now = time.monotonic()
         for grader in list(self._graders.values()):
-            if grader.work and now - grader.since > self._hang_s:
+            if grader.work and (now - grader.since > self._hang_s or _is_stopped(grader.process.pid)):
                 grader.process.kill()  # its pipe closes, and the next round finds it dead
+
+
+def _is_stopped(pid: int) -> bool:
+    """Whether a signal stopped that process: a submission at L1 may send one, and nobody would wake it."""
+    if not hasattr(os, "waitid"):
+        return False
+    with contextlib.suppress(ChildProcessError):
+        return os.waitid(os.P_PID, pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
+    return False
+
+
+def answer_to(job: Job, frame: bytes | None) -> Answer | None:
+    """The answer in a grader's frame; None if there is none, or one to something else than was asked.
+
+    A grader that answers what it was not asked is no better than a dead one, whoever spoke in its place.
+    """
+    if frame is None:
+        return None
+    try:
+        answer = msgspec.msgpack.decode(frame, type=Answer)
+    except msgspec.MsgspecError:
+        return None
+    return answer if answer.is_about(job) else None
 
 
 def as_error(problem: Problem, exit_code: int) -> CourseError:

@@ -7,22 +7,23 @@ length and msgpack. Each exercise's checks are collected at its first job and ke
 from __future__ import annotations
 
 import os
-import struct
-from typing import IO, TYPE_CHECKING, Any
+import secrets
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from course.errors import CourseError, MissingCapabilityError
+from course.grading.pipes import read_frame, write_frame
 from course.handed_in.notebook import opened
+from course.isolation.launch import keep_private
+from course.scoring.submission import Submission
 from course.scoring.terms import Terms
 from course.scoring.verdict import Problem, Verdict
 
 if TYPE_CHECKING:
     from course.scoring.session import GradingSession
 
-__all__ = ["Answer", "Config", "Job", "main", "read_frame", "write_frame"]
-
-_LENGTH = struct.Struct("<I")
+__all__ = ["Answer", "Config", "Job", "main"]
 
 
 class Config(msgspec.Struct, frozen=True):
@@ -41,23 +42,37 @@ class Job(msgspec.Struct, frozen=True):
 
     Attributes:
         version: the ``grader_version`` it must be graded by; empty takes whatever is here.
+        number: drawn for each job, so that nobody knows it who was not told.
     """
 
     exercise: str
     files: dict[str, bytes]
     version: str = ""
+    number: int = msgspec.field(default_factory=lambda: secrets.randbits(63))
 
 
 class Answer(msgspec.Struct, frozen=True):
-    """The verdict on a job, or why this grader can give none at all."""
+    """The verdict on a job, or why this grader can give none at all.
+
+    Attributes:
+        number: of the job it answers.
+        sha256: digest of what was graded, as the grader itself found it.
+    """
 
     verdict: Verdict | None = None
     error: Problem | None = None
     exit_code: int = 0
+    number: int = 0
+    sha256: str = ""
+
+    def is_about(self, job: Job) -> bool:
+        """Whether it is the answer to this job and to no other."""
+        return self.number == job.number and self.sha256 == Submission(job.files).sha256
 
 
 def main() -> None:
     """Serve until standard input ends."""
+    keep_private()
     source = os.fdopen(os.dup(0), "rb")
     sink = os.fdopen(os.dup(1), "wb")
     # Whatever prints in this process must not end up between two frames.
@@ -86,6 +101,7 @@ class _Grader:
         self._versions: dict[str, str] = {}
 
     def answer(self, job: Job) -> Answer:
+        about: dict[str, Any] = {"number": job.number, "sha256": Submission(job.files).sha256}
         try:
             self._check_version(job)
             submission = opened(job.files, self._catalog.exercise(job.exercise))
@@ -94,10 +110,10 @@ class _Grader:
                 # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
                 self._sessions.pop(job.exercise).close()
                 verdict = self._session(job.exercise).grade(submission)
-            return Answer(verdict=verdict)
+            return Answer(verdict=verdict, **about)
         except CourseError as error:
             problem = Problem(error.code, error.message, error.help)
-            return Answer(error=problem, exit_code=error.exit_code)
+            return Answer(error=problem, exit_code=error.exit_code, **about)
 
     def _check_version(self, job: Job) -> None:
         """Refuse work of a coordinator that has other graders.
@@ -138,23 +154,6 @@ class _Grader:
     def close(self) -> None:
         for session in self._sessions.values():
             session.close()
-
-
-def read_frame(source: IO[bytes]) -> bytes | None:
-    """The next frame's content; None at the end of the stream."""
-    header = source.read(_LENGTH.size)
-    if len(header) < _LENGTH.size:
-        return None
-    size = _LENGTH.unpack(header)[0]
-    body = source.read(size)
-    return body if len(body) == size else None
-
-
-def write_frame(sink: IO[bytes], message: Any) -> None:
-    """Write one message and flush it."""
-    body = msgspec.msgpack.encode(message)
-    sink.write(_LENGTH.pack(len(body)) + body)
-    sink.flush()
 
 
 if __name__ == "__main__":

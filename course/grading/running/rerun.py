@@ -44,7 +44,7 @@ class RerunOptions:
         dry_run: change nothing, only say what would change.
         everything: regrade also what these very graders scored.
         level, at_least: as in ``Terms``; the seed is the first run's.
-        timeout: wall seconds per check; None takes the first run's.
+        timeout: seconds of CPU time per check; None takes the first run's.
     """
 
     dry_run: bool = False

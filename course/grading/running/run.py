@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.catalog.questions import read_questions
-from course.errors import MissingCapabilityError, UngradableError, UsageError
+from course.errors import CourseError, MissingCapabilityError, UngradableError, UsageError
 from course.grading.exports.html_report.write import write_pages
 from course.grading.exports.lines import write_csv, write_jsonl
 from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Result, SubmittedAt
@@ -167,10 +167,11 @@ def grade_class(
     exercises = _exercises(catalog, options.exercises)
     members = _members(folder, options)
     started = time.monotonic()
-    with _open(out, folder, options) as book:
+    with _taken_back(out) as taken, _open(out, folder, options) as book:
         run = _Run(members.students, exercises, catalog, options, book)
         for result, files in run.results(grade):
             book.add(result, files)
+            taken.graded |= bool(result.verdict.isolation)
             report(run.view.of(result), run.done, len(members.students))
         run.note_times()
         summary = run.summary
@@ -362,6 +363,30 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
         found.students = [student for student in found.students if student.name in options.only]
         found.unrecognised = []
     return found
+
+
+@dataclass
+class _Taken:
+    """A name for the results that is taken. ``graded``: whether any grader could work."""
+
+    graded: bool = False
+
+
+@contextlib.contextmanager
+def _taken_back(out: Path) -> Iterator[_Taken]:
+    """Give the name of a new folder back if the run is refused before anything was graded in it.
+
+    The next command is the same one, corrected, and must not find its own folder in the way.
+    """
+    new, taken = not out.exists(), _Taken()
+    try:
+        yield taken
+    except CourseError:
+        if new and not taken.graded and out.is_dir():
+            for item in out.iterdir():
+                item.unlink()
+            out.rmdir()
+        raise
 
 
 def _open(out: Path, folder: Path, options: RunOptions) -> Gradebook:

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from course.grading.running.grader import read_frame, write_frame
+from course.grading.pipes import read_frame, write_frame
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,10 +11,11 @@ import pytest
 
 from course.grading import kit
 
+actuators = kit.companion("digital-twin", "actuator_bundles")
 bundles = kit.companion("digital-twin", "bundles")
 scenes = kit.companion("digital-twin", "scenes")
-actuators, sensors, twins = bundles.actuators, bundles.sensors, bundles.twins
-loops = kit.sibling(__file__, "loops")
+sensors = kit.companion("digital-twin", "sensor_bundles")
+twins = kit.companion("digital-twin", "twin_bundles")
 parts = kit.sibling(__file__, "parts")
 rays = kit.sibling(__file__, "rays")
 
@@ -26,73 +27,54 @@ rays = kit.sibling(__file__, "rays")
 def test_encoder_turns(submission, rng):
     """An encoder of another resolution counts over many turns both ways"""
     per_turn = int(rng.integers(7, 500))
-    theta = rng.uniform(-60.0, 60.0, 600)
-    bundles.expect_counts(submission.call("encoder", theta, per_turn), theta, per_turn)
+    theta = sensors.angles_between_counts(rng, 600, 10 * per_turn, per_turn)
+    sensors.expect_counts(submission.call("encoder", theta, per_turn), theta, per_turn)
 
 
 @pytest.mark.task("encoder")
 @pytest.mark.points(2)
 def test_encoder_inputs(submission, rng):
     """The encoder leaves its angles alone, over a few turns and both ways"""
-    theta = rng.uniform(-9.0, 9.0, 300)
+    theta = sensors.angles_between_counts(rng, 300, 70, 48)
     value = bundles.expect_clean(submission, "encoder", (theta, 48), ("theta", None))
-    bundles.expect_counts(value, theta, 48)
+    sensors.expect_counts(value, theta, 48)
 
 
 # -- gyroscope ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.task("imu")
-@pytest.mark.points(3)
+@pytest.mark.points(2)
+def test_imu_white(submission, rng):
+    """At other densities and sampling rates, white noise is as strong as its density says"""
+    calls = [
+        (np.zeros(20000), dt, 10 ** rng.uniform(-3.5, -2.0), 0.0, float(rng.normal()), rng)
+        for dt in (rng.uniform(0.002, 0.006), rng.uniform(0.05, 0.5))
+    ]
+    sensors.expect_white(submission, calls, 0.04, "eight times the scatter of a std from 20000 samples")
+
+
+@pytest.mark.task("imu")
+@pytest.mark.points(2)
 def test_imu_walk(submission, rng):
     """Over one sample and over ten, the bias wanders as the root of time"""
-    n, dt, walk = 20000, rng.uniform(0.004, 0.05), 0.01 * rng.uniform(0.5, 2.0)
-    calls = [(np.zeros(n), dt, 0.0, walk, float(rng.normal()), rng)]
-    ((_, bias),) = bundles.imu_pairs(submission, calls)
-    for m in (1, 10):
-        with np.errstate(all="ignore"):
-            spread = bundles.std(bias[m:] - bias[:-m]) ** 2
-        kit.expect_close(
-            spread,
-            walk**2 * m * dt,
-            rel=0.15,
-            source="the variance over ten of 20000 samples scatters by 2.6 %",
-            quantity=f"variance of the bias over {m} samples",
-            units="(rad/s)²",
-            input={"dt": dt, "bias_random_walk": walk, "noise_density": 0.0, "samples": n},
-            message="The bias does not wander as a random walk of its strength does.",
-            help="Independent steps add up: the variance grows with the time between two samples.",
-            diagnose=lambda: sensors.of_imu(submission, bias_first=True),
-        )
+    dt, walk = rng.uniform(0.004, 0.05), 0.01 * rng.uniform(0.5, 2.0)
+    sensors.expect_walk(submission, 20000, dt, walk, float(rng.normal()), rng)
 
 
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_randomness(submission, rng):
     """Noise and bias are independent, and the generator that is passed in decides about both"""
-    parts.expect_randomness(submission, rng)
+    sensors.expect_gyroscope_draws(submission, int(rng.integers(2**32)), rng.uniform(0.004, 0.05))
 
 
 @pytest.mark.task("imu")
-@pytest.mark.points(2)
+@pytest.mark.points(1)
 def test_imu_inputs(submission, rng):
     """The true rate is left alone, and is in the measured one unchanged"""
     true, dt = 3.0 * np.sin(np.linspace(0, rng.uniform(5, 9), 50)), rng.uniform(0.01, 0.1)
-    call = (true, dt, 0.0, 0.02, 0.1, rng)
-    value = bundles.expect_clean(submission, "imu", call, ("true", *[None] * 5))
-    measured, bias = kit.as_tuple(value, ("measured", "bias"))
-    kit.expect_array(
-        kit.as_vector(measured, 50, "measured") - kit.as_vector(bias, 50, "bias"),
-        true,
-        abs=1e-9,
-        source="rounding",
-        quantity="measured - bias",
-        units="rad/s",
-        message="Without white noise, measured minus bias is not the true rate.",
-        help="measured[k] = true[k] + bias[k] + white noise.",
-        input={"true": true, "dt": dt},
-        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
-    )
+    sensors.expect_rate_kept(submission, true, dt, -0.1, rng)
 
 
 # -- fit_noise ------------------------------------------------------------------------------------------
@@ -102,15 +84,13 @@ def test_imu_inputs(submission, rng):
 @pytest.mark.points(5)
 def test_fit_noise_unknown(submission, rng):
     """Gyroscopes of other kinds and other sampling rates are identified from their recordings"""
-    cases = []
-    for _ in range(12):
+
+    def make():
         density, dt = 10 ** rng.uniform(-3.5, -2.0), rng.uniform(0.005, 0.03)
         # The walk takes over after some 60 to 120 samples: both are to be seen in one recording.
-        walk = density / (dt * rng.uniform(60, 120))
-        bias0 = float(rng.normal()) * 30 * density
-        still = scenes.recording(rng, 12000, dt, density, walk, bias0)
-        cases.append((still, dt, density, walk, bias0))
-    bundles.expect_fits(submission, cases, (0.03, 0.38, 2.1))
+        return dt, density, density / (dt * rng.uniform(60, 120)), density * rng.uniform(10, 60)
+
+    sensors.expect_fits(submission, sensors.recordings(rng, 12, make))
 
 
 @pytest.mark.task("fit_noise")
@@ -118,18 +98,7 @@ def test_fit_noise_unknown(submission, rng):
 def test_fit_noise_inputs(submission, rng):
     """fit_noise leaves its recording alone"""
     still = scenes.recording(rng, 2000, 0.02, 0.002, 0.003, 0.5)
-    value = bundles.expect_clean(submission, "fit_noise", (still, 0.02), ("still", None))
-    found = kit.as_record(value, ("noise_density", "bias_random_walk", "bias0"))
-    kit.expect_close(
-        found["noise_density"],
-        0.002,
-        rel=0.2,
-        source="2000 samples: the density scatters by 2 %",
-        quantity="noise_density",
-        units="rad/s/sqrt(Hz)",
-        message="From a short recording, the noise density is wrong.",
-        diagnose=lambda: sensors.of_density(found["noise_density"], still, 0.02, 0.002),
-    )
+    sensors.expect_density_of_short(submission, still, 0.02, 0.002)
 
 
 # -- lidar ----------------------------------------------------------------------------------------------
@@ -145,33 +114,23 @@ def test_lidar_walls(submission, rng):
 @pytest.mark.task("lidar")
 @pytest.mark.points(3)
 def test_lidar_noise(submission, rng):
-    """Hits have noise of std sigma, each its own, never below zero; beams without a hit read r_max exactly"""
-    parts.expect_scan_noise(submission, rng)
+    """Hits have noise of std sigma from the generator passed in, from zero on; others read r_max exactly"""
+    sensors.expect_scan_noise(submission, rng.uniform(6.0, 9.0), rng.uniform(0.02, 0.08), rng)
+    sensors.expect_scan_draws(submission, int(rng.integers(2**32)))
 
 
 @pytest.mark.task("lidar")
 @pytest.mark.points(1)
 def test_lidar_inputs(submission, rng):
     """The scanner leaves pose, walls and angles alone"""
-    pose, walls = rng.uniform(-1, 1, 3), rays.hall(rng)
-    angles = rng.uniform(-3, 3, 12)
-    call = (pose, walls, angles, 5.0, 0.0, rng)
+    call = (rng.uniform(-1, 1, 3), rays.hall(rng), rng.uniform(-3, 3, 12), 5.0, 0.0, rng)
     value = bundles.expect_clean(submission, "lidar", call, ("pose", "segments", "angles", *[None] * 3))
-    expected, clear = rays.distances(pose, walls, angles, 5.0)
-    kit.expect_array(
-        kit.as_vector(value, 12, "ranges")[clear],
-        expected[clear],
-        abs=1e-9,
-        source="rounding",
-        quantity="ranges",
-        units="m",
-        input={"pose": pose, "segments": walls, "angles": angles},
-        message="A distance is wrong.",
-        diagnose=lambda: sensors.of_lidar(submission),
-    )
+    parts.expect_ranges(submission, value, *call[:4], "A distance is wrong.")
 
 
 # -- motor ----------------------------------------------------------------------------------------------
+
+_MOTOR = "The speed of an unknown motor is not what its command, limits and lag make of it."
 
 
 @pytest.mark.task("motor_step")
@@ -183,7 +142,7 @@ def test_motor_unknown(submission, rng):
         [*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, 0.5 * dead, -0.7 * dead, dead, -dead]
     )
     calls = [(float(u), tau * float(rng.choice([0.1, 0.7, 2.0, 5.0])), tau, u_max, dead) for u in commands]
-    parts.expect_motor(submission, 0.3 * u_max, calls)
+    actuators.expect_motor(submission, 0.3 * u_max, calls, _MOTOR)
 
 
 @pytest.mark.task("motor_step")
@@ -192,7 +151,7 @@ def test_motor_overspeed(submission, rng):
     """A motor that spins faster than its command may be runs out gradually"""
     tau, u_max = rng.uniform(0.1, 1.0), rng.uniform(5, 20)
     calls = [(u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
-    parts.expect_motor(submission, rng.uniform(1.5, 3.0) * u_max, calls)
+    actuators.expect_motor(submission, rng.uniform(1.5, 3.0) * u_max, calls, _MOTOR)
 
 
 # -- backlash -------------------------------------------------------------------------------------------
@@ -216,20 +175,16 @@ def test_delay_fractions(submission, rng):
     for samples in (rng.uniform(0.1, 0.9), rng.uniform(1.1, 6.9), rng.uniform(7.5, 15.5)):
         x, dt = rng.normal(1.0, 1.0, 30), rng.uniform(0.002, 0.5)
         cases.append((x, dt, samples * dt))
-    for case, value in zip(cases, submission.call_each("delay_line", cases), strict=True):
-        bundles.expect_delayed(value, *case, parts.delayed(*case))
+    parts.expect_delays(submission, cases)
 
 
 @pytest.mark.task("delay_line")
 @pytest.mark.points(2)
 def test_delay_edges(submission, rng):
-    """No latency, whole samples, more latency than signal; and the signal is left alone"""
+    """No latency, whole samples, more latency than signal; and what comes out is a new array"""
     x, dt = rng.normal(2.0, 1.0, 12), rng.uniform(0.01, 0.1)
-    cases = [(x, dt, 0.0), (x, dt, 3 * dt), (x, dt, 20.3 * dt)]
-    for case, value in zip(cases, submission.call_each("delay_line", cases), strict=True):
-        bundles.expect_delayed(value, *case, parts.delayed(*case))
-    value = bundles.expect_clean(submission, "delay_line", (x, dt, 0.0), ("x", None, None))
-    bundles.expect_delayed(value, x, dt, 0.0, x)
+    parts.expect_delays(submission, [(x, dt, 0.0), (x, dt, 3 * dt), (x, dt, 20.3 * dt)])
+    actuators.expect_new_signal(submission, x, dt)
 
 
 # -- differential drive ---------------------------------------------------------------------------------
@@ -238,35 +193,24 @@ def test_delay_edges(submission, rng):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(2)
 def test_drive_tour(submission, rng):
-    """After a tour of many arcs, some backwards and some turning round and round, the pose is right"""
-    track = rng.uniform(0.2, 0.8)
-    turns = rng.choice([-1, 1], 30) * rng.uniform(0.2, 1.5, 30)
-    speeds, dts = rng.uniform(-0.8, 0.8, 30), rng.uniform(0.1, 2.0, 30)
-    calls = [
-        (float(v - w * track / 2), float(v + w * track / 2), track, float(dt))
-        for v, w, dt in zip(speeds, np.abs(turns) if rng.uniform() < 0.5 else turns, dts, strict=True)
-    ]
-    pose = rng.uniform(-3, 3, 3)
-    folded = submission.fold("diff_drive_step", pose, calls)
-    for value, call in zip(folded[1:], calls, strict=True):
-        start, pose = pose, bundles.arc_end(pose, *call)
-        bundles.expect_pose(submission, value, start, call, pose, abs_=1e-8)
+    """On a tour of many arcs, some backwards and some turning round and round, each step is right"""
+    parts.expect_tour(submission, rng)
 
 
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(3)
 def test_drive_slow_turns(submission, rng):
     """As the turn rate goes to zero, the arc goes over into a straight line without a jump"""
-    parts.expect_slow_turns(submission, rng)
+    actuators.expect_slow_turns(submission, rng)
 
 
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(1)
 def test_drive_inputs(submission, rng):
     """A step leaves the old pose alone"""
-    pose, call = rng.uniform(1, 2, 3), (0.3, 0.5, 0.4, 1.0)
-    value = bundles.expect_clean(submission, "diff_drive_step", (pose, *call), ("pose", *[None] * 4))
-    bundles.expect_pose(submission, value, pose, call, bundles.arc_end(pose, *call))
+    pose, wheels = rng.uniform(1, 2, 3), (0.3, 0.5, 0.4, 1.0)
+    value = bundles.expect_clean(submission, "diff_drive_step", (pose, *wheels), ("pose", *[None] * 4))
+    actuators.expect_pose(submission, value, pose, wheels)
 
 
 # -- the twin -------------------------------------------------------------------------------------------
@@ -275,53 +219,17 @@ def test_drive_inputs(submission, rng):
 @pytest.mark.task("sync")
 @pytest.mark.points(3)
 def test_sync_late(submission, rng):
-    """A twin keeps up although a third of the measurements come late"""
-    before, after = loops.friction_jump(rng)
-    drive = before * rng.uniform(0.8, 1.2)
-    cart = scenes.Cart(((0.0, before), (5.0, after)), v=drive / before)
-    calls, truth = scenes.measured(cart, drive, 0.1 * np.arange(1, 241), rng, late=0.33, sigma=loops.QUIET)
-    twin = scenes.new_twin(before, drive, speed=drive / before, sigma=loops.QUIET)
-    bundles.expect_follows(
-        submission,
-        twin,
-        calls,
-        truth,
-        settled=((2.0, 5.0), (9.0, 24.0)),
-        frictions=((14.0, 24.0, after),),
-        message="With measurements that come late and out of order, the twin does not stay with its cart.",
-    )
+    """Twins keep up, forwards and backwards, although a third of the measurements come late"""
+    message = "With measurements that come late and out of order, the twin does not stay with its cart."
+    for sign in (1.0, -1.0):
+        twins.expect_keeps_up(submission, rng, sign=sign, late=0.33, message=message)
 
 
 @pytest.mark.task("sync")
 @pytest.mark.points(3)
 def test_sync_closes_loop(submission, rng):
     """A cart that is driven by what the twin has learned gets back to its speed after the friction jumped"""
-    speed, target, found, friction = loops.through_sync(submission, rng)
-    given = {"target": target, "friction at the end": friction}
-    ask = lambda: twins.of_sync(submission, late=False)  # noqa: E731
-    kit.expect_close(
-        speed,
-        target,
-        rel=0.1,
-        source=bundles.CALIBRATED,
-        quantity="speed of the cart at the end",
-        units="m/s",
-        input=given,
-        message="A cart whose drive comes from the twin's friction does not get back to its speed.",
-        help="The drive changes from time to time: predict with the drive that the twin holds now.",
-        diagnose=ask,
-    )
-    kit.expect_close(
-        found,
-        friction,
-        rel=0.1,
-        source=bundles.CALIBRATED,
-        quantity="friction",
-        units="1/s",
-        input=given,
-        message="In the loop, the twin does not find the friction.",
-        diagnose=ask,
-    )
+    twins.expect_sync_closes_loop(submission, rng)
 
 
 @pytest.mark.task("sync")
@@ -329,50 +237,19 @@ def test_sync_closes_loop(submission, rng):
 @pytest.mark.requires("sync_follows")  # a twin that never changes passes this one as well
 def test_sync_repeats(submission, rng):
     """The same twin and the same measurement give the same result again, and the twin passed in is kept"""
-    cart = scenes.Cart(((0.0, rng.uniform(0.4, 0.9)),), v=1.0)
-    calls, _ = scenes.measured(cart, 0.5, 0.1 * np.arange(1, 31), rng, late=0.3)
-    folded = submission.fold("sync", scenes.new_twin(0.6, 0.5, speed=1.0), calls)
-    twins.states(folded)
-    picks = [25, 3, 14, 3]
-    again = submission.call_each("sync", [(folded[i], *calls[i]) for i in picks])
-    kit.expect_true(
-        all(twins.same(value, folded[i + 1]) for value, i in zip(again, picks, strict=True)),
-        "Given an earlier twin and its measurement once more, sync returns another twin than the first time.",
-        help='Everything that sync remembers has to be in twin["memory"].',
-        diagnose=diagnosis_of("GLOBAL_MEMORY"),
-    )
-    names = ("twin", None, None)
-    value = bundles.expect_clean(submission, "sync", (folded[20], *calls[20]), names)
-    twins.states([value])
-
-
-def diagnosis_of(code):
-    """The finding's diagnosis where the check itself is the experiment."""
-    return bundles.diagnosis.named(code)
+    twins.expect_twin_contract(submission, rng)
 
 
 @pytest.mark.task("command")
 @pytest.mark.points(2)
 def test_command_unknown(submission, rng):
     """For other frictions and speeds, forwards and backwards, the drive balances the friction"""
-    cases = [(float(rng.uniform(0.1, 2.0)), float(rng.uniform(-2.0, 2.0))) for _ in range(8)]
-    bundles.expect_drives(submission, cases)
+    speeds = rng.uniform(0.2, 2.0, 8) * np.tile([1.0, -1.0], 4)
+    twins.expect_drives(submission, [(float(rng.uniform(0.1, 2.0)), float(speed)) for speed in speeds])
 
 
 @pytest.mark.task("command")
 @pytest.mark.points(3)
 def test_command_closes_loop(submission, rng):
-    """Driven by command, a cart whose friction jumps gets to its speed and back to it"""
-    speed, target, drives = loops.through_command(submission, rng)
-    kit.expect_close(
-        speed,
-        target,
-        rel=0.08,
-        source=bundles.CALIBRATED,
-        quantity="speed of the cart at the end",
-        units="m/s",
-        input={"target": target, "drives": drives},
-        message="A cart that is driven by command does not hold its speed after its friction has changed.",
-        help="The drive comes from the friction that the twin has learned and from the speed asked for.",
-        diagnose=lambda: twins.of_command(submission),
-    )
+    """Driven by command, carts whose friction jumps get to their speed and back to it, both ways"""
+    twins.expect_command_closes_loop(submission, rng)

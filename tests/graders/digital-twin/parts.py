@@ -1,84 +1,30 @@
-"""The longer comparisons of the hidden graders of ``digital-twin``."""
+"""The comparisons of the hidden graders of ``digital-twin`` whose right values are found in another way."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
 from course.grading import kit
 
-bundles = kit.companion("digital-twin", "bundles")
-actuators, sensors = bundles.actuators, bundles.sensors
+actuators = kit.companion("digital-twin", "actuator_bundles")
+sensors = kit.companion("digital-twin", "sensor_probes")
 rays = kit.sibling(__file__, "rays")
 
 
-def expect_randomness(submission, rng):
-    """Noise and bias are independent, and the generator that is passed in decides about both."""
-    n, dt, seed = 4000, rng.uniform(0.004, 0.05), int(rng.integers(2**32))
-    calls = [(np.zeros(n), dt, 0.01, 0.01, 0.0, np.random.default_rng(s)) for s in (seed, seed, seed + 1)]
-    first, again, other = bundles.imu_pairs(submission, calls)
-    repeats = np.array_equal(first, again) and not np.array_equal(first, other)
-    kit.expect_true(
-        bool(repeats),
-        "The generator that is passed in does not decide about the noise.",
-        help="Draw from rng and from nothing else.",
-        diagnose=lambda: sensors.of_randomness(submission),
-    )
-    with np.errstate(all="ignore"):
-        white, steps = first[0] - first[1], np.diff(first[1])
-        pairs = ((white[:-1], steps), (white[1:], steps), (white[:-1], white[1:]), (steps[:-1], steps[1:]))
-        alike = [abs(float(np.corrcoef(a, b)[0, 1])) for a, b in pairs]
-    kit.expect_bounded(
-        max(alike) if np.all(np.isfinite(alike)) else math.nan,
-        high=0.1,
-        source="six times the scatter of a correlation from 4000 samples",
-        quantity="largest correlation",
-        input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
-        message="White noise and steps of the bias are not independent of each other and of their own past.",
-        help="Draw two arrays of standard normal numbers, and sum up only one of them.",
-        diagnose=lambda: sensors.of_imu(submission),
-    )
-
-
-def expect_scan_noise(submission, rng):
-    """Hits have noise of their own, never below zero, and other readings have none."""
-    r_max, sigma = rng.uniform(6.0, 9.0), rng.uniform(0.02, 0.08)
-    wall = np.array([[[3.0, -30.0], [3.0, 30.0]]])
-    fan = np.linspace(-2.0, 2.0, 4000)
-    calls = [(np.array([x, 0.0, 0.0]), wall, fan, r_max, sigma, rng) for x in (0.0, 3.0 - 0.5 * sigma)]
-    far, near = (kit.as_vector(v, 4000, "ranges") for v in submission.call_each("lidar", calls))
-    expected, _ = rays.distances(calls[0][0], wall, fan, r_max)
-    misses = expected == r_max
-    given = {"r_max": r_max, "sigma": sigma, "beams": 4000}
-    ask = lambda: sensors.of_lidar_noise(submission) or sensors.of_lidar(submission)  # noqa: E731
-    kit.expect_true(
-        bool(np.all(far[misses] == r_max)),
-        "A beam that hits nothing does not read r_max exactly.",
-        help="Noise belongs to hits only.",
-        input=given,
-        diagnose=ask,
-    )
-    noise = (far - expected)[~misses]
-    kit.expect_close(
-        bundles.std(noise),
-        sigma,
-        rel=0.1,
-        source="five times the scatter of a std from the hits of one scan, 2000 or more",
-        quantity="std of the noise",
+def expect_ranges(submission, value, pose, walls, angles, r_max, message):
+    """Every beam that is no close call reads the distance to its nearest wall, or r_max."""
+    expected, clear = rays.distances(pose, walls, angles, r_max)
+    kit.expect_array(
+        kit.as_vector(value, len(angles), "ranges")[clear],
+        expected[clear],
+        abs=1e-9,
+        source="rounding",
+        quantity="ranges",
         units="m",
-        input=given,
-        message="The noise of the hits does not have the std sigma.",
-        help="Add sigma times a standard normal number of its own to each hit.",
-        diagnose=ask,
-    )
-    ahead = near[np.abs(fan) < 0.5]  # half a std from the wall, nearly: three in ten readings fall below zero
-    kit.expect_true(
-        bool(np.all(ahead >= 0.0) and np.mean(ahead == 0.0) > 0.2),
-        "Very close to a wall, the noise is not cut off at zero.",
-        help="No distance is below zero: np.maximum(..., 0.0) after the noise.",
-        input=given,
-        diagnose=ask,
+        input={"pose": pose, "segments": walls, "angles": angles, "r_max": r_max, "sigma": 0.0},
+        message=message,
+        help="Try a wall behind the robot, one that the beam misses, two in a row, and none.",
+        diagnose=lambda: sensors.of_lidar(submission),
     )
 
 
@@ -88,48 +34,25 @@ def expect_hall(submission, rng):
     poses = np.column_stack((rng.uniform(-1.5, 1.5, (5, 2)), rng.uniform(-6, 6, 5)))
     angles = np.sort(rng.uniform(-3.1, 3.1, 40))
     calls = [(pose, walls, angles, r_max, 0.0, rng) for pose in poses]
+    message = "In an unknown hall, without noise, a distance is wrong."
     for pose, value in zip(poses, submission.call_each("lidar", calls), strict=True):
-        expected, clear = rays.distances(pose, walls, angles, r_max)
-        ranges = kit.as_vector(value, len(angles), "ranges")
-        kit.expect_array(
-            ranges[clear],
-            expected[clear],
-            abs=1e-9,
-            source="rounding",
-            quantity="ranges",
-            units="m",
-            input={"pose": pose, "segments": walls, "r_max": r_max, "sigma": 0.0},
-            message="In an unknown hall, without noise, a distance is wrong.",
-            help="Try a wall behind the robot, one that the beam misses, two in a row, and none.",
-            diagnose=lambda: sensors.of_lidar(submission),
-        )
+        expect_ranges(submission, value, pose, walls, angles, r_max, message)
 
 
-def expect_slow_turns(submission, rng):
-    """As the turn rate goes to zero, the arc goes over into a straight line."""
-    # One in each decade of the slow ones: whatever is taken for straight, one just below it is asked for.
-    decades = np.arange(-11, -1) + rng.uniform(0, 1, 10)
-    rates = [0.0, 0.0, *(10.0 ** rng.uniform(-14, -11, 8)), *(10.0**decades)]
-    track = rng.uniform(0.3, 0.8)
-    calls = []
-    for rate in rates:
-        v, half = rng.uniform(0.2, 0.9), rng.choice([-1, 1]) * rate * track / 2
-        calls.append((rng.uniform(-2, 2, 3), v - half, v + half, track, rng.uniform(0.5, 2.0)))
-    for call, value in zip(calls, submission.call_each("diff_drive_step", calls), strict=True):
-        pose, (v_left, v_right, _, dt) = call[0], call[1:]
-        turn = (v_right - v_left) / track * dt
-        way = (v_left + v_right) / 2 * dt * (1 - turn**2 / 24 + turn**4 / 1920)
-        middle = pose[2] + turn / 2
-        end = pose + np.array([way * math.cos(middle), way * math.sin(middle), turn])
-        bundles.expect_pose(
-            submission,
-            value,
-            pose,
-            call[1:],
-            end,
-            abs_=1e-5,
-            source="cancelling sines lose up to 1e-6 m at the best thresholds, 1e-4 m and more without one",
-        )
+def expect_tour(submission, rng):
+    """Thirty arcs one after the other; each step is compared with the arc from where the one before ended."""
+    track = rng.uniform(0.2, 0.8)
+    rates = rng.choice([-1, 1], 30) * rng.uniform(0.2, 1.5, 30)
+    rates = np.abs(rates) if rng.uniform() < 0.5 else rates
+    speeds, dts = rng.uniform(-0.8, 0.8, 30), rng.uniform(0.1, 2.0, 30)
+    calls = [
+        (float(v - rate * track / 2), float(v + rate * track / 2), track, float(dt))
+        for v, rate, dt in zip(speeds, rates, dts, strict=True)
+    ]
+    pose = rng.uniform(-3, 3, 3)
+    for value, wheels in zip(submission.fold("diff_drive_step", pose, calls)[1:], calls, strict=True):
+        actuators.expect_pose(submission, value, pose, wheels)
+        pose = kit.as_vector(value, 3, "the pose")
 
 
 def expect_swings(submission, rng):
@@ -144,30 +67,13 @@ def expect_swings(submission, rng):
             y = float(np.clip(y, value - gap / 2, value + gap / 2))
             outputs.append(y)
         inputs += x.tolist()
-    bundles.expect_play(submission, inputs, gap, states, outputs)
+    actuators.expect_play(submission, inputs, gap, states, outputs)
 
 
-def expect_motor(submission, w, calls):
-    """A motor goes through these commands as theory says."""
-    found = submission.fold("motor_step", w, calls)[1:]
-    expected = []
-    for u, dt, tau, u_max, dead in calls:
-        goal = float(np.clip(u, -u_max, u_max)) * (abs(u) > dead)
-        w = goal + (w - goal) * math.exp(-dt / tau)
-        expected.append(w)
-    kit.expect_array(
-        [kit.as_number(value, "w_next") for value in found],
-        expected,
-        abs=1e-9,
-        source="rounding",
-        quantity="w",
-        units="rad/s",
-        t=np.cumsum([dt for _, dt, *_ in calls]),
-        input={"(u, dt, tau, u_max, deadband)": calls},
-        message="The speed of an unknown motor is not what its command, limits and lag make of it.",
-        help="In this order: dead band, saturation, then the exact lag from wherever the speed is.",
-        diagnose=lambda: actuators.of_motor(submission),
-    )
+def expect_delays(submission, cases):
+    """Each signal (x, dt, latency) comes out that much later."""
+    for case, value in zip(cases, submission.call_each("delay_line", cases), strict=True):
+        actuators.expect_delayed(value, *case, delayed(*case))
 
 
 def delayed(x, dt, latency):

@@ -73,6 +73,18 @@ def bench(submission):
     return [probes.estimate_of(value) for value in values[: len(carts)]], carts
 
 
+def weak(submission):
+    """What identify says about a short and weak recording of each reality.
+
+    Raises:
+        CheckFailed, StudentFailure: identify gave no estimate.
+    """
+    recordings = reference.weak_recordings(submission.seed)
+    call = lambda: submission.call_each("identify", recordings)  # noqa: E731
+    values = _kept(submission, "weak", lambda: probes.patient(call, "IDENTIFY_TOO_SLOW"))
+    return [probes.estimate_of(value) for value in values]
+
+
 def means(estimates):
     """Per reality the mean of what was said about its two recordings: chance weighs less than in one."""
     half = len(estimates) // 2
@@ -94,12 +106,13 @@ def _identified(submission, carts):
         rng = np.random.default_rng([submission.seed, 7])
         recordings += [_recording(each, own, rng) for each in carts[:3]]
     try:
-        return probes.patient(lambda: submission.call_each("identify", recordings))
+        return probes.patient(lambda: submission.call_each("identify", recordings), "IDENTIFY_TOO_SLOW")
     except kit.StudentFailure:
         if len(recordings) == len(carts):
             raise
         # Only the submission's own excitation may be at fault, and that is another task.
-        return probes.patient(lambda: submission.call_each("identify", recordings[: len(carts)]))
+        alone = recordings[: len(carts)]
+        return probes.patient(lambda: submission.call_each("identify", alone), "IDENTIFY_TOO_SLOW")
 
 
 def _recording(reality, u, rng):

@@ -13,8 +13,9 @@ import numpy as np
 
 from course.grading import kit
 
+bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")
-H, NAMES, FLEET = cart.H, cart.NAMES, cart.FLEET
+NAMES = cart.NAMES
 
 #: Three types of cart, as factors of the data sheet's values: light with a slow drive, ordinary, heavy with
 #: a quick one. So far apart that no gains serve all three (tests/benchmarks/calibration/sim-to-real.md).
@@ -75,6 +76,24 @@ def success(seed, i, kp, kd):
     return min(1.0, best / own)
 
 
+#: Which box ``tune`` is asked about beside the fleet's, for each reality.
+OTHER_BOXES = (cart.LOADED, cart.PROMPT, cart.shifted_box(0.25))
+
+
+@functools.lru_cache(maxsize=64)
+def _other_fleet(seed, i):
+    """Carts drawn from the other box about reality i, and the least mean settling that any gains reach."""
+    carts = cart.drawn(realities(seed)[i], OTHER_BOXES[i], 300, np.random.default_rng([seed, 8, i]))
+    return carts, search(carts, [seed, 9, i], first=100)[2]
+
+
+def other_success(seed, i, kp, kd):
+    """min(1, best/own) of these gains on carts drawn from the other box about reality i."""
+    carts, best = _other_fleet(seed, i)
+    own = float(cart.rollout(kp, kd, carts, np.random.default_rng([seed, 9, i])).mean())
+    return min(1.0, best / own)
+
+
 # -- stand-ins ------------------------------------------------------------------------------------------
 
 
@@ -92,7 +111,19 @@ def tune(estimate, box, draws=400):
 @functools.lru_cache(maxsize=4)  # of runs: 300 kB each
 def recordings(seed):
     """Two bench recordings of each reality, with random full force: six (t, u, y)."""
-    return cart.prbs_recordings([*realities(seed)] * 2, cart.BUDGET_S, np.random.default_rng([seed, 4]))
+    carts, rng = [*realities(seed)] * 2, np.random.default_rng([seed, 4])
+    return cart.prbs_recordings(carts, cart.BUDGET_S, cart.U_BENCH, rng)
+
+
+@functools.lru_cache(maxsize=4)
+def weak_recordings(seed):
+    """One recording of 8 s at 1.2 N of each reality: three (t, u, y)."""
+    rng = np.random.default_rng([seed, 10])
+    return cart.prbs_recordings(realities(seed), *WEAK, rng)
+
+
+#: Seconds and force (N) of a recording that tells little.
+WEAK = (8.0, 1.2)
 
 
 def box_success(seed, box):
@@ -110,37 +141,6 @@ def _box_success(seed, ends):
     return float(np.mean([success(seed, i, *tune(real, factors)) for i, real in enumerate(realities(seed))]))
 
 
-# -- what a gap's measurement can reach ------------------------------------------------------------------
-
-
 def reach(seed, excitation, parameter, seconds):
     """The narrowest 95 % half-width, as a share, that any estimator could have: worst of the realities."""
-    if parameter == "noise":
-        # A standard deviation from n samples of noise alone is known to 1/sqrt(2n); moving, it is not seen.
-        return 1.96 / math.sqrt(2 * seconds / H) if excitation == "rest" else math.inf
-    return _reach(seed, excitation, round(seconds, 2))[(*NAMES, "lag").index(parameter)]
-
-
-@functools.lru_cache(maxsize=256)
-def _reach(seed, excitation, seconds):
-    n = max(2, round(seconds / H))
-    rng = np.random.default_rng([seed, 5])
-    t = H * np.arange(n)
-    f1 = 3.0  # Hz, where the chirp ends
-    command = {
-        "rest": lambda: np.zeros(n),
-        "constant": lambda: np.full(n, cart.U_BENCH),
-        "slow_sine": lambda: cart.U_BENCH * np.sin(2 * np.pi * 0.05 * t),
-        "chirp": lambda: cart.U_BENCH * np.sin(2 * np.pi * (0.1 * t + (f1 - 0.1) * t**2 / (2 * t[-1]))),
-        "multisine": lambda: _multisine(t, rng),
-        "prbs": lambda: cart.prbs(n, cart.U_BENCH, rng),
-    }[excitation]()
-    return cart.attainable(command, realities(seed)).max(axis=0)
-
-
-def _multisine(t, rng):
-    tones = np.arange(0.1, 2.45, 0.1)
-    phases = rng.uniform(0, 2 * np.pi, len(tones))
-    waves = np.sin(2 * np.pi * np.outer(t, tones) + phases) / np.sqrt(tones)
-    total = waves.sum(axis=1)
-    return cart.U_BENCH * total / np.abs(total).max()
+    return bench.reach(excitation, parameter, seconds, realities(seed), (seed, 5))

@@ -124,3 +124,32 @@ def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
     )
     assert done.returncode == 4
     assert json.loads(done.stdout)["error"]["code"] == "needs_checkout"
+
+
+def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: Path) -> None:
+    """Names of folders and archives, exceptions and values: on the terminal and in what is explained."""
+    solution = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+    forged = "ada 10 of 10 passed"
+    names = {
+        f"bob\n{forged}": solution,
+        f"cy\u202e{forged}": solution,
+        "dan": f"raise ValueError('x\\n{forged}\u2066')".encode(),
+        "gus": solution + f"\ndef double(x):\n    raise ValueError('x\\n{forged}\u2066')\n".encode(),
+        f"eve\r{forged}": b"def (",
+    }
+    for name, source in names.items():
+        (tmp_path / "class" / name).mkdir(parents=True)
+        (tmp_path / "class" / name / "doubling.py").write_bytes(source)
+    (tmp_path / "class" / "flo").mkdir()
+    (tmp_path / "class" / "flo" / f"\n{forged}.zip").write_bytes(b"PK")
+    ran = course(
+        "grade", "run", tmp_path / "class", "--exercise", "doubling", "--out", tmp_path / "out",
+        "--isolation", "process", "--plain",
+    )  # fmt: skip
+    assert ran.returncode == 6, ran.stderr
+    told = [course("grade", "explain", tmp_path / "out", name, "doubling", "--plain") for name in names]
+    for said in (ran.stdout, ran.stderr, *(done.stdout for done in told)):
+        assert not any(line.strip().startswith(forged) for line in said.splitlines()), said
+        assert not set("\u202e\u2066\r") & set(said), said
+    assert "bob\\n" in ran.stdout
+    assert any("raised ValueError" in done.stdout for done in told)

@@ -23,7 +23,9 @@ words = kit.companion("digital-twin", "diagnosis").WORDS
 sensors = kit.companion("digital-twin", "sensor_probes")
 actuators = kit.companion("digital-twin", "actuator_probes")
 twins = kit.companion("digital-twin", "twin_probes")
-bundles = kit.companion("digital-twin", "bundles")
+actuator_bundles = kit.companion("digital-twin", "actuator_bundles")
+sensor_bundles = kit.companion("digital-twin", "sensor_bundles")
+twin_bundles = kit.companion("digital-twin", "twin_bundles")
 scenes = kit.companion("digital-twin", "scenes")
 
 
@@ -40,11 +42,14 @@ class Fake:
     def call_each(self, name, calls):
         return [self.call(name, *args) for args in calls]
 
-    def fold(self, name, state, calls):
+    def call_inspect(self, name, *args):
+        return kit.Inspected(self.call(name, *args), list(args), False)
+
+    def fold(self, name, state, calls, *, carry=None, keep=None):
         states = [state]
         for args in calls:
             states.append(self.call(name, states[-1], *args))
-        return states
+        return states if keep is None else [{k: s[k] for k in keep} for s in states[:-1]] + states[-1:]
 
 
 def imu(white=1.0, step=1.0, power=-0.5, step_power=0.5, add=1.0, seed=None):
@@ -194,8 +199,22 @@ def test_an_encoder_that_errs_is_told_its_mistake(code, wrong):
 
 def test_a_density_without_its_root_of_two_is_told_so():
     still = scenes.recording(np.random.default_rng(1), 8000, 0.01, 0.002, 0.001, 0.0)
-    found = float(np.std(np.diff(still)) * math.sqrt(0.01))
-    assert sensors.of_density(found, still, 0.01, 0.002).code == "DENSITY_FROM_DIFFERENCES"
+    found = np.array([np.std(np.diff(still)) * math.sqrt(0.01)])
+    assert sensors.of_density(found, [(still, 0.01, 0.002)]).code == "DENSITY_FROM_DIFFERENCES"
+
+
+def test_walks_and_biases_are_told_what_is_known_of_them_and_no_more():
+    rng = np.random.default_rng(2)
+    cases = sensor_bundles.recordings(rng, 8, lambda: (0.01, 0.002, 0.003, 0.05))
+    walks = np.array([case[3] for case in cases])
+    biases = np.array([case[4] for case in cases])
+    assert min(biases) < 0 < max(biases)
+    for code, factor in (("WALK_WITHOUT_THREE", 3**-0.5), ("WALK_TOO_SMALL", 0.2), ("WALK_TOO_LARGE", 1.7)):
+        assert sensors.of_walk(factor * walks, cases).code == code
+    neighbours = np.array([np.std(np.diff(case[0])) / 0.1 for case in cases])
+    assert sensors.of_walk(neighbours, cases).code == "NOISE_COUNTED_AS_DRIFT"
+    assert sensors.of_bias0(np.abs(biases), cases).code == "BIAS0_WITHOUT_SIGN"
+    assert sensors.of_bias0(biases + 1.0, cases) is None
 
 
 DRIVE = [
@@ -362,10 +381,10 @@ def test_a_command_that_errs_is_told_its_mistake(code, wrong):
 def test_every_mistake_that_has_words_is_made_by_a_mutant_or_a_test():
     mutants = tomllib.loads((SOLUTION / "mutants.toml").read_text())["mutant"]
     made = {mutant["diagnosis"] for mutant in mutants}
-    for cases in (IMU, LIDAR, ENCODER, DRIVE, DELAY, SYNC, COMMAND):
+    for cases in (IMU, LIDAR, ENCODER, DRIVE, DELAY, SYNC, COMMAND):  # and the walks and biases above
         made |= {code for code, _ in cases}
     made |= {code for code, _ in actuators._motor_slips()} | {code for code, _ in actuators._play_slips()}
-    made |= {"DENSITY_FROM_DIFFERENCES", "STRAIGHT_DIVIDES_BY_ZERO"}
+    made |= {"DENSITY_FROM_DIFFERENCES", "STRAIGHT_DIVIDES_BY_ZERO", "WALK_TOO_SMALL", "WALK_TOO_LARGE"}
     assert set(words) - made == set()
 
 
@@ -381,11 +400,51 @@ def test_the_cart_rolls_through_a_jump_of_its_friction_as_small_steps_do():
 
 def test_late_measurements_arrive_out_of_order_and_the_truth_is_that_of_the_newest():
     cart = scenes.Cart(((0.0, 0.5),), v=1.0)
-    calls, truth = scenes.measured(cart, 0.5, 0.1 * np.arange(1, 101), np.random.default_rng(2), late=0.3)
-    times = np.array([t for _, t in calls])
+    run = scenes.measured(cart, 0.5, 0.1 * np.arange(1, 101), np.random.default_rng(2), late=0.3)
+    times = np.array([t for _, t in run.calls])
     assert np.sum(np.diff(times) < 0) > 10
-    np.testing.assert_allclose(truth[:, 0], np.maximum.accumulate(times))
-    np.testing.assert_allclose(truth[:, 1], truth[:, 0])  # at 1 m/s throughout
+    np.testing.assert_allclose(run.truth[:, 0], np.maximum.accumulate(times))
+    np.testing.assert_allclose(run.truth[:, 1], run.truth[:, 0])  # at 1 m/s throughout
+    np.testing.assert_array_equal(run.late, run.truth[:, 0] > times)
+    np.testing.assert_allclose(run.errors, [z for z, _ in run.calls] - times)
+
+
+def test_no_angle_of_an_encoder_lies_where_rounding_decides():
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        per_turn = int(rng.integers(7, 500))
+        counts = sensor_bundles.angles_between_counts(rng, 600, 10 * per_turn, per_turn)
+        twice = 2 * counts * per_turn / (2 * math.pi)
+        assert np.min(np.abs(twice - np.rint(twice))) > 0.01
+
+
+@pytest.mark.parametrize("gain", [0.0, 0.2, 0.6, 1.0, 1.5, 2.0, 3.0])
+def test_a_correction_of_any_gain_the_readme_allows_closes_the_loop(gain):
+    def command(twin, target):
+        return twin["friction"] * target + gain * (target - twin["speed"])
+
+    for seed in range(40):
+        twin_bundles.expect_command_closes_loop(Fake("command", command), np.random.default_rng(seed))
+
+
+def test_a_twin_that_passes_the_measurement_on_is_never_good_enough():
+    def passes_on(twin, z, t):
+        out = right.sync(twin, z, t)
+        return {**out, "position": z} if t >= twin["t"] else out
+
+    for seed in range(20):
+        for late, sign in ((0.0, 1.0), (0.33, -1.0)):
+            with pytest.raises(kit.CheckFailed):
+                twin_bundles.expect_keeps_up(
+                    Fake("sync", passes_on), np.random.default_rng(seed), sign=sign, late=late, message="it"
+                )
+
+
+def test_arcs_by_their_radius_and_by_the_chord_meet():
+    for turn in (0.0299999, 0.0300001):
+        wheels = (0.5 - turn / 4, 0.5 + turn / 4, 0.5, 1.0)
+        expected = right.diff_drive_step((1.0, 2.0, 0.7), *wheels)
+        assert actuator_bundles.arc_end((1.0, 2.0, 0.7), wheels) == pytest.approx(expected, abs=1e-12)
 
 
 def test_the_report_describes_the_actuators_and_the_gyroscope_that_were_drawn():

@@ -13,6 +13,7 @@ import pytest
 from course.grading import kit
 
 ROOT = Path(__file__).resolve().parents[3]
+bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")
 words = kit.companion("sim-to-real", "words")
 probes = kit.companion("sim-to-real", "probes")
@@ -120,7 +121,10 @@ def _with(**changes):
         ("LAG_NOT_SUM", _with(lag=lambda p: p["tau"])),
         ("UNITS_NOT_SECONDS", _with(lag=lambda p: 1000 * p["lag"])),
         ("LOCAL_MINIMUM", _with(latency=lambda p: p["latency"] + 0.5, lag=lambda p: p["lag"] + 0.5)),
-        ("NOISE_DIFFERENTIATED", _with(m=lambda p: 1.2 * p["m"])),
+        ("FRICTIONS_SWAPPED", _with(b=lambda p: p["Fc"], Fc=lambda p: p["b"])),
+        ("VISCOUS_MISSING", _with(b=lambda p: 0.0)),
+        ("COULOMB_MISSING", _with(Fc=lambda p: 0.0)),
+        ("TIME_FROM_SHEET", _with(tau=lambda p: cart.SHEET["tau"], lag=lambda p: p["latency"] + 0.06)),
         ("ESTIMATE_HARD_CODED", lambda truth: _with()(cart.SHEET)),
     ],
 )
@@ -134,6 +138,58 @@ def test_a_right_estimate_is_given_no_code():
     estimates = [_with()(truth) for truth in truths]
     assert probes.of_values(estimates, truths) is None
     assert judge.misses(estimates, truths) == (0, 8)
+
+
+@pytest.mark.parametrize("way", [0, 1])
+def test_a_mass_from_differences_is_told_so_and_any_other_wrong_mass_is_not(way):
+    recordings, truths = judge.public_recordings()
+    masses = [
+        bench.differentiated(u, y, truth)[way] for (_, u, y), truth in zip(recordings, truths, strict=True)
+    ]
+    estimates = [_with(m=lambda _, m=m: m)(truth) for m, truth in zip(masses, truths, strict=True)]
+    assert probes.of_values(estimates, truths, recordings).code == "NOISE_DIFFERENTIATED"
+    heavier = [_with(m=lambda p: 1.2 * p["m"])(truth) for truth in truths]
+    assert probes.of_values(heavier, truths, recordings) is None
+    assert probes.of_misses(heavier, truths, recordings).code == "VALUES_OFF"
+
+
+def test_what_is_exactly_at_a_limit_is_within_it():
+    value = 1.1253945078486802
+    entry = {"m": (value, value * 0.97, value * 1.03)}
+    entry |= dict.fromkeys(("b", "Fc", "tau", "latency", "lag"), (value, value * 0.8, value * 1.2))
+    judge.expect_intervals([entry], [cart.PUBLIC])
+    for scale, holds in ((0.95, 0.95), (1.5, 1.0)):
+        for k, w in cart.FLEET.items():
+            assert words.inside(k, math.exp(-scale * w), math.exp(scale * w)) >= holds
+            assert words.width(k, math.exp(-scale * w), math.exp(scale * w)) <= 1.5
+
+
+@pytest.mark.parametrize(
+    ("metric", "threshold", "code"),
+    [
+        ("error", 0.94, "METRIC_DOES_NOT_JUDGE"),
+        ("success", 0.5, "PROMISE_TOO_SMALL"),
+        ("success", 92.0, "PROMISE_NOT_A_SHARE"),
+        ("success", 1.0, "PROMISE_OF_PERFECTION"),
+    ],
+)
+def test_a_wrong_promise_is_told_what_is_wrong_with_it(metric, threshold, code):
+    assert words.of_promise(metric, threshold).code == code
+
+
+@pytest.mark.parametrize(
+    ("box", "best"), [(cart.LOADED, cart.LOADED_BEST_S), (cart.PROMPT, cart.PROMPT_BEST_S)]
+)
+def test_the_least_settling_on_another_box_is_what_a_search_finds(box, best):
+    carts = cart.drawn(cart.PUBLIC, box, 300, np.random.default_rng(11))
+    assert reference.search(carts, 12, first=100)[2] == pytest.approx(best, rel=0.01)
+
+
+def test_the_given_fit_finds_everything_in_reversals_and_no_lag_in_a_slow_swing():
+    quick = cart.prbs(2000, 3.0, np.random.default_rng(5))
+    slow = 3.0 * np.sin(2 * np.pi * 0.05 * cart.H * np.arange(2000))
+    assert max(bench.fit_errors(quick, cart.PUBLIC)) < 0.03
+    assert bench.fit_errors(slow, cart.PUBLIC)[3] > 0.5
 
 
 def test_a_bench_run_is_known_to_show_nothing_of_what_does_not_move():

@@ -10,6 +10,7 @@ import ast
 import math
 import re
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -439,3 +440,14 @@ def test_a_callback_refuses_any_other_number_of_arguments(call):
     with pytest.raises(kit.CheckFailed) as refused:
         call(probes.callback("energy(q_i, v_i)", lambda q, v: 0.0))
     assert refused.value.finding.diagnosis == "CALLED_WRONGLY"
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "expected"),
+    [(0.95, 1.0, "ROUGH_QUANTILES"), (1.0, 1.05, "ROUGH_QUANTILES"), (0.5, 1.0, None)],
+)
+def test_a_band_of_one_run_is_never_told_that_it_ignores_the_runs(low, high, expected):
+    for dof in (20, 35, 60):
+        lo, hi = (factor * chi_square.quantile(dof, p) for factor, p in ((low, 0.025), (high, 0.975)))
+        found = probes.of_band(lo, hi, dof, 1, 0.05, chi_square.quantile, NormalDist().inv_cdf)
+        assert code(found) == expected

@@ -60,7 +60,9 @@ def perfect(job: Job) -> Answer:
         Verdict(
             exercise=job.exercise, scope="full", state="graded", score=10.0, max_score=10.0, passed=True,
             checks=(), isolation="L3",
-        )
+        ),
+        number=job.number,
+        sha256=Submission(job.files).sha256,
     )  # fmt: skip
 
 
@@ -152,9 +154,9 @@ def test_everyone_is_graded_once_in_batches_that_shrink_towards_the_end(doubling
     assert max(map(len, sizes)) <= 2 * 3, "one in hand and one waiting for each"
     assert sizes[0][0] == 8
     assert sizes[-1][-1] == 1
-    assert {(batch.seed, job.version) for row in workers.rounds for batch in row for job in batch.jobs} == {
-        (5, "v1")
-    }
+    assert {
+        (batch.terms.seed, job.version) for row in workers.rounds for batch in row for job in batch.jobs
+    } == {(5, "v1")}
 
 
 @pytest.mark.parametrize(("each_s", "largest"), [(0.02, 50), (0.001, 64), (0.3, 8), (2.0, 8)])
@@ -233,9 +235,27 @@ def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise
 
 
 def test_a_submission_no_grader_survived_is_our_fault(doubling: Exercise) -> None:
-    (found,) = grade(FakeWorkers(1, answer=lambda _: Answer()), entries_of(doubling, 1))
+    (found,) = grade(FakeWorkers(1, answer=nobody_survived), entries_of(doubling, 1))
     assert found.verdict.error is not None
     assert (found.verdict.state, found.verdict.error.code) == ("grader_error", "grader_died")
+
+
+def nobody_survived(job: Job) -> Answer:
+    return Answer(number=job.number, sha256=Submission(job.files).sha256)
+
+
+def test_an_answer_to_another_job_is_no_answer(doubling: Exercise) -> None:
+    first: list[Answer] = []
+
+    def mixed_up(job: Job) -> Answer:
+        """The answer to the very first job, three times; then as it should be."""
+        first.append(perfect(job))
+        return first[0] if len(first) < 4 else perfect(job)
+
+    found = list(grade(FakeWorkers(1, answer=mixed_up), entries_of(doubling, 3)))
+    assert sorted(one.entry.student for one in found) == ["s000", "s001", "s002"]
+    assert {one.verdict.state for one in found} == {"graded"}
+    assert len(first) > 3
 
 
 def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(
@@ -255,7 +275,7 @@ def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(
 
 
 def test_messages_of_another_format_are_refused_and_not_half_understood() -> None:
-    batch = Batch(FORMAT, None, "L2", 1.0, 0, ())
+    batch = Batch(FORMAT, Terms(), ())
     assert decode_batch(encode(batch)) == batch
     newer = msgspec.structs.replace(batch, format=FORMAT + 1)
     for payload in (encode(newer), b"", b"\xc1", msgspec.msgpack.encode({"format": FORMAT})):
@@ -342,7 +362,9 @@ def at_work(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Answers]]
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
 
     def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
-        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, level, "L1", 5.0, 0, tuple(jobs)))))
+        reply = decode_answers(
+            worker.grade_batch(encode(Batch(FORMAT, Terms(level, "L1", 5.0), tuple(jobs))))
+        )
         assert reply is not None
         return reply
 

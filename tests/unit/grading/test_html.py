@@ -15,7 +15,7 @@ import msgspec
 import pytest
 
 from course.errors import MissingCapabilityError
-from course.grading.exports.cells import number, safe_cell, spelled_out
+from course.grading.exports.cells import number, safe_cell
 from course.grading.exports.formats import export
 from course.grading.exports.html_report.class_page import class_page
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
@@ -25,6 +25,7 @@ from course.grading.gradebook.book import Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
 from course.grading.running.run import open_results
+from course.printable import one_line
 from course.scoring.verdict import Problem, Status
 from tests.unit.grading.made import (
     BROKEN,
@@ -122,7 +123,7 @@ def test_a_name_is_shown_as_text_on_the_page_of_its_own(out: Path) -> None:
     assert len(found) == len(NAMES) + 5
     listed = read_page(out / "students.html").text
     for name in NAMES:
-        shown = spelled_out(name if len(name) <= 120 else name[:120] + "…")
+        shown = one_line(name if len(name) <= 120 else name[:120] + "…")
         page = read_page(out / found[safe_cell(name)])
         assert shown in page.pieces, ascii(name[:40])
         assert shown in listed

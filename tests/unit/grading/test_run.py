@@ -10,16 +10,18 @@ import sys
 import zipfile
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
+import msgspec
 import pytest
 
-from course.errors import InternalError, UsageError
+from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake.students import read_class
 from course.grading.results.override import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
+from course.grading.running.grader import Answer
 from course.grading.running.run import RunOptions, Summary, grade_class, open_results
 from course.scoring.terms import Terms
 from course.scoring.verdict import Verdict
@@ -146,6 +148,86 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
     else:
         with pytest.raises(InternalError, match="cannot start"):
             list(graded)
+
+
+@pytest.mark.parametrize("forger", ["the verdict of another", "nonsense", "the number alone"])
+def test_a_verdict_is_taken_from_who_was_asked_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, doubling: Exercise, solution: bytes, forger: str
+) -> None:
+    """Whoever writes to the pipe of a grader, a frame too many must not move the next verdicts by one."""
+    make_class(tmp_path / "class", solution, 3)
+    read, forged = batch.read_frame, []
+
+    def first_a_forgery(source: IO[bytes]) -> bytes | None:
+        frame = read(source)
+        answer = msgspec.msgpack.decode(frame, type=Answer) if frame else None
+        if forged or answer is None or answer.verdict is None:
+            return frame
+        perfect = msgspec.structs.replace(answer.verdict, score=99.0)
+        forged.append(
+            {
+                "the verdict of another": Answer(perfect, number=5, sha256=answer.sha256),
+                "nonsense": 7,
+                "the number alone": Answer(perfect, number=answer.number),
+            }[forger]
+        )
+        return msgspec.msgpack.encode(forged[0])
+
+    monkeypatch.setattr(batch, "read_frame", first_a_forgery)
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    found = {one.entry.student: one.verdict for one in grade_all(entries, Terms(at_least="L1"))}
+    assert forged
+    assert {verdict.state for verdict in found.values()} == {"graded"}
+    assert len(found) == 3
+    assert max(verdict.score for verdict in found.values()) <= 10
+
+
+def test_a_submission_that_stops_its_grader_holds_nobody_up(
+    tmp_path: Path, doubling: Exercise, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 3)
+    stop = b"\nimport os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
+    (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + stop)
+    entries = read_class(tmp_path / "class", [doubling], required=True)
+    found = {one.entry.student: one.verdict.state for one in grade_all(entries, Terms(level="L1"))}
+    assert found == {"student-000": "graded", "student-001": "grader_error", "student-002": "graded"}
+
+
+def test_a_run_that_is_refused_leaves_its_name_free(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    """Also after it noted what could not be read: the corrected command will note that again."""
+    make_class(tmp_path / "class", solution, 2)
+    (tmp_path / "class" / "aaa").mkdir()
+    (tmp_path / "class" / "aaa" / "doubling.py").write_bytes(b"")
+    out, options = tmp_path / "out", RunOptions(exercises=("doubling",), terms=Terms(at_least="L1"))
+
+    def refused(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
+        for entry in entries:
+            if entry.problem is not None:
+                yield Graded(entry, batch.without_grading(entry, "ungradable", entry.problem))
+        raise MissingCapabilityError("No protection here.", help="Get some.", code="protection_level")
+
+    with pytest.raises(MissingCapabilityError):
+        grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
+    assert not out.exists()
+    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None)
+    assert summary.states["graded"] == 2
+
+    # What was there before, or has a result in it, stays.
+    with pytest.raises(UsageError):
+        grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
+    assert (out / "gradebook.sqlite").exists()
+
+    def broken_off(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+        yield next(grade_all((entry for entry in entries if entry.submission is not None), terms))
+        raise MissingCapabilityError("The scheduler is gone.", help="Start it.", code="no_scheduler")
+
+    with pytest.raises(MissingCapabilityError):
+        grade_class(
+            tmp_path / "class", tmp_path / "part", catalog, options, lambda *_: None, grade=broken_off
+        )
+    assert (tmp_path / "part" / "gradebook.sqlite").exists()
 
 
 def _children(parent: int) -> list[int]:

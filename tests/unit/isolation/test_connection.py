@@ -15,11 +15,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from course.isolation.failures import IsolationError, StudentFailure, printable
+from course.isolation.deadline import Deadline
+from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.levels import Exit
 from course.isolation.session import Connection, LoadRefusedError, RemoteFunction
 from course.isolation.wire import Codec, Kind
 from course.physics import systems
+from course.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,6 +57,12 @@ class Liar:
     def output(self) -> str:
         return self.printed
 
+    def cpu_s(self) -> float:
+        return monotonic()  # a thread of this process: there is no other clock for it
+
+    def asleep(self) -> bool:
+        return False
+
     def finish(self) -> Exit:
         for end in (self.sock, self._theirs):
             with contextlib.suppress(OSError):
@@ -78,7 +86,7 @@ def _value(kind: int, value: Any) -> bytes:
 def _connect(*frames: bytes, script: Any = None, seconds: float = 2.0, loaded: bool = True) -> Connection:
     begin = (READY, LOADED) if loaded else ()
     liar = Liar(*begin, *frames, script=script)
-    return Connection(liar, {"a.py": _SOURCE}, "a.py", monotonic() + seconds)  # type: ignore[arg-type]
+    return Connection(liar, {"a.py": _SOURCE}, "a.py", Deadline(seconds))  # type: ignore[arg-type]
 
 
 def test_an_answer_is_taken_as_a_plain_value() -> None:
@@ -220,7 +228,7 @@ def test_what_a_submission_says_cannot_steer_a_terminal() -> None:
     connection._handle.printed = "\x1b[1A100/100"  # type: ignore[attr-defined]
     with pytest.raises(StudentFailure) as caught:
         connection.call("f")
-    assert (caught.value.type, caught.value.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\n")
+    assert (caught.value.type, caught.value.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\\n")
     assert connection.output() == "\\x1b[1A100/100"
     connection.close()
     assert connection.output() == "\\x1b[1A100/100"
@@ -336,7 +344,7 @@ _HANGS: dict[str, Any] = {
 @pytest.mark.parametrize("script", _HANGS.values(), ids=_HANGS.keys())
 def test_nothing_holds_the_grader_beyond_the_deadline(script: Any) -> None:
     connection = _connect(script=script)
-    connection.deadline = monotonic() + 0.3
+    connection.deadline = Deadline(0.3)
     large = np.zeros(8 << 20)
     start = monotonic()
     with pytest.raises(StudentFailure) as caught:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from course.isolation import forked, launch, probe
+from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.levels import LIMITS, Level
 from course.isolation.plain import ProcessSpawner
@@ -39,7 +40,7 @@ def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def _connect(found: Any, source: str) -> Connection:
-    return Connection(found, {"a.py": source.encode()}, "a.py", monotonic() + 20)
+    return Connection(found, {"a.py": source.encode()}, "a.py", Deadline(20))
 
 
 # -- cleaning up ----------------------------------------------------------------------------------------
@@ -57,6 +58,23 @@ def test_a_tree_of_any_depth_is_removed(tmp_path: Path) -> None:
     os.close(here)
     launch.remove_tree(top)
     assert not top.exists()
+
+
+def test_deleting_what_somebody_left_stops_in_time_and_goes_on_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tops = [tmp_path / name for name in "ab"]
+    for top in tops:
+        for number in range(100):
+            (top / str(number) / "below").mkdir(parents=True)
+    left = [launch.removing(top) for top in tops]
+    monkeypatch.setattr(launch, "_TIDY_S", 0.0)
+    calls = 0
+    while left:
+        launch.tidy(left)
+        calls += 1
+    assert 200 <= calls <= 700  # an entry at a time, and nothing twice
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path: Path) -> None:
@@ -130,7 +148,7 @@ def test_what_a_plain_process_started_ends_with_it_even_if_it_left_first(plain: 
         "def g():\n    os._exit(0)\n",
     )
     child = connection.call("f")
-    connection.deadline = monotonic() + 0.5  # the child holds the connection open
+    connection.deadline = Deadline(0.5)  # the child holds the connection open
     with pytest.raises(StudentFailure):
         connection.call("g")
     end = monotonic() + 5

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.levels import MAX_OUTPUT, Level, Limits
 from course.isolation.probe import open_spawner
@@ -33,7 +34,7 @@ def load(workers: Spawner) -> Iterator[Any]:
     def load(source: str | bytes, **files: str) -> Connection:
         raw = source.encode() if isinstance(source, str) else source
         everything = {"main.py": raw, **{f"{name}.py": text.encode() for name, text in files.items()}}
-        opened.append(Connection(workers, everything, "main.py", monotonic() + 20))
+        opened.append(Connection(workers, everything, "main.py", Deadline(20)))
         return opened[-1]
 
     yield load
@@ -402,7 +403,7 @@ def test_a_crash_ends_one_worker_and_the_next_one_works(load: Any, code: str) ->
 
 def test_a_hang_ends_at_the_deadline(load: Any) -> None:
     connection = load("import time\ndef f():\n    time.sleep(20)\n")
-    connection.deadline = monotonic() + 0.3
+    connection.deadline = Deadline(0.3)
     start = monotonic()
     assert _failure(connection, "f").kind == "timeout"
     assert monotonic() - start < 1.3
@@ -431,7 +432,7 @@ def test_limits_are_those_that_were_asked_for(workers: Spawner) -> None:
             b"import numpy as np\ndef f():\n    return np.zeros(1 << 26).size\n"
             b"def g():\n    return [open('/dev/zero') for _ in range(20)]\n"
         )
-        connection = Connection(small, {"main.py": source}, "main.py", monotonic() + 20)
+        connection = Connection(small, {"main.py": source}, "main.py", Deadline(20))
         assert _failure(connection, "f").kind == "memory"
         assert _failure(connection, "g").type == "OSError"
         connection.close()

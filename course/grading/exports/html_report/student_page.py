@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.grading.exports.cells import number, spelled_out
+from course.grading.exports.cells import number
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.html_report.templates import render, shortened
 from course.grading.quiz import EXERCISE_ID as QUIZ
+from course.printable import one_line
 from course.scoring.numbers import numbers_of
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility
 
@@ -90,7 +91,7 @@ def student_page(results: Results, student: str, found: Sequence[Effective]) -> 
     return render(
         "student",
         scripted=False,
-        title=f"{shortened(spelled_out(called), 80)}: results",
+        title=f"{shortened(one_line(called), 80)}: results",
         course=results.course.id,
         called=called,
         student=student,

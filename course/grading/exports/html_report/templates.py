@@ -12,10 +12,11 @@ from typing import Any, Final
 import jinja2
 from markupsafe import Markup, escape
 
-from course.grading.exports.cells import number, spelled_out
+from course.grading.exports.cells import number
 from course.grading.exports.html_report.charts import duration, mark_of, percent, score_bins
 from course.grading.exports.html_report.words import when
 from course.grading.results.late import in_days
+from course.printable import one_line
 
 __all__ = ["MARKER", "macro", "render", "script", "shortened"]
 
@@ -95,13 +96,13 @@ def _shown(value: Any) -> Any:
     """Every value on its way into a page: characters that steer others are spelled out, line breaks stay."""
     if isinstance(value, Markup) or not isinstance(value, str) or value.isprintable():
         return value
-    return "\n".join(map(spelled_out, value.split("\n")))
+    return "\n".join(map(one_line, value.split("\n")))
 
 
 @lru_cache(maxsize=4096)
 def _name(student: str) -> Markup:
     """A name on one line, isolated so that one written from right to left does not turn its surroundings."""
-    return Markup("<bdi>{}</bdi>").format(spelled_out(shortened(student, _LONGEST_NAME)))
+    return Markup("<bdi>{}</bdi>").format(one_line(shortened(student, _LONGEST_NAME)))
 
 
 @lru_cache(maxsize=8192)  # the same few hundred sentences stand on every student's page

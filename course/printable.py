@@ -1,0 +1,43 @@
+"""Text of strangers as people may see it: it steers no terminal, hides nothing and turns nothing around.
+
+Exception messages, names of folders, values and lines of code all come from whoever handed something in. What
+is shown on one line goes through ``one_line``, so that nobody can add lines of their own to a report.
+"""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["one_line", "printable", "steady"]
+
+_UNUSUAL = re.compile(r"[^ -~]")
+_UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
+#: Control characters other than tab and newline; separators of lines; marks that turn the direction of text.
+_STEERING = re.compile(
+    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]"
+)
+
+
+def one_line(text: str, limit: int | None = None) -> str:
+    """At most ``limit`` characters on one line, those that are not printable spelled out."""
+    if text.isprintable():
+        return text[:limit]
+    return _UNUSUAL.sub(_spelled_out, text[:limit])[:limit]
+
+
+def printable(text: str, limit: int | None = None) -> str:
+    """The same, of text that is shown as lines of its own: line ends and tabs stay."""
+    return _UNUSUAL_IN_LINES.sub(_spelled_out, text[:limit])[:limit]
+
+
+def steady(text: str) -> str:
+    """Any text, our own too: only what would steer or turn what is around it is spelled out."""
+    return _STEERING.sub(_escaped, text)
+
+
+def _spelled_out(match: re.Match[str]) -> str:
+    return match[0] if match[0].isprintable() else _escaped(match)
+
+
+def _escaped(match: re.Match[str]) -> str:
+    return match[0].encode("unicode_escape").decode("ascii")

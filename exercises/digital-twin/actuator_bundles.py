@@ -1,0 +1,134 @@
+"""What public and hidden checks of actuators and odometry of ``digital-twin`` have in common."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+actuators = kit.companion("digital-twin", "actuator_probes")
+expect_clean = kit.companion("digital-twin", "bundles").expect_clean
+
+
+def expect_play(submission, inputs, gap, states, outputs):
+    """``backlash`` from each of these states gives that output, as y and as the next state."""
+    values = submission.call_each("backlash", list(zip(inputs, [gap] * len(inputs), states, strict=True)))
+    pairs = [kit.as_tuple(value, ("y", "state_next")) for value in values]
+    for column, name in enumerate(("y", "state_next")):
+        kit.expect_array(
+            [kit.as_number(pair[column], name) for pair in pairs],
+            outputs,
+            abs=1e-9,
+            source="rounding",
+            quantity=name,
+            t=np.arange(len(inputs)),  # the number of the input stands for its time
+            input={"x": inputs, "gap": gap, "state": states},
+            message="The output of the gear is not its old output, pushed by the edges of the gap.",
+            help="y is the state, clipped to [x - gap/2, x + gap/2], and so is the next state.",
+            diagnose=lambda: actuators.of_backlash(submission),
+        )
+
+
+def expect_delayed(value, x, dt, latency, expected):
+    """A signal comes out late; samples whose time is zero but for rounding may be either side of it."""
+    y = kit.as_vector(value, len(x), "the delayed signal")
+    t = dt * np.arange(len(x))
+    edge = np.abs(t - latency) < 1e-6 * dt
+    kit.expect_array(
+        np.where(edge, expected, y),
+        expected,
+        abs=1e-9,
+        source="rounding",
+        quantity="y",
+        t=t,
+        input={"x": x, "dt": dt, "latency": latency},
+        message="What comes out is not the signal of latency ago.",
+        help="At time k dt look at k dt - latency: between two samples on their line, before all 0.0.",
+        diagnose=lambda: actuators.of_delay(y, x, dt, latency),
+    )
+
+
+def expect_new_signal(submission, x, dt):
+    """Without latency the signal comes out as it went in, as an array of its own."""
+    value = expect_clean(submission, "delay_line", (x, dt, 0.0), ("x", None, None))
+    expect_delayed(value, x, dt, 0.0, x)
+
+
+def expect_motor(submission, w, calls, message, source="rounding"):
+    """A motor goes through these commands (u, dt, tau, u_max, deadband) as theory says, from the speed w."""
+    found = submission.fold("motor_step", w, calls)[1:]
+    expected = []
+    for u, dt, tau, u_max, dead in calls:
+        goal = float(np.clip(u, -u_max, u_max)) * (abs(u) > dead)
+        w = goal + (w - goal) * math.exp(-dt / tau)
+        expected.append(w)
+    kit.expect_array(
+        [kit.as_number(value, "w_next") for value in found],
+        expected,
+        abs=1e-9,
+        source=source,
+        quantity="w",
+        units="rad/s",
+        t=np.cumsum([dt for _, dt, *_ in calls]),
+        input={"(u, dt, tau, u_max, deadband)": calls},
+        message=message,
+        help="In this order: dead band, saturation, then the exact lag from wherever the speed is.",
+        diagnose=lambda: actuators.of_motor(submission),
+    )
+
+
+#: What the README allows of the position after one step, m, and of the heading, rad. Arcs by their radius
+#: lose up to 1e-6 m to cancelling sines at the best threshold, and 1e-4 m and more without one.
+POSITION_WITHIN, HEADING_WITHIN = 1e-5, 1e-9
+
+
+def arc_end(pose, wheels):
+    """Where a robot is after one step; wheels: (v_left, v_right, track, dt).
+
+    Where the turn is not slow, the end of the exact arc by its radius; else the chord by its series, whose
+    next term is below 1e-11 of the way.
+    """
+    v_left, v_right, track, dt = wheels
+    x, y, heading = pose
+    turn, way = (v_right - v_left) / track * dt, (v_left + v_right) / 2 * dt
+    if abs(turn) < 0.03:
+        chord, middle = way * (1 - turn**2 / 24 + turn**4 / 1920), heading + turn / 2
+        return np.array([x + chord * math.cos(middle), y + chord * math.sin(middle), heading + turn])
+    dx = way / turn * (math.sin(heading + turn) - math.sin(heading))
+    dy = -way / turn * (math.cos(heading + turn) - math.cos(heading))
+    return np.array([x + dx, y + dy, heading + turn])
+
+
+def expect_pose(submission, value, pose, wheels, expected=None):
+    """One step of the robot ends there; where nothing is given, at the end of its arc."""
+    end = kit.as_vector(value, 3, "the pose")
+    expected = arc_end(pose, wheels) if expected is None else np.asarray(expected)
+    for part, limit, units in ((slice(2), POSITION_WITHIN, "m"), (slice(2, 3), HEADING_WITHIN, "rad")):
+        kit.expect_array(
+            end[part],
+            expected[part],
+            abs=limit,
+            source="the README's",
+            quantity="position" if units == "m" else "heading",
+            units=units,
+            input={"pose": pose, **dict(zip(("v_left", "v_right", "track", "dt"), wheels, strict=True))},
+            message="After one step, the robot is not where the arc of its two wheels ends.",
+            help="The axle's middle goes at the mean speed; the turn rate is the difference over the track.",
+            diagnose=lambda: actuators.of_drive(submission),
+        )
+
+
+def expect_slow_turns(submission, rng):
+    """As the turn rate goes to zero, the arc goes over into a straight line."""
+    # One in each decade of the slow ones: whatever is taken for straight, one just below it is asked for.
+    decades = np.arange(-11, -1) + rng.uniform(0, 1, 10)
+    rates = [0.0, 0.0, *(10.0 ** rng.uniform(-14, -11, 8)), *(10.0**decades)]
+    track = rng.uniform(0.3, 0.8)
+    calls = []
+    for rate in rates:
+        v, half = rng.uniform(0.2, 0.9), rng.choice([-1, 1]) * rate * track / 2
+        calls.append((rng.uniform(-2, 2, 3), v - half, v + half, track, rng.uniform(0.5, 2.0)))
+    for call, value in zip(calls, submission.call_each("diff_drive_step", calls), strict=True):
+        expect_pose(submission, value, call[0], call[1:])

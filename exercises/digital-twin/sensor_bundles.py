@@ -1,0 +1,328 @@
+"""What public and hidden checks of the sensors of ``digital-twin`` have in common."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+bundles = kit.companion("digital-twin", "bundles")
+scenes = kit.companion("digital-twin", "scenes")
+sensors = kit.companion("digital-twin", "sensor_probes")
+diagnosis, expect_clean = bundles.diagnosis, bundles.expect_clean
+
+
+def angles_between_counts(rng, n, most, per_turn):
+    """Angles (n,), rad, of up to ``most`` counts either way, none where rounding decides about a count.
+
+    Each lies 0.01 counts or more from every whole and every half count: multiplying before dividing, or
+    after, is off by 1e-12 of a count.
+    """
+    counts = rng.integers(-most, most, n) + 0.5 * rng.integers(0, 2, n) + rng.uniform(0.01, 0.49, n)
+    return counts * 2 * math.pi / per_turn
+
+
+def expect_counts(counts, theta, counts_per_rev):
+    """Counts are whole numbers, and those of floor throughout or of round throughout."""
+    given = {"theta": theta, "counts_per_rev": counts_per_rev}
+    if isinstance(counts, list):
+        whole = all(isinstance(count, int) and not isinstance(count, bool) for count in counts)
+    else:
+        whole = isinstance(counts, np.ndarray) and counts.dtype.kind == "i"
+    values = kit.as_vector(counts, len(theta), "counts")
+    exact = theta * counts_per_rev / (2 * math.pi)
+    floor, nearest = np.floor(exact), np.rint(exact)
+    wanted = floor if np.sum(values == floor) >= np.sum(values == nearest) else nearest
+    kit.expect_array(
+        values,
+        wanted,
+        abs=1e-9,
+        source="counts are exact",
+        quantity="counts",
+        units="counts",
+        input=given,
+        message="The counts are neither the angles rounded down to whole counts nor rounded to nearest.",
+        help="counts = theta * counts_per_rev / (2 pi), rounded the same way on both sides of zero.",
+        diagnose=lambda: sensors.of_encoder(values, theta, counts_per_rev),
+    )
+    kit.expect_true(
+        whole,
+        "The counts do not come as whole numbers.",
+        input=given,
+        diagnose=diagnosis.named("COUNTS_AS_FLOATS"),
+    )
+
+
+def std(values):
+    """The std of what may hold anything; NaN where it has none."""
+    with np.errstate(all="ignore"):
+        return float(np.std(values))
+
+
+def expect_std(values, expected, rel, source, message, diagnose, **finding):
+    """The std of a sample is the expected one."""
+    kit.expect_close(
+        std(values),
+        expected,
+        rel=rel,
+        source=source,
+        units="rad/s",
+        message=message,
+        diagnose=diagnose,
+        **finding,
+    )
+
+
+def imu_pairs(submission, calls):
+    """(measured, bias) of each call, as vectors as long as the true rate."""
+    pairs = []
+    for call, value in zip(calls, submission.call_each("imu", calls), strict=True):
+        measured, bias = kit.as_tuple(value, ("measured", "bias"))
+        n = len(call[0])
+        pairs.append((kit.as_vector(measured, n, "measured"), kit.as_vector(bias, n, "bias")))
+    return pairs
+
+
+def expect_white(submission, calls, rel, source):
+    """Without a walk, measured minus bias is as strong as the density says, at each sampling rate."""
+    for call, (measured, bias) in zip(calls, imu_pairs(submission, calls), strict=True):
+        true, dt, density = call[:3]
+        expect_std(
+            measured - bias,
+            density / math.sqrt(dt),
+            rel,
+            source,
+            "Without a walk, the spread of the measured rate is not noise_density / sqrt(dt).",
+            lambda: sensors.of_imu(submission),
+            quantity="std of measured - bias",
+            help="A density is per square root of hertz: how many samples share a second?",
+            input={"dt": dt, "noise_density": density, "bias_random_walk": 0.0, "samples": len(true)},
+        )
+
+
+def expect_walk(submission, n, dt, walk, bias0, rng):
+    """Over one sample and over ten, the bias wanders as the root of time."""
+    ((_, bias),) = imu_pairs(submission, [(np.zeros(n), dt, 0.0, walk, bias0, rng)])
+    for m in (1, 10):
+        with np.errstate(all="ignore"):
+            spread = std(bias[m:] - bias[:-m]) ** 2
+        kit.expect_close(
+            spread,
+            walk**2 * m * dt,
+            rel=0.15,
+            source="the variance over ten of 20000 samples scatters by 2.6 %",
+            quantity=f"variance of the bias over {m} samples",
+            units="(rad/s)²",
+            input={"dt": dt, "bias_random_walk": walk, "noise_density": 0.0, "samples": n},
+            message="The bias does not wander as a random walk of its strength does.",
+            help="Independent steps add up: the variance grows with the time between two samples.",
+            diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+        )
+
+
+def expect_rate_kept(submission, true, dt, bias0, rng):
+    """The bias starts at bias0; without white noise, measured minus it is the true rate, which is kept."""
+    call = (true, dt, 0.0, 0.02, bias0, rng)
+    value = expect_clean(submission, "imu", call, ("true", *[None] * 5))
+    measured, bias = kit.as_tuple(value, ("measured", "bias"))
+    n = len(true)
+    bias = kit.as_vector(bias, n, "bias")
+    kit.expect_close(
+        bias[0],
+        bias0,
+        abs=1e-9,
+        source="exact",
+        quantity="bias[0]",
+        units="rad/s",
+        message="The first bias is not bias0.",
+        help="bias[0] = bias0; the first step leads to bias[1].",
+        input={"bias0": bias0, "dt": dt},
+        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+    )
+    kit.expect_array(
+        kit.as_vector(measured, n, "measured") - bias,
+        true,
+        abs=1e-9,
+        source="rounding",
+        quantity="measured - bias",
+        units="rad/s",
+        message="Without white noise, measured minus bias is not the true rate.",
+        help="measured[k] = true[k] + bias[k] + white noise.",
+        input={"true": true, "dt": dt},
+        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+    )
+
+
+def expect_gyroscope_draws(submission, seed, dt):
+    """Noise and bias of ``imu`` are independent, and the generator that is passed in decides about each."""
+    n = 4000
+    calls = [(np.zeros(n), dt, 0.01, 0.01, 0.0, np.random.default_rng(s)) for s in (seed, seed, seed + 1)]
+    pairs = imu_pairs(submission, calls)
+    first, again, other = ((measured - bias, np.diff(bias)) for measured, bias in pairs)
+    repeats = all(
+        np.array_equal(a, b) and not np.array_equal(a, c)
+        for a, b, c in zip(first, again, other, strict=True)  # the noise and the walk, each by itself
+    )
+    kit.expect_true(
+        repeats,
+        "The generator that is passed in does not decide about the noise and the walk.",
+        help="Draw both from rng and from nothing else.",
+        diagnose=lambda: sensors.of_randomness(submission),
+    )
+    white, steps = first
+    with np.errstate(all="ignore"):
+        pairs = ((white[:-1], steps), (white[1:], steps), (white[:-1], white[1:]), (steps[:-1], steps[1:]))
+        alike = [abs(float(np.corrcoef(a, b)[0, 1])) for a, b in pairs]
+    kit.expect_bounded(
+        max(alike) if np.all(np.isfinite(alike)) else math.nan,
+        high=0.1,
+        source="six times the scatter of a correlation from 4000 samples",
+        quantity="largest correlation",
+        input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
+        message="White noise and steps of the bias are not independent of each other and of their own past.",
+        help="Draw two arrays of standard normal numbers, and sum up only one of them.",
+        diagnose=lambda: sensors.of_imu(submission),
+    )
+
+
+def recordings(rng, count, make):
+    """``count`` recordings at rest as cases of ``expect_fits``, two in three of them with a negative bias.
+
+    make: gives (dt, noise_density, bias_random_walk, size of bias0) for each.
+    """
+    cases = []
+    for i in range(count):
+        dt, density, walk, size = make()
+        numbers = density, walk, float(size) * (1.0 if i % 3 == 0 else -1.0)
+        still = scenes.recording(rng, int(rng.integers(11500, 12501)), dt, *numbers)
+        cases.append((still, dt, *numbers))
+    return cases
+
+
+#: What the README allows of the median errors of N and K (logarithms of ratios) and of bias0 (in sqrt(N K)).
+#: Correct solutions used at most 0.029, 0.25 and 1.7 over 200 seeds.
+FITS_WITHIN = (0.05, 0.35, 2.1)
+
+
+def expect_fits(submission, cases):
+    """fit_noise recovers what recordings were made with.
+
+    cases: (still, dt, noise_density, bias_random_walk, bias0) each
+
+    Medians over the cases count, of |log(N ratio)|, |log(K ratio)| and |bias0 error| / sqrt(N K): who looks
+    at few blocks is far off on a rare recording, and right about the method.
+    """
+    worst = FITS_WITHIN
+    keys = ("noise_density", "bias_random_walk", "bias0")
+    values = submission.call_each("fit_noise", [(still, dt) for still, dt, *_ in cases])
+    found = [[kit.as_number(kit.as_record(value, keys)[key], key) for key in keys] for value in values]
+    right = np.array([case[2:] for case in cases])
+    with np.errstate(all="ignore"):
+        off = np.log(np.array(found) / right)
+        off[:, 2] = (np.array(found)[:, 2] - right[:, 2]) / np.sqrt(right[:, 0] * right[:, 1])
+    off[~np.isfinite(off)] = np.inf
+    looks = (sensors.of_density, sensors.of_walk, sensors.of_bias0)
+    units = ("log of a ratio", "log of a ratio", "sqrt(N K)")
+    for column, key in enumerate(keys):
+        i = int(np.argmax(np.abs(off[:, column])))
+        kit.expect_close(
+            float(np.median(np.abs(off[:, column]))),
+            0.0,
+            abs=worst[column],
+            source="the README's",
+            quantity=f"median error of {key}",
+            units=units[column],
+            input={
+                "dt": cases[i][1],
+                "worst recording made with": dict(zip(keys, cases[i][2:], strict=True)),
+                "found": found[i],
+            },
+            message=f"From recordings at rest, fit_noise does not find `{key}`.",
+            help="Average over blocks of growing length and see how the spread of the means changes.",
+            diagnose=lambda column=column: looks[column](np.array(found)[:, column], cases),
+        )
+
+
+def expect_density_of_short(submission, still, dt, density):
+    """From a short recording, which is left alone, the noise density is found."""
+    value = expect_clean(submission, "fit_noise", (still, dt), ("still", None))
+    found = kit.as_record(value, ("noise_density", "bias_random_walk", "bias0"))
+    kit.expect_close(
+        found["noise_density"],
+        density,
+        rel=0.2,
+        source="the README's; from 2000 samples the density scatters by 2 %",
+        quantity="noise_density",
+        units="rad/s/sqrt(Hz)",
+        message="From a short recording, the noise density is wrong.",
+        diagnose=lambda: sensors.of_density(np.array([found["noise_density"]]), [(still, dt, density)]),
+    )
+
+
+#: A long wall across the x axis, 3 m ahead: a beam at angle a reads 3/cos(a).
+_WALL = np.array([[[3.0, -30.0], [3.0, 30.0]]])
+
+
+def expect_scan_noise(submission, r_max, sigma, rng):
+    """Hits have noise of std sigma, each its own, from zero to beyond r_max; other readings have none.
+
+    r_max: 6 m or more, so that half of a wide fan hits
+    """
+    n, fan, ahead = 4000, np.linspace(-2.0, 2.0, 4000), np.linspace(-0.01, 0.01, 4000)
+    places = ((0.0, fan), (3.0 - 0.5 * sigma, ahead), (3.0 - r_max + 0.5 * sigma, ahead))
+    calls = [(np.array([x, 0.0, 0.0]), _WALL, beams, r_max, sigma, rng) for x, beams in places]
+    wide, near, far = (kit.as_vector(v, n, "ranges") for v in submission.call_each("lidar", calls))
+    with np.errstate(divide="ignore"):
+        exact = np.where(np.cos(fan) > 0, 3.0 / np.cos(fan), np.inf)
+    hits = exact <= r_max
+    given = {"r_max": r_max, "sigma": sigma, "beams": n}
+    ask = lambda: sensors.of_lidar(submission)  # noqa: E731
+    kit.expect_true(
+        bool(np.all(wide[~hits] == r_max)),
+        "A beam that hits nothing does not read r_max exactly.",
+        help="Noise belongs to hits only.",
+        input=given,
+        diagnose=ask,
+    )
+    kit.expect_close(
+        std((wide - exact)[hits]),
+        sigma,
+        rel=0.1,
+        source="six times the scatter of a std from the hits of one scan, 1800 or more",
+        quantity="std of the noise",
+        units="m",
+        input=given,
+        message="The noise of the hits does not have the std sigma.",
+        help="Add sigma times a standard normal number of its own to each hit.",
+        diagnose=ask,
+    )
+    # Half a std from zero or from r_max, three in ten readings go beyond: 0.2 is sixteen stds away.
+    kit.expect_true(
+        bool(np.all(near >= 0.0) and np.mean(near == 0.0) > 0.2),
+        "Very close to a wall, the noise is not cut off at zero.",
+        help="No distance is below zero: np.maximum(..., 0.0) after the noise.",
+        input=given,
+        diagnose=ask,
+    )
+    kit.expect_true(
+        bool(np.mean(far > r_max) > 0.2),
+        "Close to the end of its reach, the noise of a hit is cut off at r_max.",
+        help="Whether a beam hits is decided without noise; what the noise makes of the reading stays.",
+        input=given,
+        diagnose=ask,
+    )
+
+
+def expect_scan_draws(submission, seed):
+    """The generator that is passed in decides about the noise of a scan."""
+    beams = np.linspace(-0.5, 0.5, 20)
+    calls = [(np.zeros(3), _WALL, beams, 9.0, 0.05, np.random.default_rng(s)) for s in (seed, seed, seed + 1)]
+    scans = [kit.as_vector(v, 20, "ranges") for v in submission.call_each("lidar", calls)]
+    kit.expect_true(
+        np.array_equal(scans[0], scans[1]) and not np.any(scans[0] == scans[2]),
+        "The generator that is passed in does not decide about the noise of every hit.",
+        help="Draw from rng and from nothing else.",
+        diagnose=lambda: sensors.of_scan_draws(submission),
+    )

@@ -1,0 +1,303 @@
+"""What public and hidden checks of ``sync`` and ``command`` of ``digital-twin`` have in common."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course.grading import kit
+
+bundles = kit.companion("digital-twin", "bundles")
+scenes = kit.companion("digital-twin", "scenes")
+twins = kit.companion("digital-twin", "twin_probes")
+CALIBRATED, new_twin = bundles.CALIBRATED, scenes.new_twin
+
+
+#: The rms error of the twin's position over that of the measurements themselves: after those that came
+#: in time, and after late ones. In time, passing z on is 1; constant shares reach 0.37 to 0.78 and Kalman
+#: filters 0.34 to 0.75 over 400 runs. After late ones, which are fewer, right twins reach up to 0.93.
+FOLLOWS_WITHIN, FOLLOWS_LATE_WITHIN = 0.85, 1.25
+
+
+def _rms(values):
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
+
+
+def expect_follows(submission, twin, run, *, settled, frictions, message):
+    """Fold ``sync`` through measurements; the twin keeps to the truth, and better than they do.
+
+    run: a ``scenes.Run``
+    settled: (from, to) where the position counts, s: not while the twin gets over a jump of the friction
+    frictions: (from, to, right friction): the mean estimate between two times, s
+    """
+    calls, truth = run.calls, run.truth
+    folded = submission.fold("sync", twin, calls, keep=scenes.SEEN)
+    rows = twins.path(folded)[1:]
+    late = bool(np.any(run.late))
+    ask = lambda: twins.of_sync(submission, late)  # noqa: E731
+    kit.expect_array(
+        rows[:, 0],
+        truth[:, 0],
+        abs=1e-9,
+        source="rounding",
+        quantity="t",
+        units="s",
+        t=truth[:, 0],
+        message="The twin's time is not the latest time that it has heard of.",
+        help='Return "t": max(twin["t"], t_measured).',
+        diagnose=ask,
+    )
+    counts = np.any([(truth[:, 0] >= a) & (truth[:, 0] <= b) for a, b in settled], axis=0)
+    sensor = _rms(run.errors[counts & ~run.late])
+    for when, limit in ((~run.late, FOLLOWS_WITHIN), (run.late, FOLLOWS_LATE_WITHIN)):
+        with np.errstate(all="ignore"):
+            rms = _rms((rows[:, 1] - truth[:, 1])[counts & when])
+        kit.expect_bounded(
+            rms,
+            high=limit * sensor,
+            source="the README's share of the measurements' own; " + CALIBRATED,
+            quantity="rms error of the position",
+            units="m",
+            input={"measurements": len(calls), "rms error of the measurements": sensor, "twin": twin},
+            message=message,
+            help="Predict first, then correct position, speed and friction by shares of the surprise.",
+            diagnose=ask,
+        )
+    for start, stop, friction in frictions:
+        window = (truth[:, 0] >= start) & (truth[:, 0] <= stop)
+        with np.errstate(all="ignore"):
+            believed = float(np.mean(rows[window, 3]))
+        kit.expect_close(
+            believed,
+            friction,
+            rel=0.1,
+            source="the contract's 10 %; " + CALIBRATED,
+            quantity="friction",
+            units="1/s",
+            input={"from": start, "to": stop, "sigma": twin["sigma"]},
+            message="The twin keeps up with the position, but it has not found the friction behind it.",
+            help="A surprise that keeps its sign says that the friction is wrong.",
+            diagnose=ask,
+        )
+    return folded
+
+
+def expect_drives(submission, cases):
+    """``command`` at a twin that has the target speed already: friction times speed.
+
+    cases: (friction, target speed)
+    """
+    calls = [(new_twin(b, 0.9 * b, speed=target), target) for b, target in cases]
+    values = [kit.as_number(value, "the drive") for value in submission.call_each("command", calls)]
+    kit.expect_array(
+        values,
+        [b * target for b, target in cases],
+        abs=1e-9,
+        source="rounding",
+        quantity="drive",
+        units="m/s²",
+        input={"friction, target speed": cases},
+        message="At the target speed, the drive does not balance the friction that the twin believes in.",
+        help="There dv/dt = drive - friction * speed has to be zero.",
+        diagnose=lambda: twins.of_command(submission),
+    )
+
+
+def jump(rng):
+    """Two frictions, 1/s, the second clearly another one."""
+    first = rng.uniform(0.6, 0.8)
+    return first, first * (rng.uniform(1.35, 1.6) if rng.uniform() < 0.5 else rng.uniform(0.62, 0.74))
+
+
+def expect_keeps_up(submission, rng, *, sign, late, message):
+    """27 s at a steady drive, the friction jumping after 9 s; the twin starts a little off.
+
+    sign: 1.0 forwards, -1.0 backwards
+    late: share of the measurements that arrive late
+    """
+    before, after = jump(rng)
+    speed, sigma = sign * rng.uniform(0.8, 1.2), rng.uniform(1.0, 1.5) * scenes.SIGMA
+    cart = scenes.Cart(((0.0, before), (9.0, after)), v=speed)
+    run = scenes.measured(cart, before * speed, scenes.moments(rng, 27.0), rng, late=late, sigma=sigma)
+    off = rng.uniform(-0.03, 0.03, 2)
+    guess = before * rng.uniform(0.75, 1.33)
+    twin = new_twin(guess, before * speed, speed=speed + off[0], position=off[1], sigma=sigma)
+    expect_follows(
+        submission,
+        twin,
+        run,
+        settled=((5.0, 9.0), (15.0, 27.0)),
+        frictions=((17.0, 27.0, after),),
+        message=message,
+    )
+
+
+def expect_twin_contract(submission, rng):
+    """The same call gives the same twin again, the old one is kept as it is, and its memory stays small.
+
+    The old twin is looked at after each kind of call: the first, one in time, a late one, and one in time
+    after somebody has changed the drive.
+    """
+    friction, sign = rng.uniform(0.4, 0.9), rng.choice([-1.0, 1.0])
+    cart = scenes.Cart(((0.0, friction),), v=sign)
+    run = scenes.measured(cart, sign * friction, scenes.moments(rng, 16.0), rng, late=0.3)
+    folded = submission.fold("sync", new_twin(0.6, sign * friction, speed=sign), run.calls)
+    twins.states(folded)
+    in_time, late = (int(np.flatnonzero(run.late == when)[5]) for when in (False, True))
+    picks = [late, 3, in_time, 3]
+    again = submission.call_each("sync", [(folded[i], *run.calls[i]) for i in picks])
+    kit.expect_true(
+        all(twins.same(value, folded[i + 1]) for value, i in zip(again, picks, strict=True)),
+        "Given an earlier twin and its measurement once more, sync returns another twin than the first time.",
+        help='Everything that sync remembers has to be in twin["memory"].',
+        diagnose=bundles.diagnosis.named("GLOBAL_MEMORY"),
+    )
+    driven = {**folded[in_time], "drive": folded[in_time]["drive"] + 0.2}
+    for twin, i in ((folded[0], 0), (folded[in_time], in_time), (folded[late], late), (driven, in_time)):
+        value = bundles.expect_clean(submission, "sync", (twin, *run.calls[i]), ("twin", None, None))
+        twins.states([value])
+        kit.expect_close(
+            kit.as_number(value["drive"], "drive"),
+            twin["drive"],
+            abs=1e-9,
+            source="it is not for sync to change",
+            quantity="drive",
+            units="m/s²",
+            message="The drive of the twin that comes out is not that of the twin that went in.",
+            diagnose=bundles.diagnosis.named("DRIVE_CHANGED"),
+        )
+    kit.expect_bounded(
+        twins.numbers_in(folded[-1]["memory"]),
+        high=MEMORY_WITHIN,
+        source="the README's; two seconds of a Kalman filter's history are some 300",
+        quantity="numbers in the memory after 16 s",
+        message="The memory grows with the length of the run.",
+        help="Keep the last second or two of the history, and drop what is older.",
+        diagnose=bundles.diagnosis.named("MEMORY_GROWS"),
+    )
+
+
+#: Numbers that the memory may hold.
+MEMORY_WITHIN = 1000
+
+
+# -- both directions closed into a loop: the cart rolls on this side, and only here is its friction known ----
+
+#: Std of a position sensor better than the ordinary one, m: a loop's end is one draw of a noisy estimate.
+QUIET = 0.006
+
+
+def expect_sync_closes_loop(submission, rng):
+    """A cart that is driven by what the twin has learned gets back to its speed after the friction jumped.
+
+    Five seconds at a time are folded through the student's sync; then the drive is set anew, from the mean
+    friction of three seconds, for one estimate is a noisy thing.
+    """
+    before, after = jump(rng)
+    target = rng.uniform(0.7, 1.2) * rng.choice([-1.0, 1.0])
+    cart = scenes.Cart(((0.0, before), (6.0, after)), v=0.4 * target)
+    guess = before * rng.uniform(0.75, 1.33)
+    twin = new_twin(guess, guess * target, speed=cart.v, sigma=QUIET)
+    given = {"target": target, "frictions": [before, after], "first guess": guess}
+    ask = lambda: twins.of_sync(submission, late=False)  # noqa: E731
+    speeds, friction = [], 0.0
+    for i in range(5):
+        start = 5.0 * i
+        times = np.append(scenes.moments(rng, 4.95, start), start + 5.0)
+        run = scenes.measured(cart, twin["drive"], times, rng, sigma=QUIET)
+        folded = submission.fold("sync", twin, run.calls, keep=scenes.SEEN)
+        rows = twins.path(folded)
+        speeds = run.truth[run.truth[:, 0] > start + 3.0, 2]
+        with np.errstate(all="ignore"):
+            friction = float(np.mean(rows[rows[:, 0] > start + 2.0, 3]))
+        kit.expect_bounded(
+            friction,
+            low=0.05,
+            high=10.0,
+            source="the frictions are far inside",
+            quantity="friction",
+            units="1/s",
+            input=given,
+            message="The twin's friction has left anything that a cart can have.",
+            diagnose=ask,
+        )
+        twin = {**folded[-1], "drive": friction * target}
+    kit.expect_close(
+        float(np.mean(speeds)),
+        target,
+        rel=0.1,
+        source="the README's; " + CALIBRATED,
+        quantity="speed of the cart at the end",
+        units="m/s",
+        input=given,
+        message="A cart whose drive comes from the twin's friction does not get back to its speed.",
+        help="The drive changes from time to time: predict with the drive that the twin holds now.",
+        diagnose=ask,
+    )
+    kit.expect_close(
+        friction,
+        after,
+        rel=0.1,
+        source="the README's; " + CALIBRATED,
+        quantity="friction",
+        units="1/s",
+        input=given,
+        message="In the loop, the twin does not find the friction.",
+        diagnose=ask,
+    )
+
+
+def expect_command_closes_loop(submission, rng):
+    """Driven by command ten times a second, a cart whose friction jumps gets to its speed and back to it.
+
+    Two carts, one forwards and one backwards. A twin of ours follows each by constant shares: all that
+    ``command`` needs is a friction that is learned on the way.
+    """
+    step, n = 0.1, 150
+    targets = rng.uniform(0.6, 1.2) * np.array([1.0, -1.0])
+    frictions = [jump(rng) for _ in targets]
+    carts = [
+        scenes.Cart(((0.0, before), (5.0, after)), v=0.4 * target)
+        for (before, after), target in zip(frictions, targets, strict=True)
+    ]
+    x, v, b = np.zeros(2), np.array([cart.v for cart in carts]), np.array([before for before, _ in frictions])
+    drives, places = np.zeros(2), np.zeros((n + 1, 2))
+    ask = lambda: twins.of_command(submission)  # noqa: E731
+    given = {"targets": targets, "frictions before and after 5 s": frictions}
+    for k in range(n):
+        now = [new_twin(*each, t=step * k) for each in zip(b, drives, strict=True)]
+        calls = [
+            ({**twin, "position": float(x[i]), "speed": float(v[i])}, float(targets[i]))
+            for i, twin in enumerate(now)
+        ]
+        drives = np.array([kit.as_number(u, "the drive") for u in submission.call_each("command", calls)])
+        kit.expect_bounded(
+            float(np.max(np.abs(drives))),
+            high=100.0,
+            source="a hundred times what these carts need",
+            quantity="largest drive",
+            units="m/s²",
+            input={**given, "time": step * k, "speeds": v},
+            message="A cart that is driven by command runs away.",
+            help="A correction has to vanish at the target speed, and to push towards it on either side.",
+            diagnose=ask,
+        )
+        a = drives - b * v
+        x, v = x + step * v + step**2 / 2 * a, v + step * a
+        for cart, drive in zip(carts, drives, strict=True):
+            cart.roll(float(drive), step * (k + 1))
+        places[k + 1] = [cart.x for cart in carts]
+        surprise = places[k + 1] + QUIET * rng.standard_normal(2) - x
+        x, v = x + 0.3 * surprise, v + 0.5 * surprise
+        b = np.maximum(b - 0.4 * surprise * np.sign(v), 0.1)
+    reached = (places[-1] - places[-31]) / (30 * step)
+    kit.expect_array(
+        reached / targets,
+        np.ones(2),
+        abs=0.08,
+        source="the README's; " + CALIBRATED,
+        quantity="speed over the last three seconds, as a share of the target",
+        input={**given, "speeds": reached},
+        message="A cart that is driven by command does not hold its speed after its friction has changed.",
+        help="The drive comes from the friction that the twin has learned and from the speed asked for.",
+        diagnose=ask,
+    )

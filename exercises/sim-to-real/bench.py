@@ -1,0 +1,139 @@
+"""What a run on the bench can tell: the excitations that a plan may name, and the README's fit.
+
+``cart.attainable`` says what the best of all estimators could read from a command. The fit that the README
+gives is not the best, and it is what a recording is made for: it is judged too.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+cart = kit.companion("sim-to-real", "cart")
+H, NAMES = cart.H, cart.NAMES
+
+# -- excitations by their word --------------------------------------------------------------------------
+
+
+def excitation(word, seconds, rng):
+    """The command (N,), N, that a word of the plan stands for."""
+    n = max(2, round(seconds / H))
+    t, top = H * np.arange(n), 3.0  # Hz, where the chirp ends
+    commands = {
+        "rest": lambda: np.zeros(n),
+        "constant": lambda: np.full(n, cart.U_BENCH),
+        "slow_sine": lambda: cart.U_BENCH * np.sin(2 * np.pi * 0.05 * t),
+        "chirp": lambda: cart.U_BENCH * np.sin(2 * np.pi * (0.1 * t + (top - 0.1) * t**2 / (2 * t[-1]))),
+        "multisine": lambda: _multisine(t, rng),
+        "prbs": lambda: cart.prbs(n, cart.U_BENCH, rng),
+    }
+    return commands[word]()
+
+
+def _multisine(t, rng):
+    tones = np.arange(0.1, 2.45, 0.1)
+    phases = rng.uniform(0, 2 * np.pi, len(tones))
+    waves = np.sin(2 * np.pi * np.outer(t, tones) + phases) / np.sqrt(tones)
+    total = waves.sum(axis=1)
+    return cart.U_BENCH * total / np.abs(total).max()
+
+
+def reach(word, parameter, seconds, carts, seed):
+    """The narrowest 95 % half-width, as a share, that any estimator could have: worst of the carts.
+
+    seed: of whatever is random in the excitation; numbers
+    """
+    if parameter == "noise":
+        # A standard deviation from n samples of noise alone is known to 1/sqrt(2n); moving, it is not seen.
+        return 1.96 / math.sqrt(2 * seconds / H) if word == "rest" else math.inf
+    frozen = tuple(tuple(each[k] for k in NAMES) for each in carts)
+    return _reach(word, round(seconds, 2), frozen, tuple(seed))[(*NAMES, "lag").index(parameter)]
+
+
+@functools.lru_cache(maxsize=256)
+def _reach(word, seconds, carts, seed):
+    command = excitation(word, seconds, np.random.default_rng(seed))
+    return cart.attainable(command, [dict(zip(NAMES, each, strict=True)) for each in carts]).max(axis=0)
+
+
+# -- the README's fit -----------------------------------------------------------------------------------
+
+_DRAWS = 6  # of the noise: the rms of so many errors scatters by 30 %
+
+
+class _Silence:
+    """Stands for a generator where a recording is to be without noise."""
+
+    standard_normal = staticmethod(np.zeros)
+
+
+def fit_errors(u, truth):
+    """rms errors of the README's fit on recordings of this cart, as shares of m, b, Fc and the lag, (4,).
+
+    Whole seconds of the integrated equation, tau and latency by their slopes about the right ones: a search
+    that ends at the right pair of times ends with this fit, and no search ends better.
+    """
+    d, tau, late = 0.001, truth["tau"], truth["latency"]
+    impulse, later, sooner = (_impulse(u, each) for each in (tau, tau + d, tau - d))
+    by_tau = _delayed((later - sooner) / (2 * d), late)
+    by_late = (_delayed(impulse, late + d) - _delayed(impulse, late - d)) / (2 * d)
+    fixed = _delayed(impulse, late), by_tau, by_late
+    _, speed = cart.record(truth, u, _Silence())
+    rng, lag = np.random.default_rng(41), tau + late
+    known = np.array([truth["m"], truth["b"], truth["Fc"], lag])
+    off = []
+    for _ in range(_DRAWS):
+        y = speed + cart.NOISE_SPEED * rng.standard_normal(len(u))
+        columns = np.stack([fixed[0], _integral(y), _integral(np.sign(y)), *fixed[1:]], axis=1)
+        theta = np.linalg.lstsq(_blocks(columns), _blocks(y[:, None])[:, 0])[0]
+        m = 1 / theta[0]
+        found = np.array([m, -theta[1] * m, -theta[2] * m, lag + (theta[3] + theta[4]) * m])
+        off.append(found / known - 1)
+    return np.sqrt(np.mean(np.square(off), axis=0))
+
+
+def differentiated(u, y, truth):
+    """The masses that come of differentiating the measured speed: by central and by one-sided differences.
+
+    The motor's force is explained by acceleration, speed and its sign; noise in the acceleration makes the
+    mass too small.
+    """
+    force = np.gradient(_delayed(_impulse(u, truth["tau"]), truth["latency"]), H)
+    masses = []
+    for a in (np.gradient(y, H), np.diff(y, append=y[-1]) / H):
+        X = np.stack([a, y, np.sign(y)], axis=1)
+        masses.append(float(np.linalg.lstsq(X, force)[0][0]))
+    return masses
+
+
+def _impulse(u, tau):
+    """Integral of the motor's force since the start, N s, (N,), if it heard the command at once."""
+    keep = math.exp(-H / tau)
+    force = impulse = 0.0
+    impulses = []
+    for command in u.tolist():
+        impulses.append(impulse)
+        behind = force - command
+        impulse += H * command + behind * tau * (1 - keep)
+        force = command + behind * keep
+    return np.array(impulses)
+
+
+def _delayed(x, latency):
+    t = H * np.arange(len(x))
+    return np.interp(t - latency, t, x)
+
+
+def _integral(x):
+    return H * np.concatenate([[0.0], np.cumsum((x[1:] + x[:-1]) / 2)])
+
+
+def _blocks(x):
+    """Rows of whole seconds, each second less its mean; what is left over is dropped."""
+    size = round(1 / H)
+    blocks = x[: len(x) // size * size].reshape(-1, size, x.shape[1])
+    return (blocks - blocks.mean(axis=1, keepdims=True)).reshape(-1, x.shape[1])

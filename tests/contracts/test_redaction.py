@@ -1,0 +1,23 @@
+"""A hidden number does not reach its student, however it is sent."""
+
+from __future__ import annotations
+
+import pytest
+
+from course.isolation.spawn import Level
+from tests.benchmarks.redaction import SENDERS, trial
+from tests.contracts.levels import require_level
+
+#: A check passes, fails by one of its own sentences, or gives no value in one of five ways.
+_WAYS = 7
+#: Those that choose among the ways to end; all others end in one way and differ in what goes with it.
+_CHOOSE = {"which of all ends", "time of a right answer"}
+
+
+@pytest.mark.parametrize("level", list(Level))
+def test_a_hidden_number_does_not_reach_its_student(level: str) -> None:
+    require_level(level)
+    for name, (arrived, noted) in trial(4, level).items():
+        assert len(arrived) <= (_WAYS if name in _CHOOSE else 1), name
+        assert len(noted) > 1, f"{name} sends nothing"
+    assert SENDERS.keys() >= _CHOOSE

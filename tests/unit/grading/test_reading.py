@@ -1,0 +1,152 @@
+"""Hostile files cost themselves: they are read elsewhere, under limits, and named."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from time import process_time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.errors import UngradableError
+from course.grading.intake import reading, students
+from course.grading.intake.archives import RefusedError
+from course.grading.intake.downloads import Place, Student
+from course.grading.intake.reading import Reader
+from course.handed_in.cells import MAX_CELLS
+from course.handed_in.notebook import MAX_NOTES, notebook_source
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from course.catalog.models import Exercise
+
+_DOUBLE = "def double(x):\n    return 2 * x\n"
+
+
+def _notebook(*cells: str) -> bytes:
+    made = [{"cell_type": "code", "source": cell, "metadata": {}, "outputs": []} for cell in cells]
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": made}).encode()
+
+
+#: What once took minutes or hours, by size.
+_LARGE: dict[str, Any] = {
+    "statements beside a magic word": lambda n: _notebook(f"{_DOUBLE}# get_ipython\n" + "x\n" * (10 * n)),
+    "escaped quotes": lambda n: _notebook(f"%magic\n{_DOUBLE}'" + "\\'" * (20 * n)),
+    "magics": lambda n: _notebook(_DOUBLE, "%x\n" * (10 * n)),
+    "brackets": lambda n: _notebook(f"%magic\n{_DOUBLE}" + "(" * (20 * n)),
+    "bindings": lambda n: _notebook(_DOUBLE.replace("2", "y"), "y = 1\n" * (5 * n)),
+    "strings in lines": lambda n: _notebook(f"%magic\n{_DOUBLE}" + ("'" + "\\'" * 50 + "\n") * (n // 5)),
+}
+
+
+@pytest.mark.parametrize("kind", _LARGE)
+def test_reading_a_notebook_takes_as_long_as_it_is_long(kind: str, doubling: Exercise) -> None:
+    """Of some rounds the ratio of the fastest: what disturbs a measurement makes it slower."""
+    took: dict[int, float] = {}
+    for size in [1000, 8000] * 3:
+        data, start = _LARGE[kind](size), process_time()
+        notebook_source(data, doubling)
+        took[size] = min(took.get(size, 1e9), process_time() - start)
+    # 8 if it is linear, 64 if it is quadratic.
+    assert took[8000] / took[1000] < 24, took
+
+
+def test_what_is_left_out_is_told_within_bounds(doubling: Exercise) -> None:
+    found = notebook_source(_notebook(_DOUBLE, "%magic " + "x" * 500 + "\n" + "%y\n" * 5000), doubling)
+    assert len(found.notes) <= MAX_NOTES + 2
+    assert any("more lines were left out" in note for note in found.notes)
+    assert len(found.record()) < 8 << 10
+    many = notebook_source(_notebook(*[f"# {n}\n{_DOUBLE}" for n in range(MAX_CELLS)]), doubling)
+    assert len(many.record()) < 64 << 10
+    with pytest.raises(UngradableError) as caught:
+        notebook_source(_notebook(*[_DOUBLE] * (MAX_CELLS + 1)), doubling)
+    assert caught.value.code == "too_large"
+
+
+def test_an_escaped_line_end_in_a_string_moves_no_magic() -> None:
+    from course.handed_in.cells import typed_cell
+
+    cell = typed_cell(1, "a = 'one \\\n two'\n%magic\nb = 1\n")
+    assert cell.dropped == ((3, "%magic"),)
+    assert cell.tree is not None
+
+
+@pytest.fixture
+def strict() -> Iterator[Reader]:
+    """With little time and memory, so that a test need not use up what honest files may."""
+    found = Reader(reading._Limits(cpu_s=1, wall_s=60, memory=512 << 20))
+    yield found
+    found.close()
+
+
+@pytest.fixture
+def impatient() -> Iterator[Reader]:
+    found = Reader(reading._Limits(cpu_s=60, wall_s=1.0))
+    yield found
+    found.close()
+
+
+_BOMBS = {
+    "time": _notebook(_DOUBLE, "y = 1\n" * 150_000).replace(b"2 * x", b"y"),
+    "memory": b'{"nbformat": 4, "cells": [{"cell_type": "code", "metadata": {"k": ['
+    + b"{}," * 8_000_000
+    + b"{}]}}]}",
+}
+
+
+@pytest.mark.parametrize("bomb", _BOMBS)
+def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: Exercise) -> None:
+    with pytest.raises(RefusedError) as caught:
+        strict.notebook(_BOMBS[bomb], doubling, "bomb.ipynb")
+    assert caught.value.problem.code == "unreadable"
+    assert "bomb.ipynb" in caught.value.problem.message
+    assert strict.notebook(_notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
+
+
+def test_the_wall_clock_ends_a_reader_that_uses_no_time(impatient: Reader, doubling: Exercise) -> None:
+    impatient.notebook(_notebook(_DOUBLE), doubling, "a.ipynb")
+    process = impatient._process
+    assert process is not None
+    os.kill(process.pid, 19)  # SIGSTOP
+    with pytest.raises(RefusedError) as caught:
+        impatient.notebook(_notebook(_DOUBLE), doubling, "b.ipynb")
+    assert caught.value.problem.code == "unreadable"
+    assert process.poll() is not None
+
+
+def test_more_than_an_answer_may_be_is_not_taken(
+    strict: Reader, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    strict.notebook(_notebook(_DOUBLE), doubling, "a.ipynb")
+    monkeypatch.setattr(reading, "MAX_ANSWER", 10)
+    with pytest.raises(RefusedError, match=r"b\.ipynb"):
+        strict.notebook(_notebook(_DOUBLE), doubling, "b.ipynb")
+
+
+def test_a_class_with_a_bomb_in_it_is_read_to_the_end(
+    tmp_path: Path, doubling: Exercise, strict: Reader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(students, "reader", strict)
+    found = {}
+    for name, data in {"ada": _notebook(_DOUBLE), "bob": _BOMBS["memory"], "eve": _notebook(_DOUBLE)}.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "doubling.ipynb").write_bytes(data)
+        (entry,) = students.read_student(Student(name, Place(tmp_path / name)), [doubling], required=True)
+        found[name] = entry.problem.code if entry.problem else "read"
+    assert (found["ada"], found["eve"]) == ("read", "read")
+    assert found["bob"] != "read"
+
+
+def test_an_archive_is_read_over_there_too(tmp_path: Path, doubling: Exercise, strict: Reader) -> None:
+    path = tmp_path / "m\udce9.zip"
+    with zipfile.ZipFile(path, "w") as target:
+        target.writestr("doubling/doubling.py", _DOUBLE)
+    assert strict.module_in(path, doubling) == ("doubling/doubling.py", _DOUBLE.encode())
+    assert strict.quiz_in(path) is None
+    path.write_bytes(b"PK")
+    with pytest.raises(RefusedError, match="cannot be read"):
+        strict.module_in(path, doubling)

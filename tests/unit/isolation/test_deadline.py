@@ -1,0 +1,186 @@
+"""Time is counted where it is spent: a busy machine costs nobody points, and nobody gets time for nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+from time import monotonic, process_time, sleep
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.isolation.deadline import Deadline, ProcessClock
+from course.isolation.failures import StudentFailure
+from course.isolation.session import Connection
+from course.isolation.spawn import Level, spawner
+from tests.contracts.levels import require_level
+from tests.contracts.users import USERS, run_as
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks Linux for CPU times")
+
+
+class Fake:
+    """A process whose clock and state are set by hand."""
+
+    def __init__(self) -> None:
+        self.cpu = 0.0
+        self.sleeps = False
+
+    def cpu_s(self) -> float:
+        return self.cpu
+
+    def asleep(self) -> bool:
+        return self.sleeps
+
+
+def test_waiting_for_a_processor_costs_nothing() -> None:
+    fake, deadline = Fake(), Deadline(0.2, wall=60)
+    deadline.watch(fake)
+    sleep(0.4)
+    assert not deadline.passed()
+    assert deadline.used == 0
+    fake.cpu = 0.21
+    assert deadline.passed()
+
+
+def test_sleeping_while_the_grader_waits_counts() -> None:
+    fake, deadline = Fake(), Deadline(0.5, wall=60)
+    fake.sleeps = True
+    deadline.watch(fake)
+    looks = 0
+    while not deadline.passed() and looks < 100:
+        sleep(0.1)
+        looks += 1
+    assert 3 <= looks <= 6  # a look counts for what has gone by since the last one, at most two ticks
+
+
+def test_what_several_workers_use_adds_up() -> None:
+    deadline = Deadline(1.0, wall=60)
+    for _ in range(3):
+        fake = Fake()
+        deadline.watch(fake)
+        fake.cpu = 0.3
+    deadline.watch(None)
+    assert deadline.used == pytest.approx(0.9)
+    assert not deadline.passed()
+
+
+def test_the_wall_clock_has_the_last_word() -> None:
+    deadline = Deadline(100, wall=0.1)
+    deadline.watch(Fake())
+    sleep(0.15)
+    assert deadline.passed()
+    deadline.postpone(60)
+    assert not deadline.passed()
+
+
+def test_nothing_need_be_asked_before_it_can_have_passed() -> None:
+    fake, deadline = Fake(), Deadline(5.0)
+    deadline.watch(fake)
+    fake.cpu = 2.0
+    assert not deadline.passed()
+    assert deadline.earliest - monotonic() == pytest.approx(3.0, abs=0.5)
+
+
+def test_the_clock_of_another_process_is_that_process_s_own() -> None:
+    with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:
+        clock, began = ProcessClock(busy.pid), process_time()
+        while clock.cpu_s() < 0.2:
+            sleep(0.01)
+        assert not clock.asleep()
+        busy.kill()
+    assert clock.cpu_s() >= 0.2
+    assert process_time() - began < 0.2
+    with subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"]) as idle:
+        clock = ProcessClock(idle.pid)
+        while not clock.asleep():
+            sleep(0.01)
+        idle.kill()
+
+
+@contextlib.contextmanager
+def _crowd(processor: int, size: int) -> Iterator[None]:
+    """So many processes that want nothing but this processor."""
+    program = f"import os\nos.sched_setaffinity(0, {{{processor}}})\nwhile True: pass"
+    busy = [subprocess.Popen([sys.executable, "-c", program]) for _ in range(size)]
+    try:
+        yield
+    finally:
+        for one in busy:
+            one.kill()
+            one.wait()
+
+
+_WORK = """
+import time
+def work(seconds):
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+    return True
+def sleeps():
+    time.sleep(600)
+def spins():
+    return sum(range(10**11))
+"""
+
+
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str) -> None:
+    require_level(level)
+    processor = min(os.sched_getaffinity(0))
+    found: Any = spawner(Level(level), ("numpy",))
+    before = os.sched_getaffinity(0)
+    try:
+        with _crowd(processor, 4):
+            os.sched_setaffinity(0, {processor})  # the worker inherits it, as in a session
+            connection = Connection(found, {"a.py": _WORK.encode()}, "a.py", Deadline(10))
+            connection.deadline = Deadline(0.6, wall=60)
+            assert connection.call("work", 0.4) is True
+            assert connection.deadline.wall > 0.8, "the machine was not busy"
+            connection.close()
+            for hopeless in ("sleeps", "spins"):
+                connection = Connection(found, {"a.py": _WORK.encode()}, "a.py", Deadline(10))
+                connection.deadline = Deadline(0.5, wall=60)
+                with pytest.raises(StudentFailure) as caught:
+                    connection.call(hopeless)
+                assert caught.value.kind == "timeout"
+                assert connection.deadline.wall < 30, hopeless
+    finally:
+        os.sched_setaffinity(0, before)
+        found.close()
+
+
+_AS_USER = """
+import sys
+from course.isolation.deadline import Deadline
+from course.isolation.failures import StudentFailure
+from course.isolation.launch import keep_private
+from course.isolation.session import Connection
+from course.isolation.spawn import Level, spawner
+keep_private()
+found = spawner(Level(sys.argv[1]), ("numpy",))
+for name in ("spins", "sleeps"):
+    connection = Connection(found, {"a.py": sys.argv[2].encode()}, "a.py", Deadline(10))
+    connection.deadline = Deadline(0.3, wall=100)
+    try:
+        connection.call(name)
+    except StudentFailure as failure:
+        assert failure.kind == "timeout"
+        assert connection.deadline.used >= 0.3
+        assert connection.deadline.wall < 50, connection.deadline.wall
+        print(name, end=" ")
+found.close()
+"""
+
+
+@pytest.mark.parametrize("user", USERS)
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_time_is_told_whoever_the_grader_is(level: str, user: str) -> None:
+    require_level(level)
+    assert run_as(user, _AS_USER, level, _WORK).split() == ["spins", "sleeps"]

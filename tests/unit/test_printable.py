@@ -1,0 +1,46 @@
+"""Text of strangers: on one line, steering nothing, at most so long."""
+
+from __future__ import annotations
+
+import unicodedata
+
+import pytest
+
+from course.printable import one_line, printable, steady
+
+#: Line ends of every kind, marks that turn text, hidden characters, escapes, and half of a character.
+_HOSTILE = (
+    "a\nb", "a\r\nb", "a\x0bb\x0cc", "a\x85b", "a\u2028b\u2029c", "\u202eexe.yp", "\u2066x\u2069", "\u061c",
+    "\u200f\u200e", "a\u200bb", "\ufeff", "\x1b[2J\x1b]0;x\x07", "\x9b31m", "\x00", "\udce9",
+    "\U000e0041", "\t",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", _HOSTILE)
+def test_what_is_shown_on_one_line_is_one_line_and_steers_nothing(text: str) -> None:
+    shown = one_line(text)
+    assert len(shown.splitlines()) <= 1
+    assert all(character.isprintable() for character in shown)
+    assert shown != text
+    assert one_line(shown) == shown
+
+
+def test_no_character_of_all_there_are_gets_through_that_is_not_printable() -> None:
+    for first in range(0, 0x110000, 0x1000):
+        text = "".join(map(chr, range(first, first + 0x1000)))
+        assert one_line(text).isprintable()
+        assert printable(text).replace("\n", "").replace("\t", "").isprintable()
+        left = {unicodedata.bidirectional(character) for character in steady(text)}
+        assert not left & {"LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI"}
+
+
+def test_a_limit_holds_for_what_is_shown() -> None:
+    for shorten in (one_line, printable):
+        assert len(shorten("\U0010ffff" * 5000, 2000)) == 2000
+        assert shorten("plain", 3) == "pla"
+
+
+def test_honest_text_stays_as_it_is() -> None:
+    for text in ("naïve 数 Ω → 😀", "mass = 1.5 kg", ""):
+        assert one_line(text) == printable(text) == steady(text) == text
+    assert printable("a\n\tb") == steady("a\n\tb") == "a\n\tb"

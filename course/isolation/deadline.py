@@ -91,6 +91,10 @@ class Deadline:
             self._from = clock.cpu_s()
         self.waiting()
 
+    def end(self) -> None:
+        """From any thread: the time is up."""
+        self._wall, self.earliest = -1.0, 0.0
+
     def postpone(self, seconds: float) -> None:
         """Allow so much more by the wall clock: it was spent on something of ours."""
         self._wall += seconds

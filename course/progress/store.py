@@ -53,7 +53,8 @@ class Event:
     Attributes:
         id: position in the record, 1 first.
         at: when, in UTC.
-        kind: "start", "check", "hint", "lesson", "place", "solution", "reset", "update" or "submit".
+        kind: "start", "check", "hint", "lesson", "place", "solution", "reset", "update" or "submit"; from the
+            reader also "bookmark", "prediction" and "cell".
         subject: the exercise or lesson it is about; empty if none.
         data: what is worth remembering about it, as plain values.
     """

@@ -202,6 +202,11 @@ class RemoteSubmission:
         """What the submission printed since the check began."""
         return self._connection.output()[self._printed_before :]
 
+    def give_up(self) -> None:
+        """From another thread: its time is over, for what is asked now and for all after it."""
+        self._cpu_left = self._wall_left = 0.0
+        self._deadline.end()
+
     def close(self) -> None:
         """End the worker, and delete what it left."""
         self._connection.close()

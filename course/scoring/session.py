@@ -63,6 +63,9 @@ class GradingSession:
         terms: protection level, deadline and seed.
         processor: picks the processor to stay on; None picks any.
 
+    Attributes:
+        running: title of the check that runs; empty between runs.
+
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
         ContentError: a check file is wrong.
@@ -91,6 +94,8 @@ class GradingSession:
         with kept_on(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, terms)
         self.level: str = self._spawner.level.value
+        self._remote: RemoteSubmission | None = None
+        self.running = ""
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -107,6 +112,12 @@ class GradingSession:
         """End the sandbox; safe to call twice."""
         self._spawner.close()
         self._checks.close()
+
+    def drop(self) -> None:
+        """From another thread: end the run that is going on; its verdict means nothing."""
+        remote = self._remote
+        if remote is not None:
+            remote.give_up()
 
     def grade(self, submission: Submission, *, only: str | None = None) -> Verdict:
         """The verdict on one submission.
@@ -130,10 +141,12 @@ class GradingSession:
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._ungradable(no_functions(self.exercise))
+            self._remote = remote
             results = self._run(remote, only, submission)
         except IsolationError as error:
             return self._grader_error(str(error))
         finally:
+            self._remote, self.running = None, ""
             with contextlib.suppress(IsolationError):
                 remote.close()
         return self._graded(results)
@@ -191,6 +204,7 @@ class GradingSession:
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
+        self.running = check.title
         remote.begin_check(check.task)
         start = perf_counter()
         outcome = self._checks.run(check, remote)

@@ -154,6 +154,11 @@ class Console:
         return not self.json and sys.stdin is not None and sys.stdin.isatty()
 
     @property
+    def motion(self) -> bool:
+        """True if something may move while there is work, on a terminal only."""
+        return self.fancy and not self.quiet and bool(self._human.isatty())
+
+    @property
     def width(self) -> int:
         """Columns to write in."""
         return self.rich().width if self.fancy else min(self.terminal_width, MAX_WIDTH)
@@ -331,7 +336,7 @@ class Console:
     @contextlib.contextmanager
     def working(self, what: str) -> Iterator[None]:
         """Show that something runs, once it has taken half a second, on a terminal only."""
-        if not self.fancy or self.quiet or not self._human.isatty():
+        if not self.motion:
             yield
             return
         status = self.rich().status(what, spinner="line")

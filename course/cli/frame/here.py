@@ -71,9 +71,10 @@ class Here:
         for name in (self._folder_name(), self._last_worked_on(), *self._only_started()):
             if name in known:
                 return self.catalog.exercise(str(name))
+        first = next(iter(self.catalog.exercises()), None)  # in the order they are done
         raise NotFoundError(
             "No exercise has been started here.",
-            help=f"Start one: `course start {known[0]}`." if known else "This course has no exercises.",
+            help=f"Start one: `course start {first.id}`." if first else "This course has no exercises.",
             code="nothing_started",
         )
 

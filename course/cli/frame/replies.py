@@ -211,7 +211,7 @@ class Lessons(Envelope, tag="course.lessons/1", frozen=True, kw_only=True):
 
 
 class LessonReply(Envelope, tag="course.lesson/1", frozen=True, kw_only=True):
-    """One lesson; ``text`` is what ``--plain`` shows."""
+    """One lesson; ``text`` is what ``--plain`` shows, or with ``--code`` the code of one cell."""
 
     id: str
     title: str

@@ -12,7 +12,6 @@ from course.cli.frame.arguments import LessonName  # noqa: TC001 - typer reads a
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import find_workspace, load_catalog
 from course.cli.frame.replies import LessonReply, Lessons, NextStep
-from course.cli.work.overview import day, lesson_state, lesson_states
 from course.errors import CourseError, NotFoundError
 
 if TYPE_CHECKING:
@@ -29,6 +28,8 @@ def lessons() -> int:
 
     In the order to read them; inside a workspace also which ones you have read.
     """
+
+    from course.cli.work.overview import day, lesson_state, lesson_states
 
     console = current()
     here = find_workspace()
@@ -55,41 +56,55 @@ def lesson(
     figures: Annotated[
         Path | None, typer.Option("--figures", metavar="DIR", help="Write the figures as PNG files into DIR.")
     ] = None,
+    code: Annotated[
+        int | None,
+        typer.Option("--code", metavar="N", min=1, help="Print the code of cell N and nothing else."),
+    ] = None,
 ) -> int:
     """Read a lesson.
 
-    Without an id: the next one you have not read. Inside a workspace, reading is noted in your progress.
+    On a terminal it fills the screen: predict, run its cells, search; ? there lists the keys. With --plain,
+    in a pipe or with --page it is printed. Without an id: the next lesson you have not read. Inside a
+    workspace your place and predictions are kept, and a lesson is read once its end was reached.
     """
 
     console = current()
     here = find_workspace()
     catalog = here.catalog if here else load_catalog()
     chosen = catalog.lesson(name or _next_unread(here, catalog))
+    if code is not None:
+        return _print_code(console, chosen, code)
+    if not page and figures is None and _fills_the_screen(console):
+        return _read_on_screen(console, here, catalog, chosen)
     text = io.StringIO()
     reader = _reader(catalog, chosen, console, figures, text if console.json else None)
-    whole = _read_by_page(console, here, chosen, reader) if page and console.interactive else _read(reader)
+    paged = page and console.interactive
+    whole = _read_by_page(console, here, chosen, reader) if paged else _print_all(reader)
     step = _after(chosen) if whole else f"course lesson {chosen.id} --page"
     if here is not None:
-        if whole:
+        # A print is no reading: nobody knows whether anybody saw its end.
+        if whole and paged:
             here.record("lesson", chosen.id, {"version": catalog.version})
         for warning in here.warnings:
             console.warn(warning)
     for picture in reader.pictures:
         console.note(f"Wrote {picture}")
     console.note(f"Next: {step}")
-    console.emit(
-        LessonReply(
-            id=chosen.id,
-            title=chosen.title,
-            minutes=chosen.minutes,
-            objectives=chosen.objectives,
-            exercises=chosen.exercises,
-            text=text.getvalue(),
-            figures=tuple(str(path) for path in reader.pictures),
-            next=NextStep(step),
-        )
-    )
+    console.emit(_reply(chosen, text.getvalue(), tuple(map(str, reader.pictures)), step))
     return 0
+
+
+def _reply(chosen: Lesson, text: str, figures: tuple[str, ...] = (), step: str = "") -> LessonReply:
+    return LessonReply(
+        id=chosen.id,
+        title=chosen.title,
+        minutes=chosen.minutes,
+        objectives=chosen.objectives,
+        exercises=chosen.exercises,
+        text=text,
+        figures=figures,
+        next=NextStep(step) if step else None,
+    )
 
 
 def _next_unread(here: Here | None, catalog: Catalog) -> str:
@@ -122,7 +137,42 @@ def _reader(
     return Reader(catalog, chosen, quiet, plain=True, figures_dir=figures, width=MAX_WIDTH)
 
 
-def _read(reader: Reader) -> bool:
+def _fills_the_screen(console: Console) -> bool:
+    """Whether the reader can open here."""
+    if not (console.fancy and console.interactive) or console.quiet:
+        return False
+    from course.cli.reading.screen.view import is_possible
+
+    return is_possible()
+
+
+def _read_on_screen(console: Console, here: Here | None, catalog: Catalog, chosen: Lesson) -> int:
+    from course.cli.reading.screen.view import read
+
+    last, trouble = read(catalog, chosen.id, here.workspace.store if here else None)
+    lesson = last.script.lesson
+    for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
+        console.warn(warning)
+    console.note(f"Next: {_after(lesson) if last.read else f'course lesson {lesson.id}'}")
+    return 0
+
+
+def _print_code(console: Console, chosen: Lesson, number: int) -> int:
+    """The code of one cell as it is in the lesson, ready for a file."""
+    from course.reading.parts import read_script
+
+    cells = read_script(chosen).shown_cells
+    if number > len(cells):
+        raise NotFoundError(
+            f"{chosen.id} has {len(cells)} cells.", help="Name one of them.", code="cell_not_found"
+        )
+    source = cells[number - 1].source
+    console.raw(f"{source}\n")
+    console.emit(_reply(chosen, source))
+    return 0
+
+
+def _print_all(reader: Reader) -> bool:
     """Show everything."""
     for item in reader.pages:
         reader.show(item)

@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Lesson
 
-__all__ = ["FancyPrinter"]
+__all__ = ["KEEP", "FancyPrinter"]
 
 _MARGIN = 2
 _PROSE = 78
 _GAP = 3  # between the columns of a table
 #: A space that Rich does not break a line at, of Unicode's private use; the last step makes it a space.
-_KEEP = "\ue000"
+KEEP = "\ue000"
 #: A formula up to this length stays on one line.
 _SHORT = 16
 _COLOURS = {
@@ -81,7 +81,7 @@ class FancyPrinter:
         self._print(Text(f"{lesson.id} · about {lesson.minutes} minutes", style="dim"))
         self._print(Text(lesson.summary), above=1)
         self._print(Text("After this lesson you can", style="bold"), above=1)
-        self._print(_bullets([Text(objective) for objective in lesson.objectives]))
+        self._print(self._bullets([Text(objective) for objective in lesson.objectives]))
         if lesson.exercises:
             commands = ", ".join(f"course start {name}" for name in lesson.exercises)
             self._print(Text.assemble(("Then practise: ", "bold"), (commands, _SPANS["code"])), above=1)
@@ -124,7 +124,7 @@ class FancyPrinter:
             case b.CommandList(commands=commands):
                 return _commands(commands)
             case b.Sources(items=items):
-                return _bullets([self._text(item) for item in items])
+                return self._bullets([self._text(item) for item in items])
             case _:
                 return None
 
@@ -149,7 +149,16 @@ class FancyPrinter:
         for item in block.items:
             pieces = [piece for piece in map(self._block, item) if piece is not None]
             items.append(pieces[0] if len(pieces) == 1 else Group(*pieces))
-        return _bullets(items, block.start)
+        return self._bullets(items, block.start)
+
+    @staticmethod
+    def _bullets(items: list[RenderableType] | list[Text], start: int | None = None) -> RenderableType:
+        grid = Table.grid(padding=(0, 1, 0, 0))
+        grid.add_column(no_wrap=True, justify="right" if start is not None else "left")
+        grid.add_column(overflow="fold", ratio=1)
+        for number, item in enumerate(items, start=start or 1):
+            grid.add_row(Text("•" if start is None else f"{number}."), item)
+        return grid
 
     def _table(self, table: b.Table) -> RenderableType:
         header = [self._text(cell) for cell in table.header]
@@ -212,7 +221,7 @@ class FancyPrinter:
                 case b.Value(text=words):
                     text.append(value_text(words))
                 case b.Formula(text=words):
-                    text.append(words.replace(" ", _KEEP) if len(words) <= _SHORT else words)
+                    text.append(words.replace(" ", KEEP) if len(words) <= _SHORT else words)
                 case b.Span(style, children):
                     inner = self._text(children)
                     inner.stylize(_SPANS[style])
@@ -244,7 +253,7 @@ class _Prefixed:
             if kept or self._style:
                 yield Segment(self._mark, self._style)
             for text, style, control in kept:
-                yield Segment(text.replace(_KEEP, " "), style, control)
+                yield Segment(text.replace(KEEP, " "), style, control)
             yield Segment.line()
 
 
@@ -256,15 +265,6 @@ def _stripped(line: list[Segment]) -> list[Segment]:
     if kept and not kept[-1].control:
         kept[-1] = Segment(kept[-1].text.rstrip(), kept[-1].style)
     return kept
-
-
-def _bullets(items: list[RenderableType] | list[Text], start: int | None = None) -> RenderableType:
-    grid = Table.grid(padding=(0, 1, 0, 0))
-    grid.add_column(no_wrap=True, justify="right" if start is not None else "left")
-    grid.add_column(overflow="fold", ratio=1)
-    for number, item in enumerate(items, start=start or 1):
-        grid.add_row(Text("•" if start is None else f"{number}."), item)
-    return grid
 
 
 def _commands(commands: tuple[b.Command, ...]) -> RenderableType:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.progress.history import History
 
-__all__ = ["hint", "solution"]
+__all__ = ["give_hint", "hint", "solution"]
 
 PACKS = "*.coursepack"
 
@@ -45,18 +45,31 @@ def hint(
 
     console, here = current(), Here.load()
     chosen, named = asked_for(here, exercise)
-    reply = _next_hint(here, chosen, task, named)
-    if reply.task is not None and not console.quiet:
-        console.heading(chosen.task_titled(reply.task), reply.task)
-    if reply.hint is not None:
-        console.line(reply.hint)
-    if reply.message:
-        console.line(reply.message)
+    reply = give_hint(console, here, chosen, task, named)
     console.note(f"Next: {reply.next.command}")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(reply)
     return 0
+
+
+def give_hint(
+    console: Console, here: Here, exercise: Exercise, task: str | None = None, named: str | None = None
+) -> schemas.Hint:
+    """Show the next hint that is due, or why none is.
+
+    Args:
+        task: about this function, not the first that fails.
+        named: the file that was named, to be called by its name.
+    """
+    reply = _next_hint(here, exercise, task, named)
+    if reply.task is not None and not console.quiet:
+        console.heading(exercise.task_titled(reply.task), reply.task)
+    if reply.hint is not None:
+        console.line(reply.hint)
+    if reply.message:
+        console.line(reply.message)
+    return reply
 
 
 def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> schemas.Hint:

@@ -32,6 +32,7 @@ def show_verdict(
     verbose: bool = False,
     whole: bool = True,
     brief: bool = False,
+    focus: str = "",
 ) -> None:
     """Show every task of a verdict, and the summary.
 
@@ -39,9 +40,10 @@ def show_verdict(
         verbose: show tracebacks (the student's own lines) and what the student's code printed.
         whole: all public checks were run, so that there is something to sum up.
         brief: show the details of one function only, the first that fails; people work on one at a time.
+        focus: with ``brief``, the function to show instead.
     """
     if not console.quiet:
-        page = _Page(console, verbose=verbose, brief=brief)
+        page = _Page(console, verbose=verbose, brief=brief, focus=focus)
         unwritten: list[tuple[Task, list[CheckResult]]] = []
         for task in exercise.task:
             checks = [check for check in verdict.checks if check.task == task.id]
@@ -99,12 +101,14 @@ def _part(verdict: Verdict) -> list[str]:
 class _Page:
     """One verdict being shown; remembers what it has said, so as not to say it seven times."""
 
-    def __init__(self, console: Console, *, verbose: bool, brief: bool, hidden: bool = False) -> None:
+    def __init__(
+        self, console: Console, *, verbose: bool, brief: bool, hidden: bool = False, focus: str = ""
+    ) -> None:
         self._console = console
         self._hidden = hidden
         self._verbose = verbose
         self._brief = brief
-        self._detailed = ""
+        self._detailed = focus
         self._left_out = False
         self._said: set[str] = set()
         self._kept_back = False

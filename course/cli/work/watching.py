@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import Console, current
+from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply, Watch, WatchRun
 from course.cli.work import checking
 from course.cli.work.advice import next_step
 from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.hinting import give_hint
+from course.cli.work.keys import keys_of_terminal
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, UngradableError
 
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
     from course.cli.frame.replies import Check
+    from course.cli.work.keys import Keys
+    from course.scoring.verdict import Verdict
 
 __all__ = ["Watcher", "saves", "watch"]
 
@@ -44,6 +48,11 @@ PATIENCE_MS = 200
 SECOND_LOOK = 0.05
 #: How often a folder that is gone is looked for. In s.
 ABSENCE_POLL = 0.2
+#: How often a newer save is looked for while a run goes on. In s.
+_GLANCE = 0.05
+_LABEL_WIDTH = 9
+#: What can be pressed.
+KEYS = "h next hint, n next failing function, v details, r again, q leave"
 
 Signature = tuple[int, int, int] | None
 
@@ -56,7 +65,8 @@ def watch(
 ) -> int:
     """Check again on every save.
 
-    Ctrl-C ends it. With --json the one object is printed then.
+    On a terminal keys give the next hint, the next failing function, details, another run; q or Ctrl-C ends
+    it. With --json the one object is printed then.
     """
     from course.cli.work.checking import open_session
 
@@ -68,16 +78,36 @@ def watch(
     for note in work.notes:
         console.warn(note)
     watcher = Watcher(console=console, here=here, exercise=chosen, verbose=verbose, name=work.name)
+    wake = threading.Event()
     try:
-        with _ended_like_ctrl_c(), open_session(chosen, here.catalog) as session:
-            console.note(f"Watching {here.workspace.shown(path)}; Ctrl-C ends it.")
-            for _ in saves(path):
+        with (
+            _ended_like_ctrl_c(),
+            open_session(chosen, here.catalog) as session,
+            _keys(console, wake) as keys,
+        ):
+            how = "Ctrl-C ends it" if keys is None else KEYS
+            console.note(f"Watching {here.workspace.shown(path)}; {how}.")
+            for _ in saves(path) if keys is None else saves(path, wake):
+                for key in keys.taken() if keys is not None else ():
+                    if key == "q":
+                        return 0
+                    watcher.press(key, session)
                 watcher.look(session)
     except KeyboardInterrupt:
         if console.fancy:
             console.blank()  # the terminal has written ^C
     console.emit(watcher.reply())
     return INTERRUPTED
+
+
+@contextlib.contextmanager
+def _keys(console: Console, wake: threading.Event) -> Iterator[Keys | None]:
+    """Keys, where somebody is there to press them."""
+    if not (console.fancy and console.interactive) or console.quiet:
+        yield None
+        return
+    with keys_of_terminal(lambda _: wake.set()) as keys:
+        yield keys
 
 
 @contextlib.contextmanager
@@ -97,8 +127,12 @@ def _ended_like_ctrl_c() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def saves(path: Path) -> Iterator[None]:
-    """Yield at once, and then whenever ``path`` or its folder may have changed, until Ctrl-C."""
+def saves(path: Path, wake: threading.Event | None = None) -> Iterator[None]:
+    """Yield at once, and then whenever ``path`` or its folder may have changed, until Ctrl-C.
+
+    Args:
+        wake: set by whoever wants a look sooner.
+    """
     from watchfiles import watch as changes
 
     yield
@@ -117,6 +151,7 @@ def saves(path: Path) -> Iterator[None]:
                 recursive=False,
                 raise_interrupt=True,
                 yield_on_timeout=True,
+                stop_event=wake,
                 rust_timeout=1000,
             ):
                 if batch:
@@ -125,6 +160,9 @@ def saves(path: Path) -> Iterator[None]:
                     break
         except FileNotFoundError:  # it went between the look and the watch
             continue
+        if wake is not None and wake.is_set():
+            wake.clear()
+            yield
 
 
 @dataclass
@@ -144,6 +182,8 @@ class Watcher:
     last: Check | ErrorReply | None = None
     _seen: Signature = None
     _gone: bool = False
+    _verdict: Verdict | None = None
+    _focus: str = ""
 
     def look(self, session: Any) -> bool:
         """Grade the file if it was saved since the last look; True if it was."""
@@ -161,8 +201,26 @@ class Watcher:
             time.sleep(SECOND_LOOK)
             signature = _signature(path)
         self._seen, self._gone = signature, False
-        self._grade(session, noticed)
+        if self._grade(session, noticed):
+            return self.look(session)
         return True
+
+    def press(self, key: str, session: Any) -> None:
+        """Do what a key asks for; other keys say which there are."""
+        if key == "h":
+            give_hint(self.console, self.here, self.exercise, self._focus or None)
+        elif key == "r":
+            self._seen = None
+            self.look(session)
+        elif key in {"n", "v"} and self._verdict is not None:
+            if key == "v":
+                self.verbose = not self.verbose
+            else:
+                self._focus = _following(self._failing(), self._focus)
+            self._show(self._verdict)
+        elif key.strip():
+            self.console.note(f"Keys: {KEYS}.")
+        self._flush_warnings()
 
     def reply(self) -> Any:
         """The answer that ``--json`` prints at the end."""
@@ -174,11 +232,16 @@ class Watcher:
             last=self.last,
         )
 
-    def _grade(self, session: Any, noticed: float) -> None:
+    def _grade(self, session: Any, noticed: float) -> bool:
+        """Grade and show what is there; True if that was dropped, for a newer save is there."""
         self._announce()
         try:
             work = chosen_work(self.here, self.exercise, self.name or self.exercise.module)
-            verdict = checking.grade_once(session, work.submission)
+            with self._at_work(session) as superseded:
+                verdict = checking.grade_once(session, work.submission)
+            if superseded.is_set():
+                self.console.note("Saved again meanwhile: this run is dropped.")
+                return True
             seconds = time.perf_counter() - noticed
             checking.record_verdict(self.here, self.exercise, work.source, verdict, seconds)
             problem = checking.unlike_verdict(verdict)
@@ -188,14 +251,73 @@ class Watcher:
             if not isinstance(error, UngradableError):
                 raise
             self._ungradable(error, noticed)
-            return
-        show_verdict(self.console, self.exercise, verdict, verbose=self.verbose, brief=True)
+            return False
+        self._say_changes(verdict)
+        self._verdict = verdict
+        if self._focus not in self._failing():
+            self._focus = ""
+        self._show(verdict)
         step = next_step(self.here, self.exercise, verdict, work.source)
         if step != f"course watch {self.exercise.id}":
             self.console.note(f"Next: {step}")
         self.last = checking.reply_to(self.here.course, verdict, step)
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._flush_warnings()
+        return False
+
+    def _show(self, verdict: Verdict) -> None:
+        show_verdict(
+            self.console, self.exercise, verdict, verbose=self.verbose, brief=True, focus=self._focus
+        )
+
+    def _failing(self) -> list[str]:
+        """Functions with a check that does not pass, in the order of the exercise."""
+        checks = self._verdict.checks if self._verdict is not None else ()
+        failing = {check.task for check in checks if check.status != "pass"}
+        return [task.id for task in self.exercise.task if task.id in failing]
+
+    def _say_changes(self, verdict: Verdict) -> None:
+        """First of all what broke since the last run, and what turned green."""
+        if self._verdict is None:
+            return
+        before = {check.id: check.status for check in self._verdict.checks}
+        broke = [c for c in verdict.checks if c.status != "pass" and before.get(c.id) == "pass"]
+        mended = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
+        for label, style, changed in (("broke", "bold red", broke), ("mended", "bold green", mended)):
+            for check in changed:
+                self.console.item(label, check.title, style=style, width=_LABEL_WIDTH)
+        if (broke or mended) and self.console.fancy:
+            self.console.blank()
+
+    @contextlib.contextmanager
+    def _at_work(self, session: Any) -> Iterator[threading.Event]:
+        """While a run goes on: say what runs once it takes a while, and drop it when a newer save arrives."""
+        superseded, done = threading.Event(), threading.Event()
+        path = self.here.workspace.path(self.exercise.id, self.name or self.exercise.module)
+        status = self.console.rich().status("", spinner="line") if self.console.motion else None
+        begin = time.perf_counter()
+
+        def look() -> None:
+            while not done.wait(_GLANCE):
+                signature = _signature(path)
+                if signature is not None and signature[1] and signature != self._seen:
+                    superseded.set()
+                if superseded.is_set():
+                    session.drop()
+                elif status is not None and time.perf_counter() - begin > PATIENCE:
+                    which = session.running or f"Checking {self.exercise.id}"
+                    status.update(f"{time.perf_counter() - begin:.1f} s  {which}")
+                    status.start()
+
+        thread = threading.Thread(target=look, name="glance", daemon=True)
+        thread.start()
+        try:
+            yield superseded
+        finally:
+            done.set()
+            thread.join()
+            if status is not None:
+                status.stop()
 
     def _ungradable(self, error: UngradableError, noticed: float) -> None:
         self.console.line(error.message)
@@ -223,6 +345,13 @@ class Watcher:
             self.console.warn(warning)
         self.here.warnings.clear()
         self.console.flush()
+
+
+def _following(names: list[str], now: str) -> str:
+    """The name after ``now``, the first one after the last; "" if there is none."""
+    if not names:
+        return ""
+    return names[(names.index(now) + 1) % len(names)] if now in names else names[min(1, len(names) - 1)]
 
 
 def _signature(path: Path) -> Signature:

@@ -7,11 +7,18 @@ from course.progress.store import Store
 
 def test_lesson_without_an_id_goes_on_to_the_next_unread_one(course, workspace):
     assert course("lesson", "--json").json["id"] == "twice-as-much"
+    Store(workspace / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
     assert course("lesson", "--json").json["id"] == "half-as-much"
     assert [lesson["read_at"] is not None for lesson in course("lessons", "--json").json["lessons"]] == [
         True,
-        True,
+        False,
     ]
+
+
+def test_a_print_is_no_reading(course, workspace):
+    for shape in ("--json", "--plain", "--page"):
+        assert course("lesson", "twice-as-much", shape).code == 0
+    assert not any(lesson["read_at"] for lesson in course("lessons", "--json").json["lessons"])
 
 
 def test_a_lesson_can_be_read_outside_of_a_workspace(course):

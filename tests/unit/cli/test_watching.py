@@ -162,3 +162,54 @@ def test_ctrl_c_ends_a_watch_with_its_one_object(course, workspace, write, monke
 def test_there_must_be_a_file_to_begin_with(course, workspace):
     (workspace / "doubling" / "doubling.py").unlink()
     assert course("watch", "doubling").code == 3
+
+
+def test_what_broke_and_what_was_mended_comes_first(watching, write):
+    watcher, session = watching
+    write("wrong", "RIGHT")
+    watcher.look(session)
+    assert "broke" not in _said(watcher)
+    before = len(_said(watcher))
+    write("RIGHT", "wrong")
+    watcher.look(session)
+    lines = _said(watcher)[before:].splitlines()
+    assert "broke" in lines[1]
+    assert "mended" in lines[2]
+
+
+def test_a_newer_save_drops_the_run_and_is_checked_instead(watching, write, monkeypatch):
+    watcher, session = watching
+    write("wrong", "RIGHT")
+    dropped = threading.Event()
+    grade = session.grade
+
+    def slow(submission, only=None):
+        if not dropped.is_set():
+            write("RIGHT", "RIGHT")  # saved again while the checks run
+            assert dropped.wait(20)
+        return grade(submission, only)
+
+    session.drop, session.running = dropped.set, "a check"
+    monkeypatch.setattr(session, "grade", slow)
+    assert watcher.look(session)
+    assert [run.score for run in watcher.runs] == [4.0]
+    assert "dropped" in _said(watcher)
+
+
+def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, write):
+    watcher, session = watching
+    write("wrong", "wrong")
+    watcher.look(session)
+    said = len(_said(watcher))
+    watcher.press("h", session)
+    assert watcher.here.history(watcher.exercise).hints
+    watcher.press("n", session)
+    focus = watcher._focus
+    watcher.press("n", session)
+    assert watcher._focus != focus
+    watcher.press("v", session)
+    assert watcher.verbose
+    watcher.press("r", session)
+    assert len(watcher.runs) == 2
+    watcher.press("x", session)
+    assert "Keys: h next hint" in _said(watcher)[said:]

@@ -1,0 +1,168 @@
+"""Figures as half blocks of a terminal, drawn by a process of their own.
+
+Drawing needs matplotlib, which is slow to load and large; the reader stays quick and small without it.
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.color import Color
+from rich.style import Style
+from rich.text import Text
+
+from course.cli.reading.screen.machine import can_open
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["Drawer", "half_blocks"]
+
+#: A figure is about this much lower than wide, in cells; its caption stands below it on the same screen.
+_LOW = 0.26
+_CAPTION = 5
+_LEAST = 8
+
+
+class Drawer:
+    """Draws figures, one after the other; each is drawn once for a size."""
+
+    def __init__(self) -> None:
+        self._drawn: dict[tuple[str, int, int], list[Text]] = {}
+        self._asked: set[tuple[str, int, int]] = set()
+        self._waiting: dict[int, Callable[[dict[str, Any]], None]] = {}
+        self._process: subprocess.Popen[str] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._number = 0
+
+    def rows(self, figure: str, columns: int, room: int, drawn: Callable[[str], None]) -> list[Text]:
+        """A figure's lines; blank ones while it is being drawn, so that nothing moves when it comes.
+
+        Args:
+            columns: how wide.
+            room: lines of a screen; the figure and the start of its caption fit.
+            drawn: called with the figure's id once it is there, from another thread.
+        """
+        rows = max(_LEAST, min(round(columns * _LOW), room - _CAPTION))
+        key = (figure, columns, rows)
+        if key not in self._drawn and key not in self._asked:
+            self._asked.add(key)
+
+            def take(answer: dict[str, Any]) -> None:
+                if "pixels" in answer:
+                    self._drawn[key] = half_blocks(
+                        base64.b64decode(answer["pixels"]), columns, rows, answer["labels"]
+                    )
+                else:
+                    self._drawn[key] = []  # it stays described
+                drawn(figure)
+
+            self._ask({"figure": figure, "columns": columns, "rows": rows}, take)
+        return self._drawn.get(key, [Text()] * rows)
+
+    def open(self, figure: str, say: Callable[[str], None]) -> None:
+        """Show a figure as it is on paper in the system's viewer, or say where it was put."""
+
+        def take(answer: dict[str, Any]) -> None:
+            if "png" not in answer:
+                say(answer.get("error", "The figure could not be drawn."))
+                return
+            if self._folder is None:
+                self._folder = tempfile.TemporaryDirectory(prefix="course-figures-")
+            path = Path(self._folder.name) / f"{figure}.png"
+            path.write_bytes(base64.b64decode(answer["png"]))
+            if can_open():
+                import webbrowser
+
+                webbrowser.open(path.as_uri())
+                say(f"Opened {figure}.png")
+            else:
+                say(f"No viewer here; until you leave, the figure is {path}")
+
+        self._ask({"figure": figure, "png": True}, take)
+
+    def close(self) -> None:
+        """End the drawing process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+            for stream in (self._process.stdin, self._process.stdout):
+                if stream is not None:
+                    with contextlib.suppress(OSError):
+                        stream.close()
+            self._process = None
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
+    def _ask(self, request: dict[str, Any], take: Callable[[dict[str, Any]], None]) -> None:
+        if self._process is None:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "course.figures.terminal"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+                encoding="utf-8",
+            )
+            threading.Thread(target=self._listen, args=(self._process,), name="figures", daemon=True).start()
+        self._number += 1
+        self._waiting[self._number] = take
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError, ValueError):  # it ended: figures stay described
+            self._process.stdin.write(json.dumps({**request, "id": self._number}) + "\n")
+            self._process.stdin.flush()
+
+    def _listen(self, process: subprocess.Popen[str]) -> None:
+        assert process.stdout is not None
+        with contextlib.suppress(OSError, ValueError):  # closed on the way out
+            for line in process.stdout:
+                answer = json.loads(line)
+                self._waiting.pop(answer["id"])(answer)
+
+
+def half_blocks(pixels: bytes, columns: int, rows: int, labels: list[list[Any]]) -> list[Text]:
+    """Pixels as half blocks, with letters over them.
+
+    Args:
+        pixels: red, green and blue, row by row, two rows a cell.
+        labels: (column, row, text, (red, green, blue), bold) each.
+    """
+    letters = {
+        (row, column + at): (letter, ink, bold)
+        for column, row, words, ink, bold in labels
+        for at, letter in enumerate(words)
+    }
+    colours: dict[bytes, Color] = {}
+
+    def colour(at: int) -> Color:
+        three = pixels[at : at + 3]
+        if three not in colours:
+            colours[three] = Color.from_rgb(*three)
+        return colours[three]
+
+    lines = []
+    for row in range(rows):
+        line = Text(no_wrap=True)
+        for column in range(columns):
+            upper = 3 * (2 * row * columns + column)
+            lower = upper + 3 * columns
+            letter = letters.get((row, column))
+            if letter is None:
+                line.append("▀", Style(color=colour(upper), bgcolor=colour(lower)))
+            else:
+                words, ink, bold = letter
+                paper = [(pixels[upper + part] + pixels[lower + part]) // 2 for part in range(3)]
+                line.append(
+                    words, Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*paper), bold=bold)
+                )
+        lines.append(line)
+    return lines

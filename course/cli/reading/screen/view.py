@@ -1,0 +1,64 @@
+"""Opening the reader, and what it needs of the machine it runs on."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from course.errors import CourseError
+from course.reading.record import Writer
+
+if TYPE_CHECKING:
+    from course.catalog.load import Catalog
+    from course.progress.store import Event, Store
+    from course.reading.record import InProgress
+
+__all__ = ["is_possible", "read"]
+
+
+def is_possible() -> bool:
+    """Whether this terminal can be drawn on: somebody is there, and letters beyond ASCII arrive."""
+    if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
+        return False
+    if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):
+        return False
+    return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
+
+
+def read(catalog: Catalog, first: str, store: Store | None) -> tuple[InProgress, str]:
+    """Read until the reader leaves. The terminal is left as it was, whatever happens.
+
+    Args:
+        catalog: the course.
+        first: id of the lesson to open.
+        store: the student's record; None outside of a workspace.
+
+    Returns:
+        The lesson that was open last, and why something was not recorded ("" if all was).
+    """
+    from course.cli.reading.screen.app import ReaderApp
+    from course.cli.reading.screen.drawing import Drawer
+
+    writer = Writer(store)
+    troubles: list[str] = []
+
+    def events(lesson: str) -> tuple[Event, ...]:
+        if store is None:
+            return ()
+        try:
+            return store.events(subject=lesson)
+        except CourseError as error:
+            troubles.append(f"{error.message} {error.help}")
+            return ()
+
+    app = ReaderApp(catalog, first, events=events, write=writer, pictures=Drawer())
+    try:
+        with contextlib.suppress(KeyboardInterrupt):
+            app.run()
+    finally:
+        writer.close()
+    if app.failure is not None:
+        raise app.failure
+    return app.progress, writer.trouble or "".join(troubles[:1])

@@ -1,0 +1,238 @@
+"""A figure at the size of a terminal: pixels for half blocks, and its words as letters of the terminal.
+
+Two pixels make a cell, so a whole figure has few pixels and none to spare for letters. The curves are drawn
+as wide as a pixel, and every text is taken out and handed on with the cell it belongs to; those that would
+lie on others are left out, ticks before titles.
+
+``python -m course.figures.terminal`` draws for a program that does not want matplotlib in its own memory: a
+request a line on standard input, an answer a line on standard output, as JSON.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import Collection
+from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
+
+from course.errors import CourseError
+from course.figures.registry import build, png
+from course.figures.style import house_style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["Label", "TerminalFigure", "terminal_figure"]
+
+#: A line of this many points on paper is one pixel here.
+_PAPER_PT = 1.3
+#: A marker is drawn this many pixels wide.
+_MARKER_PX = 2.0
+_LETTER_PX = 2.0
+_MATHS = re.compile(r"\\mathdefault\{([^}]*)\}|\\(?:mathrm|text)\{([^}]*)\}")
+_RAISED = str.maketrans("0123456789-−+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺")
+_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A text of the figure, from a cell on.
+
+    Attributes:
+        ink: its colour, as red, green and blue from 0 to 255.
+        bold: it heads the figure or a part of it.
+    """
+
+    column: int
+    row: int
+    text: str
+    ink: tuple[int, int, int]
+    bold: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalFigure:
+    """A figure of so many cells.
+
+    Attributes:
+        pixels: red, green and blue of each pixel, shape (2 * rows, columns, 3).
+    """
+
+    columns: int
+    rows: int
+    pixels: np.ndarray[Any, np.dtype[np.uint8]]
+    labels: tuple[Label, ...]
+
+
+def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
+    """Draw a figure for so many cells.
+
+    Raises:
+        NotFoundError: no figure has this id.
+    """
+    figure = build(figure_id)
+    with house_style():
+        width = float(figure.get_figwidth())
+        dpi = columns / width
+        figure.set_dpi(dpi)
+        figure.set_size_inches(width, 2 * rows / dpi)
+        # Letters of two pixels are as wide as a cell, and still have exponents that a font can be scaled to.
+        size = _LETTER_PX * 72.0 / dpi
+        for text in figure.findobj(Text):
+            text.set_fontsize(size)
+        for axes in figure.axes:
+            axes.tick_params(which="both", labelsize=size)
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.draw()
+        labels = _labels(figure, canvas, columns, rows)
+        _thicken(figure, 72.0 / dpi)
+        canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[: 2 * rows, :columns, :3]
+    whole = np.full((2 * rows, columns, 3), 255, dtype=np.uint8)
+    whole[: pixels.shape[0], : pixels.shape[1]] = pixels
+    return TerminalFigure(columns, rows, whole, tuple(labels))
+
+
+def _thicken(figure: Figure, pixel: float) -> None:
+    """Lines and markers that can be seen, ``pixel`` being one pixel in points."""
+    for line in figure.findobj(Line2D):
+        line.set_linewidth(max(0.6, line.get_linewidth() / _PAPER_PT) * pixel)
+        line.set_markersize(_MARKER_PX * pixel)
+        line.set_markeredgewidth(0.5 * pixel)
+    for axes in figure.axes:
+        for spine in axes.spines.values():
+            spine.set_linewidth(0.5 * pixel)
+        axes.tick_params(which="both", length=0.0)
+        for grid in (*axes.get_xgridlines(), *axes.get_ygridlines()):
+            grid.set_linewidth(0.5 * pixel)
+            grid.set_markersize(0.0)
+    for artist in figure.findobj(Collection):
+        artist.set_linewidth(0.8 * pixel)
+    patch: Any
+    for patch in figure.findobj(Patch):
+        if patch.get_linewidth() and patch.get_edgecolor()[3] > 0.0:
+            patch.set_linewidth(0.5 * pixel)
+
+
+def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]:
+    """Every text with the cell it begins in; taken out of the figure on the way."""
+    renderer: Any = canvas.get_renderer()
+    suptitle = getattr(figure, "_suptitle", None)
+    titles = {suptitle} | {getattr(axes, name) for axes in figure.axes for name in ("title", "_left_title")}
+    names = {axis.label: axes for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)}
+    ticks = {
+        label: axes
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for label in axis.get_ticklabels(which="both")
+    }
+    found: list[tuple[int, Label]] = []
+    for text in figure.findobj(Text):
+        words = _plain(text.get_text())
+        if not words.strip() or not text.get_visible():
+            continue
+        box = text.get_window_extent(renderer)
+        text.set_alpha(0.0)
+        if text in ticks and not _is_beside(ticks[text], box, renderer):
+            continue
+        box_patch = text.get_bbox_patch()
+        if box_patch is not None:
+            box_patch.set_visible(False)
+        middle = rows - (box.y0 + box.y1) / 4.0
+        ink = tuple(round(255 * part) for part in to_rgb(text.get_color()))
+        rank = 0 if text is suptitle else 1 if text in titles else 3 if text in ticks else 2
+        lines = words.splitlines()
+        wide = text.get_rotation() % 180 > 45
+        for number, line in enumerate(lines):
+            row = round(middle - len(lines) / 2 + number)
+            if rank == 0:
+                column, row = 0, number
+            elif wide and text in names:
+                # The name of an upright axis lies over its upper end.
+                bounds = names[text].get_window_extent(renderer)
+                column, row = round(bounds.x0) + 1, round(rows - bounds.y1 / 2.0)
+            elif text in ticks and text.get_horizontalalignment() == "right":
+                column = round(box.x1) - len(line)
+            elif text.get_horizontalalignment() == "left":
+                column = round(box.x0)
+            else:
+                column = round((box.x0 + box.x1 - len(line)) / 2)
+            column = max(0, min(column, columns - len(line)))
+            found.append((rank, Label(column, row, line[:columns], ink, rank < 2)))  # type: ignore[arg-type]
+    return _apart(found, rows)
+
+
+def _is_beside(axes: Axes, box: Any, renderer: Any) -> bool:
+    """Whether a tick's label stands beside its axes: those beyond the ends of an axis are never drawn."""
+    bounds = axes.get_window_extent(renderer)
+    x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
+    return bool(bounds.x0 - 1 <= x <= bounds.x1 + 1 or bounds.y0 - 1 <= y <= bounds.y1 + 1)
+
+
+def _apart(found: list[tuple[int, Label]], rows: int) -> list[Label]:
+    """Those that lie on no other, the more important ones first; a row up or down may help."""
+    taken: set[tuple[int, int]] = set()
+    kept: list[Label] = []
+    for rank, label in sorted(found, key=lambda one: one[0]):
+        moves = (0,) if rank == 3 else (0, 1, -1, 2)
+        for move in moves:
+            row = label.row + move
+            cells = {(row, column) for column in range(label.column - 1, label.column + len(label.text) + 1)}
+            if 0 <= row < rows and not cells & taken:
+                taken |= cells
+                kept.append(Label(label.column, row, label.text, label.ink, label.bold))
+                break
+    return kept
+
+
+def _plain(text: str) -> str:
+    """What a text says, its mathematics in letters of the terminal."""
+    text = _MATHS.sub(lambda m: m[1] or m[2] or "", text)
+    text = re.sub(r"\^\{([^}]*)\}|\^(\w)", lambda m: (m[1] or m[2]).translate(_RAISED), text)
+    text = re.sub(r"_\{([^}]*)\}|_(\w)", lambda m: (m[1] or m[2]).translate(_LOWERED), text)
+    for name, sign in (
+        ("omega", "ω"),
+        ("mu", "μ"),
+        ("times", "×"),
+        ("Delta", "Δ"),
+        ("pi", "π"),
+        ("theta", "θ"),
+    ):
+        text = text.replace(f"\\{name}", sign)
+    return text.replace("$", "").replace("\\", "").replace("{", "").replace("}", "")
+
+
+def _answer(request: dict[str, Any]) -> dict[str, Any]:
+    if request.get("png"):
+        return {"png": base64.b64encode(png(request["figure"])).decode("ascii")}
+    figure = terminal_figure(request["figure"], request["columns"], request["rows"])
+    return {
+        "pixels": base64.b64encode(figure.pixels.tobytes()).decode("ascii"),
+        "labels": [[one.column, one.row, one.text, one.ink, one.bold] for one in figure.labels],
+    }
+
+
+def _serve() -> None:
+    for line in sys.stdin:
+        request = json.loads(line)
+        try:
+            answer = _answer(request)
+        except CourseError as error:
+            answer = {"error": error.message}
+        sys.stdout.write(json.dumps({**answer, "id": request["id"]}) + "\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    _serve()

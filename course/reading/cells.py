@@ -1,0 +1,258 @@
+"""Running the cells of one lesson in a process of their own, at the best protection this machine has.
+
+A cell finds what the cells before it define: those that have not run as they now stand are run first. After a
+cell was interrupted, or its process died, the next run starts a new process and does the same there.
+"""
+
+from __future__ import annotations
+
+import ast
+import threading
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from course.isolation.deadline import Deadline
+from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.probe import open_spawner
+from course.isolation.session import Connection, LoadRefusedError
+from course.printable import printable
+from course.reading.textbook import imported, textbook_for
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from course.isolation.levels import Level, Spawner
+    from course.reading.parts import Cell
+
+__all__ = ["DEADLINE_S", "STOPPED", "CellRunner", "Gave"]
+
+#: A lesson's own cell takes under two seconds; one that was changed may take this long before it is stopped.
+DEADLINE_S = 60.0
+_MAIN = "lesson.py"
+#: What a cell that was interrupted gave.
+STOPPED = "Stopped."
+
+#: What runs beside the cells. It prints what they print as it comes, so that a stopped cell shows how far it
+#: got, and gives back the traceback of the cell's own lines.
+_BESIDE = '''\
+import importlib.machinery, io, linecache, os, sys, traceback
+
+ABSENT = {absent!r}
+sys.path.insert(0, os.path.abspath("course.zip"))
+
+
+class _Absent:
+    """A package that is not here; its names import, using them says so."""
+
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in ABSENT:
+            return importlib.machinery.ModuleSpec(name, self, is_package=True)
+
+    def create_module(self, spec):
+        return None
+
+    def exec_module(self, module):
+        module.__getattr__ = lambda name: _missing(module.__name__, name)
+
+
+def _missing(module, name):
+    if name.startswith("__"):
+        raise AttributeError(name)
+
+    def use(*args, **kwargs):
+        raise ImportError(f"{{module}}.{{name}} is not at hand where cells run: nothing is drawn there")
+
+    return use
+
+
+sys.meta_path.insert(1, _Absent())
+namespace = {{"__name__": "lesson"}}
+
+
+def run(source, name):
+    lines = source.splitlines(keepends=True)
+    linecache.cache[name] = (len(source), None, lines, name)
+    sys.stdout = type(sys.stdout)(1)  # each cell may print as much as it is allowed
+    error = ""
+    try:
+        exec(compile(source, name, "exec", dont_inherit=True), namespace)
+    except BaseException as raised:
+        told = traceback.TracebackException.from_exception(raised, limit=40)
+        told.stack = traceback.StackSummary.from_list(
+            [frame for frame in told.stack if not frame.filename.endswith({main!r})]
+        )
+        error = "".join(told.format()).rstrip()
+    return error
+'''
+
+
+@dataclass(frozen=True, slots=True)
+class Gave:
+    """What a run of a cell gave.
+
+    Attributes:
+        printed: everything it printed, without the last line's end.
+        error: the traceback, or why it was stopped; empty if it ended by itself.
+        seconds: how long it took, earlier cells not counted.
+        earlier: numbers of the shown cells that had to run first.
+    """
+
+    printed: str
+    error: str
+    seconds: float
+    earlier: tuple[int, ...] = ()
+
+
+class CellRunner:
+    """Runs the cells of a lesson, one at a time. To be used from one thread; ``interrupt`` from any.
+
+    Args:
+        cells: all cells of the lesson, hidden ones included.
+        source: what a cell's code is now.
+    """
+
+    def __init__(self, cells: Sequence[Cell], source: Callable[[Cell], str]) -> None:
+        self._cells = cells
+        self._source = source
+        self._spawner: Spawner | None = None
+        self._packages: tuple[str, ...] = ()
+        self._imported: frozenset[str] = frozenset()
+        self._connection: Connection | None = None
+        self._ran: dict[str, str] = {}  # key of a cell: the code of it that ran in this process
+        self._printed = 0
+        self._interrupted = threading.Event()
+
+    @property
+    def level(self) -> Level | None:
+        """How strongly the cells are kept apart; None before anything ran."""
+        return self._spawner.level if self._spawner is not None else None
+
+    def prepare(self) -> None:
+        """Start the process, so that the first run need not wait for it.
+
+        Raises:
+            IsolationError: it cannot be started.
+        """
+        wanted = imported(self._source(cell) for cell in self._cells)
+        if self._connection is not None and self._connection.alive:
+            if wanted == self._imported:
+                return
+            self.forget()  # a cell was changed to import more than this process was given
+        self._imported = wanted
+        self._ran.clear()
+        self._printed = 0
+        book = textbook_for(self._source(cell) for cell in self._cells)
+        if self._spawner is not None and self._packages != book.packages:
+            self._spawner.close()
+            self._spawner = None
+        if self._spawner is None:
+            self._spawner, self._packages = open_spawner(book.packages), book.packages
+        beside = _BESIDE.format(absent=book.absent, main=_MAIN).encode()
+        files = {_MAIN: beside, "course.py": b"", "course.zip": book.data}
+        files |= {f"{name}.py": b"" for name in book.absent}
+        try:
+            self._connection = Connection(self._spawner, files, _MAIN, Deadline(DEADLINE_S))
+        except LoadRefusedError as refused:
+            raise IsolationError(f"the cells' process did not load: {refused.failure}") from None
+
+    def run(self, cell: Cell) -> Gave:
+        """Run a cell, and before it what it needs.
+
+        Raises:
+            IsolationError: there is no process to run it in.
+        """
+        self._interrupted.clear()
+        self.prepare()
+        earlier: list[int] = []
+        for before in self._needed(cell):
+            gave = self._run_one(before)
+            if not before.hidden:
+                earlier.append(before.number)
+            if gave.error:
+                which = f"Cell {before.number}, which this one needs," if before.number else "A hidden cell"
+                return Gave("", f"{which} did not run.\n{gave.error}", gave.seconds, tuple(earlier))
+        gave = self._run_one(cell)
+        return Gave(gave.printed, gave.error, gave.seconds, tuple(earlier))
+
+    def interrupt(self) -> None:
+        """Stop the cell that is running; what it printed so far is kept."""
+        self._interrupted.set()
+        connection = self._connection
+        if connection is not None:
+            connection.deadline.end()
+
+    def forget(self) -> None:
+        """Begin anew with the next run, as after changes to the modules a cell imports."""
+        if self._connection is not None:
+            self._connection.close()
+            self._connection = None
+
+    def close(self) -> None:
+        """End the process."""
+        self.forget()
+        if self._spawner is not None:
+            self._spawner.close()
+            self._spawner = None
+
+    def _needed(self, cell: Cell) -> list[Cell]:
+        """The earlier cells to run first: shown ones that have not run as they are, and with them whatever
+        hidden ones define names that are used."""
+        needed: list[Cell] = []
+        used = _names(self._source(cell))[0]
+        for before in sorted(self._cells, key=lambda one: one.order, reverse=True):
+            if before.order >= cell.order or self._ran.get(before.key) == self._source(before):
+                continue
+            uses, binds = _names(self._source(before))
+            if before.hidden and not binds & used:
+                continue
+            needed.append(before)
+            used |= uses
+        return needed[::-1]
+
+    def _run_one(self, cell: Cell) -> Gave:
+        connection, source = self._connection, self._source(cell)
+        if connection is None or not connection.alive:
+            raise IsolationError("the cells' process has ended")
+        name = f"cell {cell.number}" if cell.number else "a hidden cell"
+        start = perf_counter()
+        connection.deadline = Deadline(DEADLINE_S)
+        if self._interrupted.is_set():
+            connection.deadline.end()
+        try:
+            error = printable(str(connection.call("run", source, name)))
+        except StudentFailure as failure:
+            error = self._why(failure)
+        seconds = perf_counter() - start
+        whole = connection.output()
+        printed, self._printed = whole[self._printed :], len(whole)
+        if not error:
+            self._ran[cell.key] = source
+        else:
+            self._ran.pop(cell.key, None)
+        return Gave(printed.rstrip("\n"), error, seconds)
+
+    def _why(self, failure: StudentFailure) -> str:
+        if self._interrupted.is_set():
+            return STOPPED
+        if failure.kind == "timeout":
+            return f"Stopped after {DEADLINE_S:.0f} s."
+        return f"The cell's process ended: {printable(failure.message)}."
+
+
+def _names(source: str) -> tuple[set[str], set[str]]:
+    """The names that code reads, and those it binds; empty for code that does not parse."""
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return set(), set()
+    uses: set[str] = set()
+    binds: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            (uses if isinstance(node.ctx, ast.Load) else binds).add(node.id)
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            binds.add(node.name)
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            binds |= {(alias.asname or alias.name).partition(".")[0] for alias in node.names}
+    return uses, binds

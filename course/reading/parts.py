@@ -1,0 +1,219 @@
+"""A lesson cut into what its reader meets: sections, predictions and what each keeps closed, cells.
+
+A prediction closes what would answer it: everything after it up to and including its answer. Code stays in
+sight without its output, since most questions are about the code below them, and so does prose that quotes
+no computed number. Answered or skipped, the prediction opens all of it.
+
+Predictions and cells are known by a digest of their own words, so that an edit elsewhere in a lesson, which
+moves and renumbers them, takes nobody's answers away.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.catalog import blocks as b
+from course.catalog.markdown import read_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.catalog.models import Lesson
+
+__all__ = ["Cell", "Question", "Script", "Section", "read_script", "words_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A heading and how far it reaches: the blocks from ``start`` up to ``end``, not included."""
+
+    title: str
+    level: int
+    slug: str
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A prediction.
+
+    Attributes:
+        number: 1 for the first of the lesson.
+        index: of its block.
+        answer: index of the passage that answers it; None if there is none.
+        end: index of the first block after it that is open again.
+        key: what its answer is kept under.
+        words: what is asked.
+    """
+
+    number: int
+    index: int
+    answer: int | None
+    end: int
+    key: str
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A code cell.
+
+    Attributes:
+        number: 1 for the first shown cell; 0 for a hidden one.
+        order: its place among all cells, hidden ones included, 0 first.
+        index: of its block; for a cell inside another block, of that.
+        key: what happened to it is kept under.
+        source: as the lesson has it.
+        output: what the lesson records; None if nothing.
+    """
+
+    number: int
+    order: int
+    index: int
+    key: str
+    source: str
+    output: str | None
+
+    @property
+    def hidden(self) -> bool:
+        """It runs for what later cells need, and is not shown."""
+        return self.number == 0
+
+
+@dataclass(frozen=True)
+class Script:
+    """One lesson, ready to be read.
+
+    Attributes:
+        blocks: its blocks, in order; a place in the text is an index among them.
+        weights: words in each block, for the time that is left.
+    """
+
+    lesson: Lesson
+    blocks: tuple[b.Block, ...]
+    sections: tuple[Section, ...]
+    questions: tuple[Question, ...]
+    cells: tuple[Cell, ...]
+    weights: tuple[int, ...]
+
+    @property
+    def shown_cells(self) -> tuple[Cell, ...]:
+        """The cells a reader sees."""
+        return tuple(cell for cell in self.cells if not cell.hidden)
+
+    def cell_at(self, index: int) -> Cell | None:
+        """The shown cell that is this block."""
+        return next((cell for cell in self.cells if cell.index == index and not cell.hidden), None)
+
+    def question_at(self, index: int) -> Question | None:
+        """The prediction that is this block."""
+        return next((one for one in self.questions if one.index == index), None)
+
+    def question_over(self, index: int) -> Question | None:
+        """The prediction that keeps this block closed until it is answered; None if nothing does."""
+        return next((one for one in self.questions if one.index < index < one.end), None)
+
+    def gives_away(self, index: int) -> bool:
+        """Whether a block below an open prediction must not be seen: it may hold the answer."""
+        match self.blocks[index]:
+            case b.CodeCell() | b.MathBlock() | b.Heading():
+                return False
+            case b.Paragraph() as block:
+                return any(isinstance(piece, b.Value) for _, piece in b.walk_inlines((block,)))
+            case _:
+                return True
+
+    def section_of(self, index: int) -> Section | None:
+        """The section (level 2) a block stands in; None before the first."""
+        return next((s for s in self.sections if s.level == 2 and s.start <= index < s.end), None)
+
+    def minutes_left(self, index: int) -> float:
+        """Reading time from a block to the end, by words."""
+        total = sum(self.weights) or 1
+        return self.lesson.minutes * sum(self.weights[max(index, 0) :]) / total
+
+
+def read_script(lesson: Lesson) -> Script:
+    """Read a lesson.
+
+    Raises:
+        ContentError: it cannot be read or parsed.
+    """
+    blocks = read_blocks(Path(lesson.path))
+    return Script(
+        lesson=lesson,
+        blocks=blocks,
+        sections=tuple(_sections(blocks)),
+        questions=tuple(_questions(blocks)),
+        cells=tuple(_cells(blocks)),
+        weights=tuple(len(words_of(block).split()) for block in blocks),
+    )
+
+
+def words_of(block: b.Block) -> str:
+    """Everything in a block that can be read aloud, code and formulae included."""
+    parts: list[str] = []
+    for inner in b.walk_blocks((block,)):
+        match inner:
+            case b.CodeCell(source=text, output=output, hidden=False):
+                parts += [text, output or ""]
+            case b.Listing(text=text) | b.MathBlock(text=text) | b.Diagram(drawing=text):
+                parts.append(text)
+            case b.CommandList(commands=commands):
+                parts += [f"{one.command} {one.note}" for one in commands]
+            case b.Figure(alt=alt, caption=caption):
+                parts += [b.plain_text(caption), alt]
+            case b.Heading(inlines=inlines) | b.Paragraph(inlines=inlines):
+                parts.append(b.plain_text(inlines))
+            case b.Table(header=header, rows=rows):
+                parts += [b.plain_text(cell) for row in (header, *rows) for cell in row]
+            case b.Sources(items=items):
+                parts += [b.plain_text(item) for item in items]
+            case _:
+                pass
+    return "\n".join(part for part in parts if part)
+
+
+def _sections(blocks: tuple[b.Block, ...]) -> Iterator[Section]:
+    heads = [(index, block) for index, block in enumerate(blocks) if isinstance(block, b.Heading)]
+    for index, head in heads:
+        end = next((at for at, other in heads if at > index and other.level <= head.level), len(blocks))
+        yield Section(b.plain_text(head.inlines), head.level, b.slug(head), index, end)
+
+
+def _questions(blocks: tuple[b.Block, ...]) -> Iterator[Question]:
+    number = 0
+    for index, block in enumerate(blocks):
+        if not isinstance(block, b.Prediction):
+            continue
+        number += 1
+        answer, end = None, len(blocks)
+        for at in range(index + 1, len(blocks)):
+            below = blocks[at]
+            if isinstance(below, b.Callout) and below.kind == "answer":
+                answer, end = at, at + 1
+                break
+            if isinstance(below, b.Prediction) or (isinstance(below, b.Heading) and below.level == 2):
+                end = at
+                break
+        words = words_of(block)
+        yield Question(number, index, answer, end, _key(words), words)
+
+
+def _cells(blocks: tuple[b.Block, ...]) -> Iterator[Cell]:
+    number = order = 0
+    for index, block in enumerate(blocks):
+        for inner in b.walk_blocks((block,)):
+            if isinstance(inner, b.CodeCell):
+                number += not inner.hidden
+                shown = 0 if inner.hidden else number
+                yield Cell(shown, order, index, _key(inner.source), inner.source, inner.output)
+                order += 1
+
+
+def _key(words: str) -> str:
+    return hashlib.sha256(words.encode()).hexdigest()[:12]

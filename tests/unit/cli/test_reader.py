@@ -1,0 +1,328 @@
+"""The reader on the whole screen, driven by keys as a student presses them."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.catalog import blocks as b
+from course.catalog.load import Catalog
+from course.cli.frame.app import run
+from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.drawing import half_blocks
+from course.progress.store import Store
+from course.reading.record import Writer
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+    from pathlib import Path
+
+LESSON = "numerical-integration"
+#: What the issue of this reader asks for: a key's screen at 200 columns, in s of this process's own time.
+KEY_S = 0.05
+
+
+@pytest.fixture(scope="module")
+def catalog() -> Catalog:
+    return Catalog()
+
+
+def reading(
+    catalog: Catalog,
+    journey: Callable[[ReaderApp, Any], Awaitable[None]],
+    *,
+    size: tuple[int, int] = (80, 24),
+    lesson: str = LESSON,
+    store: Store | None = None,
+) -> ReaderApp:
+    """Open a lesson, do what ``journey`` does, leave."""
+    write = Writer(store)
+    app = ReaderApp(
+        catalog, lesson, events=lambda name: store.events(subject=name) if store else (), write=write
+    )
+
+    async def drive() -> None:
+        async with app.run_test(size=size) as pilot:
+            await settled(app, pilot)
+            await journey(app, pilot)
+            app.keep_place()
+
+    try:
+        asyncio.run(drive())
+    finally:
+        write.close()
+    return app
+
+
+async def settled(app: ReaderApp, pilot: Any) -> None:
+    for _ in range(200):
+        await pilot.pause(0.02)
+        if app.page.book is not None and app.page.book.whole:
+            return
+    pytest.fail("the lesson was never laid out")
+
+
+def screen(app: ReaderApp) -> str:
+    height = app.size.height
+    return "\n".join("".join(s.text for s in app.page.render_line(y)).rstrip() for y in range(height))
+
+
+async def ran(app: ReaderApp, pilot: Any) -> None:
+    """Until the cell has ended."""
+    for _ in range(1500):
+        await pilot.pause(0.02)
+        if app._bench is None or app._bench.cell is None:
+            await pilot.pause(0.05)
+            return
+    pytest.fail("the cell never ended")
+
+
+async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
+    question = app.progress.script.questions[number - 1]
+    app._chosen(f"block:{question.index}")
+    await pilot.pause()
+
+
+@pytest.mark.parametrize("size", [(40, 20), (80, 24), (160, 50)])
+def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size):
+    async def journey(app, pilot):
+        for name in catalog.lesson_ids():
+            app.open(name)
+            await settled(app, pilot)
+            assert not app.progress.read
+            for _ in range(200):
+                if app.progress.read:
+                    break
+                shown = screen(app)
+                assert catalog.lesson(name).title.split(":")[0][:20] in shown
+                await pilot.press("space")
+            assert app.progress.read, name
+            assert "You have read this lesson." in screen(app)
+
+    reading(catalog, journey, size=size)
+
+
+def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
+    store = Store(tmp_path / "progress.sqlite")
+
+    async def journey(app, pilot):
+        await to_question(app, pilot)
+        question = app.progress.script.questions[0]
+        assert "Enter predict" in screen(app)
+        cell = app.progress.script.shown_cells[0]
+        recorded = cell.output.splitlines()[0]
+        everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
+        assert recorded not in everything
+        assert "shown once you have predicted" in everything
+        await pilot.press("r")  # not yet
+        assert app._bench is None or app._bench.cell is None
+        await pilot.press("enter")
+        await pilot.press(*"half a metre", "enter")
+        await pilot.pause()
+        assert app.progress.prediction(question).text == "half a metre"
+        everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
+        assert recorded in everything
+        assert "You said" in everything
+        app._chosen(f"block:{question.answer}")
+        await pilot.pause()
+        await pilot.press("3")
+        assert "wrong" in screen(app)
+
+    reading(catalog, journey, store=store)
+    kept = [event.data for event in store.events("prediction")]
+    assert kept[0]["text"] == "half a metre"
+    assert kept[1]["judged"] == "wrong"
+
+
+def test_a_skip_is_kept_too(catalog, tmp_path):
+    store = Store(tmp_path / "progress.sqlite")
+
+    async def journey(app, pilot):
+        await to_question(app, pilot)
+        await pilot.press("s")
+        assert app.progress.prediction(app.progress.script.questions[0]).skipped
+
+    reading(catalog, journey, store=store)
+    assert store.last("prediction", LESSON).data["text"] == ""
+
+
+def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog, tmp_path):
+    async def journey(app, pilot):
+        await to_question(app, pilot)
+        await pilot.press("s")
+        cell = app.progress.script.shown_cells[0]
+        app._chosen(f"block:{cell.index}")
+        await pilot.pause()
+        await pilot.press("r")
+        await ran(app, pilot)
+        state = app.progress.cell(cell)
+        assert (state.printed, state.error) == (cell.output, "")
+        assert "prints the same" in screen(app)
+        app.progress.edit(cell, cell.source + "\nprint(1 / 0)")
+        await pilot.press("r")
+        await ran(app, pilot)
+        assert "ZeroDivisionError" in app.progress.cell(cell).error
+        app.progress.edit(cell, "while True:\n    pass")
+        await pilot.press("r")
+        await pilot.pause(0.5)
+        await pilot.resize_terminal(60, 30)  # in the middle of a cell
+        await pilot.pause(0.2)
+        await pilot.press("ctrl+c")
+        await ran(app, pilot)
+        assert app.progress.cell(cell).error == "Stopped."
+        await pilot.press("u", "r")
+        await ran(app, pilot)
+        assert app.progress.cell(cell).printed == cell.output
+
+    reading(catalog, journey)
+
+
+def test_the_editor_keeps_runs_and_drops(catalog):
+    async def journey(app, pilot):
+        cell = app.progress.script.shown_cells[0]
+        await to_question(app, pilot)
+        await pilot.press("s")
+        app._chosen(f"block:{cell.index}")
+        await pilot.pause()
+        await pilot.press("e")
+        await pilot.pause()
+        await pilot.press("x", "escape")
+        await pilot.pause()
+        assert app.progress.cell(cell).source.startswith("x")
+        await pilot.press("e")
+        await pilot.pause()
+        await pilot.press("y", "ctrl+d")
+        await pilot.pause()
+        assert app.progress.cell(cell).source.startswith("xf")
+        await pilot.press("u")
+        assert app.progress.cell(cell).source == cell.source
+
+    reading(catalog, journey)
+
+
+def test_the_place_is_kept_to_the_line_at_another_width(catalog, tmp_path):
+    store = Store(tmp_path / "progress.sqlite")
+    seen = {}
+
+    async def forward(app, pilot):
+        for _ in range(6):
+            await pilot.press("space")
+        seen["place"] = app.page.place()
+
+    async def back(app, pilot):
+        seen["again"] = app.page.place()
+
+    reading(catalog, forward, store=store)
+    reading(catalog, back, store=store)
+    assert seen["again"] == seen["place"]
+    reading(catalog, back, store=store, size=(40, 20))
+    assert seen["again"].block == seen["place"].block
+
+
+def test_links_search_contents_and_the_way_back(catalog):
+    async def journey(app, pilot):
+        start = app.page.place()
+        await pilot.press("slash")
+        await pilot.press(*"restitution", "enter")
+        await pilot.pause()
+        await pilot.press("enter")
+        await settled(app, pilot)
+        assert app.progress.script.lesson.id != LESSON
+        await pilot.press("backspace")
+        await settled(app, pilot)
+        assert (app.progress.script.lesson.id, app.page.place()) == (LESSON, start)
+        await pilot.press("t")
+        await pilot.pause()
+        await pilot.press("end", "enter")
+        await settled(app, pilot)
+        assert app.progress.script.lesson.id == catalog.lesson_ids()[-1]
+        link = next(item for item in app.page.book.items if item.target.startswith("lesson:"))
+        app.page.item = link
+        await pilot.press("enter")
+        await settled(app, pilot)
+        assert app.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
+
+    reading(catalog, journey)
+
+
+def test_tab_reaches_everything_that_can_be_acted_on(catalog):
+    async def journey(app, pilot):
+        wanted = len(app.page.book.items)
+        seen = set()
+        for _ in range(4 * wanted):
+            await pilot.press("tab")
+            if app.page.item is not None:
+                seen.add((app.page.item.kind, app.page.item.block, app.page.item.number))
+        assert seen >= {(item.kind, item.block, item.number) for item in app.page.book.items}
+
+    reading(catalog, journey, size=(60, 20), lesson="why-simulate")
+
+
+def test_without_colour_nothing_is_said_by_colour(catalog, monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    async def journey(app, pilot):
+        styles = [s.style for line in app.page.book.lines for s in line if s.style]
+        assert not [style for style in styles if style.color or style.bgcolor]
+        await to_question(app, pilot)
+        assert "▸" in screen(app)
+        assert "Predict first" in screen(app)
+
+    reading(catalog, journey)
+
+
+def test_a_key_is_answered_soon_at_200_columns(catalog):
+    async def journey(app, pilot):
+        times = []
+        for key in ["space"] * 8 + ["down"] * 4 + ["b"] * 4 + ["tab"] * 4:
+            begin = time.process_time()
+            await pilot.press(key)
+            times.append(time.process_time() - begin)
+        # The median: a collection of garbage may fall into any single one.
+        assert sorted(times)[len(times) // 2] < KEY_S, times
+
+    reading(catalog, journey, size=(200, 50))
+
+
+def test_a_figure_is_pixels_with_letters_over_them():
+    pixels = bytes([255, 255, 255] * 4 + [0, 0, 0] * 4)
+    (line,) = half_blocks(pixels, 4, 1, [[1, 0, "ab", [255, 0, 0], False]])
+    assert line.plain == "▀ab▀"
+    upper, lower = line.spans[0].style.color, line.spans[0].style.bgcolor
+    assert (upper.triplet.hex, lower.triplet.hex) == ("#ffffff", "#000000")
+    assert line.spans[1].style.color.triplet.hex == "#ff0000"
+
+
+def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
+    assert run(["lesson", LESSON, "--code", "1"]) == 0
+    printed = capsys.readouterr().out
+    compile(printed, "cell", "exec")
+    assert printed.startswith("from math import cos")
+    assert run(["lesson", LESSON, "--code", "99"]) == 5
+
+
+def test_a_figure_is_known_by_its_block(catalog):
+    """Every figure of every lesson is an item of its own on the page, once its prediction is answered."""
+    for name in catalog.lesson_ids():
+
+        async def journey(app, pilot):
+            script = app.progress.script
+            for question in script.questions:
+                app.progress.predict(question, "")
+            app._rebuild()
+            figures = [i for i, one in enumerate(script.blocks) if isinstance(one, b.Figure)]
+            assert [item.block for item in app.page.book.items if item.kind == "figure"] == figures
+
+        reading(catalog, journey, lesson=name)
+
+
+def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
+    from course.cli.reading.screen.machine import write_new
+
+    monkeypatch.chdir(tmp_path)
+    first, second = write_new("a-1.py", "x = 1\n"), write_new("a-1.py", "x = 2\n")
+    assert (first.name, second.name) == ("a-1.py", "a-1-2.py")
+    assert first.read_text() == "x = 1\n"

@@ -1,0 +1,67 @@
+"""Figures at the size of a terminal: their words are letters of it, none on another."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from course.figures.registry import build
+from course.figures.terminal import terminal_figure
+
+#: Quick to draw, and of every kind: several panels, logarithmic axes, maps, bars.
+FIGURES = ["integrators-energy", "integrators-phase", "contact-stacks", "sim-free-fall", "engines-settings"]
+
+
+@pytest.mark.parametrize("columns", [38, 78])
+@pytest.mark.parametrize("name", FIGURES)
+def test_words_lie_inside_and_never_on_each_other(name, columns):
+    rows = 18
+    figure = terminal_figure(name, columns, rows)
+    assert figure.pixels.shape == (2 * rows, columns, 3)
+    taken = set()
+    for label in figure.labels:
+        cells = {(label.row, label.column + at) for at in range(len(label.text))}
+        assert not cells & taken, label
+        taken |= cells
+        assert 0 <= label.row < rows
+        assert label.column >= 0
+        assert label.column + len(label.text) <= columns
+        assert not set("$\\{}") & set(label.text)
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_the_finding_heads_it_and_both_axes_have_numbers(name):
+    figure = terminal_figure(name, 78, 20)
+    finding = build(name).get_suptitle()
+    assert figure.labels[0].text[:20] == finding.splitlines()[0][:20]
+    numbers = [label for label in figure.labels if any(char.isdigit() for char in label.text)]
+    assert len(numbers) >= 4
+
+
+def test_curves_are_seen_without_letters():
+    """At least one pixel in fifty is neither paper nor a shade of grey."""
+    pixels = terminal_figure("integrators-energy", 78, 20).pixels.astype(int)
+    coloured = np.ptp(pixels, axis=2) > 60
+    assert coloured.mean() > 0.02
+
+
+def test_the_drawing_process_answers_each_request_on_a_line():
+    asked = [
+        {"id": 1, "figure": "integrators-energy", "columns": 40, "rows": 10},
+        {"id": 2, "figure": "no-such-figure", "columns": 40, "rows": 10},
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "course.figures.terminal"],
+        input="".join(json.dumps(one) + "\n" for one in asked),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    first, second = map(json.loads, done.stdout.splitlines())
+    assert (first["id"], second["id"]) == (1, 2)
+    assert first["labels"]
+    assert "no figure" in second["error"]

@@ -183,12 +183,13 @@ def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[
     first = 1 if len(groups[0][1]) >= len(LADDER) else 0
     lowest = {id(points): min(e for _, e in points[first:]) for _engines, points in groups}
     for engines, points in sorted(groups, key=lambda group: -lowest[id(group[1])]):
-        words = _wrapped([ENGINES[engine].name for engine in engines])
+        names = [ENGINES[engine].name for engine in engines]
         errors = [e for _, e in points]
         order = slope([(dt, e / 100.0) for dt, e in points], single=ENGINES[engines[0]].single)
         # Where a smaller step gives a larger error, rounding is seen and no method.
         if order is not None and errors == sorted(errors):
-            words += f": order {order:.1f}"
+            names[-1] += f": order {order:.1f}"
+        words = _wrapped(names)
         level = math.log10(max(lowest[id(points)], _FLOOR))
         entry = (words, _shared(engines)[1])
         if blocks and level > blocks[-1][0] - line * _lines(blocks[-1][1]):

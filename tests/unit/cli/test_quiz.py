@@ -404,7 +404,7 @@ def test_plain_output_has_no_frames_and_one_fact_a_line(quiz, bank, tmp_path):
     ran = quiz("take", "--plain", "--answers", save(tmp_path / "a.toml", key(bank, ("which-engine",))))
     assert "─" not in ran.out
     assert "\x1b" not in ran.out
-    assert "2. Which engine is for what: missed\n" in ran.out
+    assert "2. Which engine is for what, and how to choose: missed\n" in ran.out
     assert ran.out.count("4 of 5 right") == 1
 
 

@@ -180,7 +180,7 @@ def test_no_file_of_the_scenes_is_forgotten() -> None:
 
 def test_the_template_of_a_new_scene_runs_as_it_is(tmp_path: Path) -> None:
     template = Path(course.__file__).parent / "authoring" / "templates" / "scene.toml.tmpl"
-    text = template.read_text(encoding="utf-8").replace("@id@", "mine").replace("@order@", "99")
+    text = template.read_text(encoding="utf-8").replace("{{ id }}", "mine").replace("{{ order }}", "99")
     comparison = run(choose(str(write(tmp_path, text)))).comparison
     assert comparison is not None
     assert comparison.agree

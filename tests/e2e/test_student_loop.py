@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from course.progress.store import Store
+
 ROOT = Path(__file__).resolve().parents[2]
 MINI_COURSE = ROOT / "tests" / "fixtures" / "mini_course"
 WRONG = "def double(x):\n    return x * x\n\n\ndef doublings(x, n):\n    return [x]\n"
@@ -89,6 +91,8 @@ def test_the_whole_way_from_init_to_submit(course, tmp_path):
     root = tmp_path / "work"
     step = _next(course("init", "work"), "Then read: ")
     assert course(*step, cwd=root).returncode == 0
+    assert _next(course(cwd=root)) == step, "a print is no reading"
+    Store(root / ".course" / "progress.sqlite").append("lesson", "twice-as-much")  # as the reader notes it
     step = _next(course(cwd=root))
     assert step == ["start", "doubling"]
     step = _next(course(*step, cwd=root), "Then check it on every save: ")

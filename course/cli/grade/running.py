@@ -46,7 +46,7 @@ def run(
     ] = None,
     jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
     timeout: Annotated[
-        float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="Wall seconds per check.")
+        float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="CPU seconds per check.")
     ] = 10.0,
     resume: Annotated[bool, typer.Option("--resume", help="Finish the run that is in OUT.")] = False,
     only: Annotated[list[str] | None, typer.Option("--only", metavar="STUDENT")] = None,

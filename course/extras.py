@@ -10,8 +10,9 @@ from __future__ import annotations
 import importlib
 import importlib.metadata
 import importlib.util
+import platform
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -64,12 +65,22 @@ class Requirement:
         versions: those that serve, as pip takes them: ">=8.4,<10"; empty for any.
         group: the extra that brings it; empty for the base install.
         applies: False if this Python or machine is not served.
+        served: the marker that says which are, as the metadata has it; empty for all.
     """
 
     name: str
     versions: str = ""
     group: str = ""
     applies: bool = True
+    served: str = field(default="", compare=False)
+
+    @property
+    def unserved(self) -> str:
+        """Why this machine cannot have it, as a sentence without its end; empty if it can."""
+        if self.applies:
+            return ""
+        here = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
+        return f"{self.name} has no wheel for {here}; there are some where {self.served}"
 
     @property
     def text(self) -> str:
@@ -137,8 +148,14 @@ def requirements() -> list[Requirement]:
         # In the order in which the project states them, where packaging sorts.
         versions = line.partition(";")[0].strip().removeprefix(parsed.name).strip().strip("()")
         applies = parsed.marker is None or parsed.marker.evaluate({"extra": group})
-        found.append(Requirement(parsed.name, versions, group, applies))
+        found.append(Requirement(parsed.name, versions, group, applies, _where(str(parsed.marker or ""))))
     return found
+
+
+def _where(marker: str) -> str:
+    """A marker without the extra, which is no fact about a machine."""
+    kept = _EXTRA.sub("", marker)
+    return re.sub(r"^[\s()]*(?:and\s)?|\s+and[\s()]*$|[()]", "", kept).strip().replace('"', "'")
 
 
 def _missing(packages: tuple[str, ...]) -> list[str]:

@@ -11,7 +11,10 @@ from typing import Self
 
 from course.errors import UsageError
 
-__all__ = ["ExerciseId", "LessonId", "QuestionId", "SceneId"]
+__all__ = ["WARM_UPS", "ExerciseId", "LessonId", "QuestionId", "SceneId"]
+
+#: The folder that warm-ups lie in: among the exercises, their solutions, and in a workspace.
+WARM_UPS = "warm-ups"
 
 _PATTERN = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 _MAX_LENGTH = 60

@@ -13,16 +13,22 @@ from typing import TYPE_CHECKING
 from course.authoring.exercises.diagnoses import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
 from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources
+from course.authoring.exercises.kill_table import audit_page
 from course.authoring.exercises.proofs import Proof, Prover, plan
+from course.authoring.exercises.style import audit_style
 from course.authoring.exercises.variants import instructors, solutions_folder
 from course.authoring.lessons.audit import audit_lesson, audit_syllabus
 from course.authoring.lessons.links import LinkChecker
 from course.authoring.quiz_audit import audit_quiz
 from course.authoring.report import AuditReport, Findings
+from course.catalog.markdown import read_task
 from course.errors import ContentError, NotFoundError
+from course.ids import WARM_UPS
 from course.sandbox.scene.loading import FOLDER, read_scene, scene_ids
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from course.authoring.exercises.source import CheckSource
     from course.authoring.report import Progress
     from course.catalog.load import Catalog
@@ -78,6 +84,8 @@ def audit(
     scenes = _check_scenes(only, findings)
     read = [_read(catalog, exercise_id, findings) for exercise_id in exercises]
     candidates = [candidate for candidate in read if candidate is not None]
+    if candidates and len(candidates) == len(read):
+        _check_page(catalog, findings)
     graded, isolation = _grade(catalog, candidates, findings, on_progress, grade)
     return AuditReport(
         problems=findings.sorted(),
@@ -95,8 +103,12 @@ def audit(
 def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Ids of the lessons and exercises to look at; lesson files that nothing lists yet are among them."""
     files = {path.stem for path in catalog.content.lessons.glob("*.md")}
-    folders = {path.name for path in catalog.content.exercises.iterdir() if path.is_dir()}
-    folders = {name for name in folders if not name.startswith((".", "__"))}
+    folders = _folders_in(catalog.content.exercises) - {WARM_UPS}
+    twice = sorted(folders & _folders_in(catalog.content.exercises / WARM_UPS))
+    if twice:
+        path = catalog.content.exercises / WARM_UPS / twice[0]
+        raise ContentError(path, None, "an exercise has this id, too.", help="Rename one of the folders.")
+    folders |= _folders_in(catalog.content.exercises / WARM_UPS)
     listed = catalog.lesson_ids()
     lessons = (*listed, *sorted(files - set(listed)))
     exercises = tuple(sorted(folders))
@@ -110,6 +122,12 @@ def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[
             help=f"There are {', '.join([*lessons, *exercises, *questions, *scene_ids()])}.",
         )
     return chosen
+
+
+def _folders_in(folder: Path) -> set[str]:
+    if not folder.is_dir():
+        return set()
+    return {one.name for one in folder.iterdir() if one.is_dir() and not one.name.startswith((".", "__"))}
 
 
 def _questions(catalog: Catalog) -> list[str]:
@@ -129,6 +147,13 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
     return names
 
 
+def _check_page(catalog: Catalog, findings: Findings) -> None:
+    try:
+        audit_page(catalog, findings)
+    except ContentError as error:  # in another exercise than the one that is checked
+        findings.add_error(error)
+
+
 def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate | None:
     """Audit the files of an exercise; None if they are not fit for grading."""
     own = Findings(findings.root)
@@ -139,6 +164,7 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
             audit_diagnoses(catalog, exercise, own)
+            audit_style(catalog, exercise, own)
             proofs = plan(catalog, exercise, own)
             # Checks that lack a marker would only fail again, all at once and less clearly.
             if not own.of("check"):
@@ -153,6 +179,9 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
 def _check_readmes(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     links = LinkChecker(catalog, findings)
     links.check_readme(exercise.readme_path)
+    links.check_reading(exercise.readme_path.with_name("exercise.toml"), exercise)
+    if exercise.is_warm_up:
+        read_task(exercise.readme_path)  # it is shown inside its lesson
     prose = solutions_folder(catalog, exercise) / "README.md"
     if prose.is_file():
         links.check_readme(prose)

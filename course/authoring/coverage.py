@@ -1,8 +1,8 @@
-"""Where the course has each part of the chapter that it grew out of, and whether it really is there.
+"""Where the course has what is in the chapter that it grew out of, and whether it really is there.
 
-``docs/coverage.toml`` names every part in words of our own, with the lines it takes up in the chapter, so
-that a part that was forgotten shows as a gap in the lines even though the text itself is not here.
-``docs/coverage.md`` is the same as a table; a test holds the two together.
+``docs/coverage.toml`` names each heading, objective, example, exercise and question in words of our own,
+with the lines it takes up in the chapter, so that a part that was forgotten shows as a gap in the lines even
+though the text itself is not here. ``docs/coverage.md`` is the same for readers; a test compares the two.
 """
 
 from __future__ import annotations
@@ -29,64 +29,62 @@ if TYPE_CHECKING:
     #: Whether the words after ``course`` are a command that exists.
     IsCommand = Callable[[tuple[str, ...]], bool]
 
-__all__ = ["Coverage", "Part", "Section", "as_markdown", "check_coverage", "read_coverage", "written_to"]
+__all__ = [
+    "WORDS",
+    "Coverage",
+    "Part",
+    "Section",
+    "as_markdown",
+    "check_coverage",
+    "read_coverage",
+    "written_to",
+]
 
-_LINES = re.compile(r"(?P<first>[1-9]\d*)(?:-(?P<last>[1-9]\d*))?")
-_KINDS = (
-    "heading",
-    "paragraph",
-    "bullet",
-    "objective",
-    "code",
-    "printed line",
-    "exercise",
-    "solution",
-    "question",
-    "diagram",
-    "figure",
-)
-
-_INTRODUCTION = (
-    "The course grew out of a chapter that introduces physics simulation. Every heading, paragraph, bullet, "
-    "objective, code demonstration, printed line, exercise, solution, quiz question, diagram and figure of "
-    "it has a place here: {parts} parts, named in our own words, with the lines that they take up of the "
-    "chapter's {lines}. `course author coverage` checks that each place exists, and makes this page from "
-    "`docs/coverage.toml` with `--write`."
-)
+_LINES = re.compile(r"([1-9]\d*)(?:-([1-9]\d*))?")
+_KINDS = ("heading", "objective", "example", "exercise", "question")
+#: How a part came over, in one word.
+WORDS = {
+    "kept": "the same, in other words",
+    "deeper": "says more, or has you do it",
+    "measured": "there a claim, here a number that you can measure again",
+    "corrected": "not quite right there, or no longer; here it is put right, with the reason",
+}
 
 Filled = Annotated[str, msgspec.Meta(min_length=1)]
 
 
-class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Part(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
     """One part of the chapter.
 
     Attributes:
-        lines: where it stands there, "12" or "12-15".
-        kind: one of heading, paragraph, bullet, objective, code, printed line, exercise, solution, question,
-            diagram and figure.
+        lines: where it stands there, "12" or "12-15", or several of these with commas.
         what: a name for it that is not the chapter's own sentence.
+        word: how it came over, one of ``WORDS``.
         where: the places of the course that have it; see ``docs/coverage.toml``.
     """
 
     lines: str
-    kind: str
     what: Filled
+    word: str
     where: tuple[Filled, ...]
 
     @property
-    def span(self) -> range:
-        """Its lines; empty where they are not written as they should be."""
-        match = _LINES.fullmatch(self.lines)
-        if match is None:
-            return range(0)
-        first = int(match["first"])
-        return range(first, int(match["last"] or first) + 1)
+    def span(self) -> tuple[int, ...]:
+        """Its lines; none where they are not written as they should be."""
+        found: list[int] = []
+        for text in self.lines.split(", "):
+            match = _LINES.fullmatch(text)
+            if match is None:
+                return ()
+            found += range(int(match[1]), int(match[2] or match[1]) + 1)
+        return tuple(found)
 
 
 class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Parts that are read together."""
+    """Parts of one kind, one of ``_KINDS``."""
 
     title: Filled
+    kind: str
     parts: tuple[Part, ...]
 
 
@@ -133,6 +131,10 @@ def check_coverage(
     places = _Places(catalog, is_command)
     seen: dict[int, str] = {}
     for i, section in enumerate(coverage.section):
+        if section.kind not in _KINDS:
+            line = document.lines.line(("section", i))
+            problem = f"{section.title}: there is no kind {section.kind!r}."
+            findings.add(document.path, line, "coverage", problem, f"The kinds are {', '.join(_KINDS)}.")
         for k, part in enumerate(section.parts):
             line = document.lines.line(("section", i, "parts", k))
             for problem, fix in (*_wrong_with(part, seen), *places.missing(part)):
@@ -154,9 +156,9 @@ def check_coverage(
 def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:
     """What is wrong with a part in itself, and the fix."""
     if not part.span:
-        yield f"{part.lines!r} are no lines.", 'Write "12" or "12-15".'
-    if part.kind not in _KINDS:
-        yield f"there is no kind {part.kind!r}.", f"The kinds are {', '.join(_KINDS)}."
+        yield f"{part.lines!r} are no lines.", 'Write "12", "12-15" or "12-15, 20".'
+    if part.word not in WORDS:
+        yield f"there is no word {part.word!r}.", f"The words are {', '.join(WORDS)}."
     if not part.where:
         yield "the course has it nowhere.", "Name the place, or write it."
     twice = next((n for n in part.span if n in seen), None)
@@ -216,14 +218,20 @@ class _Places:
 def as_markdown(coverage: Coverage) -> str:
     """The table for readers, as ``docs/coverage.md`` holds it."""
     out = [
-        "# Where the course has each part of the chapter",
+        "# Where the course has what the chapter has",
         "",
-        _INTRODUCTION.format(parts=len(coverage.parts), lines=coverage.source_lines),
+        "The course grew out of a chapter that introduces physics simulation for robots. If you know that",
+        "chapter, this page says where each part of it is now, and how it came over:",
+        "",
+        *(f"- **{word}**: {meaning}." for word, meaning in WORDS.items()),
+        "",
+        "`course author coverage` checks that each place exists and that no line of the chapter was left",
+        "out; with `--write` it makes this page from `docs/coverage.toml`.",
     ]
     for section in coverage.section:
-        out += ["", f"## {section.title}", "", "| lines | kind | part | where |", "|--:|:--|:--|:--|"]
+        out += ["", f"## {section.title}", "", "| in the chapter | | here |", "|:--|:--|:--|"]
         out += [
-            f"| {part.lines} | {part.kind} | {part.what} | {', '.join(_shown(p) for p in part.where)} |"
+            f"| {part.what} | {part.word} | {', '.join(_shown(p) for p in part.where)} |"
             for part in section.parts
         ]
     return "\n".join(out) + "\n"
@@ -234,8 +242,9 @@ def _shown(place: str) -> str:
     kind, _, rest = place.partition(":")
     name, _, anchor = rest.partition("#")
     behind = f"#{anchor}" if anchor else ""
+    below = f", {anchor.replace('-', ' ')}" if anchor else ""
     links = {
-        "lesson": f"[{name}{behind}](../course/lessons/{name}.md{behind})",
+        "lesson": f"[{name}{below}](../course/lessons/{name}.md{behind})",
         "exercise": f"exercise [{name}](../exercises/{name}/README.md)",
         "solution": f"solution [{name}](../solutions/{name}/README.md)",
         "quiz": f"quiz [{name}](../quiz/{name}.toml)",

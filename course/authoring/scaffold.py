@@ -13,16 +13,17 @@ from typing import TYPE_CHECKING, Any, Self
 
 import jinja2
 
+from course.authoring.exercises.proofs import MUTANTS_EACH
 from course.authoring.exercises.variants import instructors
 from course.errors import UsageError
-from course.ids import ExerciseId, LessonId, QuestionId, SceneId
+from course.ids import WARM_UPS, ExerciseId, LessonId, QuestionId, SceneId
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from course.catalog.load import Catalog
 
-__all__ = ["Function", "new_exercise", "new_lesson", "new_question", "new_scene"]
+__all__ = ["Function", "new_exercise", "new_lesson", "new_question", "new_scene", "new_warm_up"]
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
@@ -83,6 +84,49 @@ class Function:
         return f"{{{pairs}}}"
 
 
+def new_warm_up(
+    catalog: Catalog,
+    warm_up_id: str,
+    functions: Sequence[Function] = (),
+    *,
+    title: str = "",
+    summary: str = "",
+    lesson: str = "",
+) -> tuple[Path, ...]:
+    """Write the files of a new warm-up: public checks only, two accepted variants, three mutants a function.
+
+    The arguments, and what is raised, are those of ``new_exercise``.
+    """
+    words = _words_of(catalog, warm_up_id, functions, title, summary, lesson)
+    words["order"] = 1 + max((one.order for one in catalog.warm_ups(words["lesson"])), default=0)
+    place = Path(WARM_UPS, words["id"])
+    student, solutions = catalog.content.exercises / place, instructors(catalog)[0] / place
+    files = {
+        student / name: (f"warm-up/{name}", words)
+        for name in (
+            "exercise.toml",
+            "README.md",
+            "hints.toml",
+            "checks.py",
+            "questions.py",
+            "diagnoses.toml",
+        )
+    }
+    files |= {
+        student / words["module"]: ("exercise/stub.py", words),
+        solutions / words["module"]: ("exercise/solution.py", words),
+        solutions / "mutants.toml": ("warm-up/mutants.toml", words),
+    }
+    for number in (1, 2):
+        path = solutions / "accepted" / f"unusual_{number}.py"
+        files[path] = "exercise/unusual.py", words | {"f": words["functions"][0]}
+    for function in words["functions"]:
+        for number in (1, 2, 3):
+            path = solutions / "mutants" / f"{function.name}_wrong_{number}.py"
+            files[path] = "exercise/wrong.py", words | {"f": function}
+    return _write(files)
+
+
 def new_exercise(
     catalog: Catalog,
     exercise_id: str,
@@ -107,26 +151,11 @@ def new_exercise(
         NotFoundError: there is no such lesson.
         MissingCapabilityError: this installation has no place for solutions and graders.
     """
-    name = ExerciseId(exercise_id)
+    words = _words_of(catalog, exercise_id, functions, title, summary, lesson)
+    words["order"] = 1 + max((exercise.order for exercise in catalog.exercises()), default=0)
+    name, module, asked = words["id"], words["module"], words["functions"]
     solutions, graders = (folder / name for folder in instructors(catalog))
     student = catalog.content.exercises / name
-    module = _module(name.replace("-", "_"))
-    asked = tuple(functions) or (Function(f"{name.replace('-', '_')}(x)"),)
-    names = [function.name for function in asked]
-    if len(set(names)) < len(names):
-        raise UsageError("Two functions have one name.", help="Name each one once.", code="bad_signature")
-    if lesson:
-        catalog.lesson(lesson)
-    lessons = catalog.lesson_ids()
-    words = {
-        "id": name,
-        "module": module,
-        "functions": asked,
-        "title": title or "<<FILL IN: what people call this exercise>>",
-        "summary": summary or "<<FILL IN: what it is about, in one line>>",
-        "lesson": lesson or (lessons[-1] if lessons else "<<FILL IN: id of the lesson to read first>>"),
-        "order": 1 + max((exercise.order for exercise in catalog.exercises()), default=0),
-    }
     files = {
         student / "exercise.toml": ("exercise.toml", words),
         student / "README.md": ("README.md", words),
@@ -137,13 +166,49 @@ def new_exercise(
         solutions / module: ("solution.py", words),
         solutions / "README.md": ("prose.md", words),
         solutions / "mutants.toml": ("mutants.toml", words),
-        solutions / "accepted" / "unusual.py": ("unusual.py", words),
     }
-    files |= {
-        solutions / "mutants" / f"{function.name}_wrong.py": ("wrong.py", words | {"f": function})
-        for function in asked
-    }
+    for number, function in enumerate((*asked, asked[0]), start=1):
+        path = solutions / "accepted" / f"unusual_{number}.py"
+        files[path] = ("unusual.py", words | {"f": function})
+    for function in asked:
+        for number in range(1, MUTANTS_EACH + 1):
+            path = solutions / "mutants" / f"{function.name}_wrong_{number}.py"
+            files[path] = ("wrong.py", words | {"f": function})
     return _write({path: (f"exercise/{template}", known) for path, (template, known) in files.items()})
+
+
+def _words_of(
+    catalog: Catalog,
+    exercise_id: str,
+    functions: Sequence[Function],
+    title: str,
+    summary: str,
+    lesson: str,
+) -> dict[str, Any]:
+    """What the templates of an exercise or a warm-up are filled with; its place in a list is not among it."""
+    name = ExerciseId(exercise_id)
+    if name in (*catalog.exercise_ids(), *catalog.warm_up_ids()):
+        raise UsageError(
+            f"There is a {name} already, and nothing is overwritten.",
+            help="Choose another id.",
+            code="exists",
+        )
+    asked = tuple(functions) or (Function(f"{name.replace('-', '_')}(x)"),)
+    names = [function.name for function in asked]
+    if len(set(names)) < len(names):
+        raise UsageError("Two functions have one name.", help="Name each one once.", code="bad_signature")
+    if lesson:
+        catalog.lesson(lesson)
+    lessons = catalog.lesson_ids()
+    return {
+        "id": name,
+        "module": _module(name.replace("-", "_")),
+        "functions": asked,
+        "each": MUTANTS_EACH,
+        "title": title or "<<FILL IN: what people call it>>",
+        "summary": summary or "<<FILL IN: what it is about, in one line>>",
+        "lesson": lesson or (lessons[-1] if lessons else "<<FILL IN: id of the lesson to read first>>"),
+    }
 
 
 def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:
@@ -192,7 +257,7 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
 
 
 def _module(function: str) -> str:
-    if function in {"checks", "diagnosis"}:
+    if function in {"checks", "diagnosis", "questions"}:
         raise UsageError(
             f"An exercise cannot be called {function}: its folder has a file of that name already.",
             help="Choose another id.",

@@ -264,6 +264,17 @@ class Sources:
     items: tuple[Inlines, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class WarmUp:
+    """A small task that stands in a lesson while it is read; ``blocks`` are its text, and no lesson's."""
+
+    line: int
+    id: str
+    title: str
+    minutes: int
+    blocks: tuple[Block, ...]
+
+
 Block = (
     Heading
     | Paragraph
@@ -278,6 +289,7 @@ Block = (
     | Callout
     | CommandList
     | Sources
+    | WarmUp
 )
 
 

@@ -15,7 +15,7 @@ from course.catalog import rules
 from course.catalog.front_matter import split_front_matter
 from course.catalog.locate import Content
 from course.catalog.locate import content as current_content
-from course.catalog.models import CourseRef, Exercise, Hints, Lesson, Mutant, MutantList, Syllabus
+from course.catalog.models import CourseRef, Exercise, Hints, Lesson, Mutant, MutantList, Rubric, Syllabus
 from course.catalog.reading import (
     Document,
     read_document,
@@ -23,11 +23,16 @@ from course.catalog.reading import (
     read_toml,
 )
 from course.errors import ContentError, NotFoundError
+from course.ids import WARM_UPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
 __all__ = ["Catalog", "read_toml"]
+
+#: A number of an exercise or a lesson has fewer digits than this.
+_DIGITS = 5
 
 
 class Catalog:
@@ -43,6 +48,7 @@ class Catalog:
         self.content = content or current_content()
         self._syllabus: Syllabus | None = None
         self._exercise_ids: tuple[str, ...] | None = None
+        self._warm_up_ids: tuple[str, ...] | None = None
         self._lessons: dict[str, Lesson] = {}
         self._exercises: dict[str, Exercise] = {}
         self._hints: dict[str, Hints] = {}
@@ -99,6 +105,17 @@ class Catalog:
             raise _not_found("lesson", lesson_id, self.lesson_ids(), "course lessons")
         return self._lesson(lesson_id)
 
+    def lesson_called(self, words: str) -> Lesson:
+        """One lesson, by its id or its place in the syllabus, "1" first.
+
+        Raises:
+            NotFoundError: no lesson is called so.
+        """
+        ids = self.lesson_ids()
+        if words.isdecimal() and len(words) < _DIGITS and 1 <= int(words) <= len(ids):
+            return self._lesson(ids[int(words) - 1])
+        return self.lesson(words)
+
     def _lesson(self, lesson_id: str) -> Lesson:
         if lesson_id not in self._lessons:
             self._lessons[lesson_id] = self.read_lesson(lesson_id)
@@ -117,29 +134,53 @@ class Catalog:
     def exercise_ids(self) -> tuple[str, ...]:
         """Sorted by name; lists a folder and opens no file."""
         if self._exercise_ids is None:
-            try:
-                folders = list(self.content.exercises.iterdir())
-            except OSError:
+            if not self.content.exercises.is_dir():
                 raise ContentError(
                     self.content.exercises, None, "the folder is missing.", help="Install the course again."
-                ) from None
-            self._exercise_ids = tuple(sorted(f.name for f in folders if (f / "exercise.toml").is_file()))
+                )
+            self._exercise_ids = _declared_in(self.content.exercises)
         return self._exercise_ids
+
+    def warm_up_ids(self) -> tuple[str, ...]:
+        """Sorted by name; lists a folder and opens no file."""
+        if self._warm_up_ids is None:
+            self._warm_up_ids = _declared_in(self.content.exercises / WARM_UPS)
+        return self._warm_up_ids
 
     def exercises(self) -> tuple[Exercise, ...]:
         """All exercises, in the order they are done."""
         found = (self._exercise(exercise_id) for exercise_id in self.exercise_ids())
         return tuple(sorted(found, key=lambda exercise: (exercise.order, exercise.id)))
 
+    def warm_ups(self, lesson_id: str | None = None) -> tuple[Exercise, ...]:
+        """All warm-ups, or those of one lesson, in the order of the lessons and then of their own."""
+        lessons = {name: number for number, name in enumerate(self.lesson_ids())}
+        found = (self._exercise(name) for name in self.warm_up_ids())
+        chosen = [one for one in found if lesson_id in {None, one.lesson}]
+        return tuple(sorted(chosen, key=lambda one: (lessons.get(one.lesson, len(lessons)), one.order)))
+
     def exercise(self, exercise_id: str) -> Exercise:
-        """One exercise.
+        """One exercise, or one warm-up: their ids differ.
 
         Raises:
-            NotFoundError: no exercise has this id.
+            NotFoundError: nothing has this id.
         """
-        if exercise_id not in self.exercise_ids():
-            raise _not_found("exercise", exercise_id, self.exercise_ids(), "course progress")
+        known = (*self.exercise_ids(), *self.warm_up_ids())
+        if exercise_id not in known:
+            raise _not_found("exercise", exercise_id, known, "course exercises")
         return self._exercise(exercise_id)
+
+    def exercise_called(self, words: str) -> Exercise:
+        """One exercise, by its id or its number.
+
+        Raises:
+            NotFoundError: nothing is called so.
+        """
+        if words.isdecimal() and len(words) < _DIGITS and int(words) > 0:
+            for exercise in self.exercises():
+                if exercise.number == int(words):
+                    return exercise
+        return self.exercise(words)
 
     def _exercise(self, exercise_id: str) -> Exercise:
         if exercise_id not in self._exercises:
@@ -148,7 +189,7 @@ class Catalog:
 
     def read_exercise(self, exercise_id: str) -> Exercise:
         """The declaration in the folder of this name; not kept."""
-        folder = self.content.exercises / exercise_id
+        folder = self.content.exercise_folder(exercise_id)
         document = read_document(folder / "exercise.toml", Exercise, reserved=("folder",))
         rules.check_exercise(document)
         return msgspec.structs.replace(document.value, folder=str(folder))
@@ -165,6 +206,14 @@ class Catalog:
         rules.check_hints(document, exercise)
         return document
 
+    def rubric(self, exercise: Exercise) -> Rubric | None:
+        """The question of an exercise that is answered in prose; None if it has none."""
+        if not exercise.rubric_path.is_file():
+            return None
+        document = read_document(exercise.rubric_path, Rubric)
+        rules.check_rubric(document)
+        return document.value
+
     def mutants(self, exercise: Exercise) -> tuple[Mutant, ...]:
         """What must happen to each wrong solution; empty where there are no solutions (a wheel)."""
         if self.content.solutions is None:
@@ -175,10 +224,17 @@ class Catalog:
 
     def mutant_document(self, exercise: Exercise) -> Document[MutantList]:
         """``mutants.toml`` with its lines; needs a checkout."""
-        folder = (self.content.solutions or self.content.root / "solutions") / exercise.id
+        folder = self.content.solution_folder(exercise.id) or self.content.root / "solutions" / exercise.id
         document = read_document(folder / "mutants.toml", MutantList)
         rules.check_mutants(document, exercise)
         return document
+
+
+def _declared_in(folder: Path) -> tuple[str, ...]:
+    """Names of the folders in ``folder`` that hold an exercise; none if it is not there."""
+    if not folder.is_dir():
+        return ()
+    return tuple(sorted(one.name for one in folder.iterdir() if (one / "exercise.toml").is_file()))
 
 
 def _not_found(kind: str, wanted: str, known: Iterable[str], command: str) -> NotFoundError:

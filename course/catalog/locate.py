@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from course.errors import InternalError, UsageError
+from course.ids import WARM_UPS
 
-__all__ = ["ENVIRONMENT_VARIABLE", "Content", "content"]
+__all__ = ["ENVIRONMENT_VARIABLE", "Content", "chosen", "content"]
 
 ENVIRONMENT_VARIABLE = "COURSE_CONTENT"
 
@@ -44,6 +45,23 @@ class Content:
         """The file that names the course and orders its lessons."""
         return self.lessons / "syllabus.toml"
 
+    def place_of(self, exercise_id: str) -> Path:
+        """Where an exercise lies in ``exercises``, ``solutions`` and ``graders``; warm-ups lie together."""
+        inside = Path(WARM_UPS, exercise_id)
+        return inside if (self.exercises / inside).is_dir() else Path(exercise_id)
+
+    def exercise_folder(self, exercise_id: str) -> Path:
+        """What a student gets of an exercise or a warm-up."""
+        return self.exercises / self.place_of(exercise_id)
+
+    def solution_folder(self, exercise_id: str) -> Path | None:
+        """Its solutions; None where this installation has none."""
+        return None if self.solutions is None else self.solutions / self.place_of(exercise_id)
+
+    def grader_folder(self, exercise_id: str) -> Path | None:
+        """Its hidden checks; None where this installation has none."""
+        return None if self.graders is None else self.graders / self.place_of(exercise_id)
+
 
 def content() -> Content:
     """The content that this process is to use.
@@ -52,15 +70,19 @@ def content() -> Content:
         UsageError: ``COURSE_CONTENT`` names something that is not a course.
         InternalError: the installation has lost its content.
     """
-    chosen = os.environ.get(ENVIRONMENT_VARIABLE)
-    if chosen:
-        return _chosen(Path(chosen))
+    named = os.environ.get(ENVIRONMENT_VARIABLE)
+    if named:
+        return chosen(Path(named))
     package = Path(__file__).resolve().parent.parent
     return _installed(package)
 
 
-def _chosen(folder: Path) -> Content:
-    """The course under a folder somebody named."""
+def chosen(folder: Path) -> Content:
+    """The course under a folder somebody named.
+
+    Raises:
+        UsageError: there is none.
+    """
     folder = folder.expanduser().resolve()
     if not (folder / "exercises").is_dir() or not (folder / "lessons").is_dir():
         raise UsageError(

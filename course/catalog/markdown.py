@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from markdown_it import MarkdownIt
     from markdown_it.tree import SyntaxTreeNode
 
-__all__ = ["parse_lesson", "read_blocks"]
+__all__ = ["parse_lesson", "read_blocks", "read_task"]
 
 _YEAR = re.compile(r"\b(?:19|20)\d\d\b")
 _ALTERNATIVE = re.compile(r"^\s*%\s*(text|spoken):\s*(.*?)\s*$")
@@ -37,13 +37,28 @@ def read_blocks(path: Path) -> tuple[b.Block, ...]:
     Raises:
         ContentError: the file cannot be read or is not a lesson.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        problem = f"the lesson cannot be read: {error}"
-        raise ContentError(path, None, problem, help="Lessons are UTF-8 text.") from error
-    head = split_front_matter(text, path)
+    head = split_front_matter(_text(path), path)
     return parse_lesson(head.body, path, first_line=head.body_line)
+
+
+def read_task(path: Path) -> tuple[b.Block, ...]:
+    """The blocks of a warm-up's README, below its title, which whoever shows it has already.
+
+    Raises:
+        ContentError: the file cannot be read, or holds something a lesson could not hold.
+    """
+    title, _, body = _text(path).partition("\n")
+    if not title.startswith("# "):
+        raise ContentError(path, 1, "the title is missing.", help="Start the file with: # Title")
+    return parse_lesson(body, path, first_line=2)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        problem = f"the text cannot be read: {error}"
+        raise ContentError(path, None, problem, help="Lessons are UTF-8 text.") from error
 
 
 def parse_lesson(body: str, file: Path, *, first_line: int = 1) -> tuple[b.Block, ...]:

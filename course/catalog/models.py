@@ -7,11 +7,11 @@ the files into them and says which file and line is wrong when one does not fit.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import msgspec
 
-from course.ids import ExerciseId, LessonId
+from course.ids import WARM_UPS, ExerciseId, LessonId
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +24,8 @@ __all__ = [
     "Lesson",
     "Mutant",
     "MutantList",
+    "Objective",
+    "Rubric",
     "Syllabus",
     "Task",
     "TaskHints",
@@ -47,11 +49,13 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         id: the name of the function the student writes.
         title: what a person calls it.
         points: public and hidden points together.
+        read: the section that explains it, as "lesson#section"; "" for the exercise's lesson as a whole.
     """
 
     id: str
     title: str
     points: float
+    read: str = ""
 
 
 class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -60,13 +64,17 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Attributes:
         module: file name of the stub, and of the student's file.
         lesson: the lesson to read first.
-        order: position in lists, 1 first.
+        order: position in lists, 1 first: the order in which the lessons lead to them.
+        number: the number it is known by outside of the course, such as a chapter's; 0 if it has none.
         summary: one line for lists.
         task: the tasks, in the order a student does them.
         pass_mark: share of the maximum that passes.
         imports: top-level packages a submission may import beside the standard library.
         hidden_checks, hidden_points: how much is scored only in the grading run. Declared, so that a
             wheel, which has no hidden checks, can say so; the audit compares it with the graders.
+        kind: "warm-up" for a small one that counts for nothing and has public checks only.
+        minutes: how long a warm-up takes.
+        after: slug of the section of its lesson that a warm-up follows; "" for the end of the lesson.
         folder: where the files are; set by the loader.
     """
 
@@ -78,10 +86,14 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     order: int
     summary: str
     task: tuple[Task, ...]
+    number: int = 0
     pass_mark: float = 0.70
     imports: tuple[str, ...] = ("numpy",)
     hidden_checks: int = 0
     hidden_points: float = 0.0
+    kind: Literal["exercise", "warm-up"] = "exercise"
+    minutes: int = 0
+    after: str = ""
     folder: str = ""
 
     @property
@@ -91,6 +103,15 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def lesson_id(self) -> LessonId:
         return LessonId(self.lesson)
+
+    @property
+    def is_warm_up(self) -> bool:
+        return self.kind == "warm-up"
+
+    @property
+    def place(self) -> str:
+        """Where it lies among the exercises, and in a workspace."""
+        return f"{WARM_UPS}/{self.id}" if self.is_warm_up else self.id
 
     @property
     def stub_path(self) -> Path:
@@ -109,9 +130,18 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return Path(self.folder) / "hints.toml"
 
     @property
+    def rubric_path(self) -> Path:
+        return Path(self.folder) / "rubric.toml"
+
+    @property
     def max_points(self) -> float:
         """Public and hidden points together."""
         return sum(task.points for task in self.task)
+
+    def where_to_read(self, task_id: str) -> str:
+        """What explains a task, as "lesson#section", or a lesson alone."""
+        read = next((task.read for task in self.task if task.id == task_id), "")
+        return read or (f"{self.lesson}#{self.after}" if self.after else self.lesson)
 
     def task_titled(self, task_id: str) -> str:
         """The title of a task; the id itself when there is none of that id."""
@@ -133,6 +163,23 @@ class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def of(self, task_id: str) -> Sequence[str]:
         return next((task.hints for task in self.task if task.id == task_id), ())
+
+
+class Rubric(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``rubric.toml`` of an exercise: a question for prose, which its author grades.
+
+    Attributes:
+        question: what is asked once the checks pass.
+        least_words: an answer of fewer is not one.
+        points: what to grade an answer by, a sentence each.
+        good_answer: shown after one was written; paragraphs with an empty line between them.
+    """
+
+    format_version: int
+    question: str
+    least_words: int
+    points: tuple[str, ...]
+    good_answer: str
 
 
 class Mutant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -161,11 +208,27 @@ class MutantList(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     mutant: tuple[Mutant, ...]
 
 
+class Objective(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a student can do in the end, and where the evidence for it comes from.
+
+    Attributes:
+        title: after "You can …".
+        lessons, exercises: their ids.
+        quiz: ids of questions.
+    """
+
+    title: str
+    lessons: tuple[str, ...]
+    exercises: tuple[str, ...] = ()
+    quiz: tuple[str, ...] = ()
+
+
 class Syllabus(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """``syllabus.toml``: which course this is, and its lessons in the order they are read.
 
     Attributes:
         version: version of the content; empty where it goes with the package and has the package's.
+        objective: what the course is to bring about; each lesson belongs to one.
     """
 
     format_version: int
@@ -173,6 +236,7 @@ class Syllabus(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
     lessons: tuple[str, ...]
     version: str = ""
+    objective: tuple[Objective, ...] = ()
 
 
 class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -11,16 +11,25 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from course.errors import UsageError
-from course.ids import ExerciseId, LessonId
+from course.ids import WARM_UPS, ExerciseId, LessonId
 
 if TYPE_CHECKING:
-    from course.catalog.models import Exercise, Hints, Lesson, MutantList, Syllabus
+    from course.catalog.models import Exercise, Hints, Lesson, MutantList, Rubric, Syllabus
     from course.catalog.reading import Document
 
-__all__ = ["check_exercise", "check_hints", "check_lesson", "check_mutants", "check_syllabus"]
+__all__ = [
+    "check_exercise",
+    "check_hints",
+    "check_lesson",
+    "check_mutants",
+    "check_rubric",
+    "check_syllabus",
+]
 
 _MODULE = re.compile(r"[a-z][a-z0-9_]*\.py")
 _COURSE_ID = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
+#: A warm-up is done within one sitting with its lesson. In minutes.
+MOST_MINUTES = 15
 #: Names the exercise's own folder already uses.
 _TAKEN_MODULES = {"checks.py", "diagnosis.py"}
 
@@ -81,6 +90,7 @@ def check_exercise(document: Document[Exercise]) -> None:
     _check_words(document, ("summary",), exercise.summary)
     _check_id(document, ("lesson",), exercise.lesson, LessonId)
     _check_module(document, exercise.module)
+    _check_kind(document)
     if exercise.order < 1:
         document.fail(("order",), "`order` must be 1 or more.", fix="Number the exercises from 1.")
     if not 0 < exercise.pass_mark <= 1:
@@ -95,6 +105,25 @@ def check_exercise(document: Document[Exercise]) -> None:
                 ("imports", index), f"{name!r} is no top-level package.", fix='Name packages alone: "numpy".'
             )
     _check_tasks(document)
+
+
+def _check_kind(document: Document[Exercise]) -> None:
+    """What is a warm-up lies with the warm-ups, and what lies there is one."""
+    exercise = document.value
+    lies_there = document.path.parent.parent.name == WARM_UPS
+    if exercise.is_warm_up is not lies_there:
+        where, kind = ("lies", "exercise") if lies_there else ("does not lie", "warm-up")
+        document.fail(
+            ("kind",),
+            f"`kind` is {kind}, and the folder {where} in {WARM_UPS}.",
+            fix=f'Write `kind = "warm-up"` for what lies in {WARM_UPS}, and for nothing else.',
+        )
+    if exercise.is_warm_up and not 0 < exercise.minutes <= MOST_MINUTES:
+        document.fail(
+            ("minutes",),
+            f"`minutes` of a warm-up lie between 1 and {MOST_MINUTES}.",
+            fix="Say how long it takes; what takes longer is an exercise.",
+        )
 
 
 def _check_module(document: Document[Exercise], module: str) -> None:
@@ -165,6 +194,22 @@ def check_hints(document: Document[Hints], exercise: Exercise) -> None:
         seen.add(entry.id)
         for number, hint in enumerate(entry.hints):
             _check_words(document, ("task", index, "hints", number), hint)
+
+
+def check_rubric(document: Document[Rubric]) -> None:
+    """There is a question, something to grade by, and an answer that is long enough itself."""
+    rubric = document.value
+    _check_words(document, ("question",), rubric.question.strip())
+    for index, point in enumerate(rubric.points):
+        _check_words(document, ("points", index), point)
+    if not rubric.points:
+        document.fail(("points",), "there is nothing to grade an answer by.", fix="Add a sentence or more.")
+    if len(rubric.good_answer.split()) < max(1, rubric.least_words):
+        document.fail(
+            ("good_answer",),
+            f"the good answer has fewer than {max(1, rubric.least_words)} words.",
+            fix="Make it longer, or `least_words` smaller.",
+        )
 
 
 def check_mutants(document: Document[MutantList], exercise: Exercise) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
-from course.errors import CourseError, MissingCapabilityError
+from course.errors import CourseError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +25,6 @@ __all__ = [
     "Adapter",
     "Body",
     "EngineDivergedError",
-    "EngineUnavailableError",
     "Motion",
     "NotApplicableError",
     "Scene",
@@ -37,12 +36,6 @@ __all__ = [
 ]
 
 Vector = tuple[float, float, float]
-
-
-class EngineUnavailableError(MissingCapabilityError):
-    """An engine is not installed, or is and cannot start here."""
-
-    default_code = "engine_unavailable"
 
 
 class EngineDivergedError(CourseError):

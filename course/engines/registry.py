@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.metadata
-import platform
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -124,8 +123,7 @@ def availability(info: EngineInfo) -> Availability:
         pass
     wanted = requirement_of(info.package)
     if not wanted.applies:
-        where = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
-        return Availability(None, f"{info.package} has no wheel for {where}")
+        return Availability(None, wanted.unserved)
     return Availability(None, "not installed", wanted.command)
 
 

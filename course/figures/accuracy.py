@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course.figures.style import PALETTE, new_figure, note, title
+from course.figures.drawing.style import PALETTE, new_figure, note, title
 from course.physics.dynamics import PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 from course.physics.solver import Chain

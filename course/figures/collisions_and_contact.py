@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course.figures.style import PALETTE, new_figure, note, title
+from course.figures.drawing.style import PALETTE, new_figure, note, title
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.simulator import Simulator

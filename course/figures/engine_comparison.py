@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.patheffects import withStroke
@@ -18,7 +19,7 @@ from course.engines.findings import slope
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
 from course.engines.scenarios import BOXES
-from course.figures.style import PALETTE, house_style, new_figure, title
+from course.figures.drawing.style import PALETTE, file_of, new_figure, title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,14 +30,6 @@ if TYPE_CHECKING:
     from course.engines.results import Row
 
 __all__ = ["render", "speed", "steps"]
-
-_DPI = 180
-#: Nothing in a file but the picture: no dates, no random ids.
-_METADATA: dict[str, dict[str, Any]] = {
-    "png": {"Software": None},
-    "svg": {"Date": None, "Creator": None},
-    "pdf": {"CreationDate": None, "Producer": None, "Creator": None},
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +80,6 @@ def render(rows: Sequence[Row], kind: str) -> dict[str, bytes]:
     Returns:
         By name: "steps" needs a ladder of steps, "speed" the boxes and the stack.
     """
-    from io import BytesIO
-
-    import matplotlib as mpl
 
     usable = [row for row in rows if row.ok]
     made: dict[str, bytes] = {}
@@ -99,10 +89,7 @@ def render(rows: Sequence[Row], kind: str) -> dict[str, bytes]:
     ):
         if not enough:
             continue
-        out = BytesIO()
-        with house_style(), mpl.rc_context({"svg.hashsalt": "course"}):
-            draw(usable).savefig(out, format=kind, dpi=_DPI, metadata=_METADATA[kind])
-        made[name] = out.getvalue()
+        made[name] = file_of(partial(draw, usable), kind)
     return made
 
 

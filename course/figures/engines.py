@@ -9,7 +9,7 @@ from course.engines import reference
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
 from course.engines.scenarios import SCENARIOS
-from course.figures.style import PALETTE, new_figure, title
+from course.figures.drawing.style import PALETTE, new_figure, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

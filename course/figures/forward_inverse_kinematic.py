@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.figures.style import PALETTE, new_figure, note, title
+from course.figures.drawing.style import PALETTE, new_figure, note, title
 from course.physics.dynamics import HandPath, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 

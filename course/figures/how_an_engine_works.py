@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course.figures.style import METHODS, PALETTE, new_figure, note, title
+from course.figures.drawing.style import METHODS, PALETTE, new_figure, note, title
 from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy
 
 if TYPE_CHECKING:

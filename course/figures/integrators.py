@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.figures.style import METHODS, PALETTE, new_figure, note, title
+from course.figures.drawing.style import METHODS, PALETTE, new_figure, note, title
 from course.physics.integrators import STEPPERS, State, Trajectory, trajectory
 from course.physics.invariants import energy, jacobian, relative_change, spectral_radius
 from course.physics.systems import Oscillator

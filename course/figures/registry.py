@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-__all__ = ["FIGURES", "SCREEN_DPI", "build", "figure_ids", "png", "save"]
+    #: Draws a figure; called in the house style.
+    Builder = Callable[[], Figure]
+
+__all__ = ["FIGURES", "SCREEN_DPI", "Builder", "build", "figure_ids", "png", "save"]
 
 #: Figure id -> module under course.figures and the function in it that draws the figure.
 FIGURES: dict[str, tuple[str, str]] = {
@@ -25,17 +28,17 @@ FIGURES: dict[str, tuple[str, str]] = {
     "integrators-energy": ("integrators", "energy_error"),
     "integrators-order": ("integrators", "error_against_step"),
     "integrators-stability": ("integrators", "stability"),
-    "sim-chaos": ("simulations", "chaos"),
-    "sim-collision": ("simulations", "collision"),
-    "sim-contact-models": ("simulations", "contact_models"),
-    "sim-dynamics": ("simulations", "dynamics"),
-    "sim-environment": ("simulations", "environment"),
-    "sim-free-fall": ("simulations", "free_fall"),
-    "sim-integrators": ("simulations", "integrators"),
-    "sim-projectile": ("simulations", "projectile"),
-    "sim-rotation": ("simulations", "rotation"),
-    "sim-solver-iterations": ("simulations", "solver_iterations"),
-    "sim-substeps": ("simulations", "substeps"),
+    "sim-chaos": ("experiments.basic", "chaos"),
+    "sim-collision": ("experiments.basic", "collision"),
+    "sim-contact-models": ("experiments.basic", "contact_models"),
+    "sim-dynamics": ("experiments.basic", "dynamics"),
+    "sim-environment": ("experiments.basic", "environment"),
+    "sim-free-fall": ("experiments.basic", "free_fall"),
+    "sim-integrators": ("experiments.basic", "integrators"),
+    "sim-projectile": ("experiments.basic", "projectile"),
+    "sim-rotation": ("experiments.basic", "rotation"),
+    "sim-solver-iterations": ("experiments.basic", "solver_iterations"),
+    "sim-substeps": ("experiments.basic", "substeps"),
     "accuracy-chaos": ("accuracy", "chaos"),
     "accuracy-small-steps": ("accuracy", "small_steps"),
     "accuracy-substeps": ("accuracy", "substeps"),
@@ -78,10 +81,10 @@ def build(figure_id: str) -> Figure:
             help=f"The figures are {', '.join(figure_ids())}.",
             code="figure_not_found",
         )
-    from course.figures.style import house_style
+    from course.figures.drawing.style import house_style
 
     module, function = FIGURES[figure_id]
-    builder = cast("Callable[[], Figure]", getattr(import_module(f"course.figures.{module}"), function))
+    builder = cast("Builder", getattr(import_module(f"course.figures.{module}"), function))
     with house_style():
         return builder()
 
@@ -97,7 +100,7 @@ def png(figure_id: str, *, dpi: int = SCREEN_DPI) -> bytes:
     """
     from io import BytesIO
 
-    from course.figures.style import house_style
+    from course.figures.drawing.style import house_style
 
     figure = build(figure_id)
     out = BytesIO()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course.figures.style import PALETTE, new_figure, title
+from course.figures.drawing.style import PALETTE, new_figure, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

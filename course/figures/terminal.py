@@ -26,20 +26,30 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from course.errors import CourseError
+from course.figures.drawing.plots import draw
+from course.figures.drawing.style import house_style
 from course.figures.registry import build, png
-from course.figures.style import house_style
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["Label", "TerminalFigure", "terminal_figure"]
+    from course.figures.drawing.described import Plot
+
+__all__ = ["Label", "TerminalFigure", "in_cells", "terminal_figure", "terminal_plot"]
 
 #: A line of this many points on paper is one pixel here.
 _PAPER_PT = 1.3
 #: A marker is drawn this many pixels wide.
 _MARKER_PX = 2.0
+#: In a panel lower than this, rings of markers so wide would fill: there they are a pixel.
+_LOW_PANEL_PX = 24.0
 _LETTER_PX = 2.0
+_LEAST_ROWS = 8
+#: Letters that stand out less from what is drawn under them get plain paper: WCAG 2.1 asks it of text.
+_CONTRAST = 4.5
 _MATHS = re.compile(r"\\mathdefault\{([^}]*)\}|\\(?:mathrm|text)\{([^}]*)\}")
 _RAISED = str.maketrans("0123456789-−+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -76,13 +86,29 @@ class TerminalFigure:
 
 
 def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
-    """Draw a figure for so many cells.
+    """Draw a figure of a lesson for so many cells.
 
     Raises:
         NotFoundError: no figure has this id.
     """
-    figure = build(figure_id)
+    return in_cells(lambda: build(figure_id), columns, rows)
+
+
+def terminal_plot(plot: Plot, columns: int, rows: int) -> TerminalFigure:
+    """Draw a figure that is described as data for so many cells."""
+    return in_cells(lambda: draw(plot), columns, rows)
+
+
+def in_cells(make: Callable[[], Figure], columns: int, rows: int = 0) -> TerminalFigure:
+    """Draw any figure for so many cells.
+
+    Args:
+        make: draws the figure; called in the house style.
+        rows: 0 for as many as the figure's own shape asks for, cells being twice as high as wide.
+    """
     with house_style():
+        figure = make()
+        rows = rows or max(_LEAST_ROWS, round(columns * figure.get_figheight() / figure.get_figwidth() / 2))
         width = float(figure.get_figwidth())
         dpi = columns / width
         figure.set_dpi(dpi)
@@ -101,14 +127,35 @@ def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
     pixels = np.asarray(canvas.buffer_rgba())[: 2 * rows, :columns, :3]
     whole = np.full((2 * rows, columns, 3), 255, dtype=np.uint8)
     whole[: pixels.shape[0], : pixels.shape[1]] = pixels
+    for label in labels:
+        _clear(whole, label)
     return TerminalFigure(columns, rows, whole, tuple(labels))
+
+
+def _clear(pixels: np.ndarray[Any, np.dtype[np.uint8]], label: Label) -> None:
+    """Plain paper under a label that could not be read on what is drawn there."""
+    under = pixels[2 * label.row : 2 * label.row + 2, label.column : label.column + len(label.text)]
+    ink = _luminance(np.array(label.ink))
+    papers = _luminance(under.mean(axis=0))
+    contrast = (np.maximum(ink, papers) + 0.05) / (np.minimum(ink, papers) + 0.05)
+    letters = np.array([letter != " " for letter in label.text])
+    if (contrast[letters] < _CONTRAST).any():
+        under[:] = 255 if ink < 0.5 else 0
+
+
+def _luminance(colour: Any) -> Any:
+    """Relative luminance of sRGB colours from 0 to 255, shape (..., 3), as WCAG 2.1 defines it."""
+    share = np.asarray(colour) / 255.0
+    linear = np.where(share <= 0.03928, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return linear @ np.array([0.2126, 0.7152, 0.0722])
 
 
 def _thicken(figure: Figure, pixel: float) -> None:
     """Lines and markers that can be seen, ``pixel`` being one pixel in points."""
     for line in figure.findobj(Line2D):
         line.set_linewidth(max(0.6, line.get_linewidth() / _PAPER_PT) * pixel)
-        line.set_markersize(_MARKER_PX * pixel)
+        low = line.axes is not None and line.axes.bbox.height < _LOW_PANEL_PX
+        line.set_markersize((1.0 if low else _MARKER_PX) * pixel)
         line.set_markeredgewidth(0.5 * pixel)
     for axes in figure.axes:
         for spine in axes.spines.values():
@@ -169,6 +216,8 @@ def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]
             else:
                 column = round((box.x0 + box.x1 - len(line)) / 2)
             column = max(0, min(column, columns - len(line)))
+            if text in names:  # the name of an axis at the edge may lie half a row beyond it
+                row = max(0, min(row, rows - 1))
             found.append((rank, Label(column, row, line[:columns], ink, rank < 2)))  # type: ignore[arg-type]
     return _apart(found, rows)
 

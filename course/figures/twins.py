@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course.figures.style import PALETTE, new_figure, note, title
+from course.figures.drawing.style import PALETTE, new_figure, note, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.colors import ListedColormap
 
-from course.figures.style import PALETTE, new_figure, title
+from course.figures.drawing.style import PALETTE, new_figure, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,13 +1,22 @@
-"""Frames over the pipes between processes of ours: a 4-byte little-endian length, then msgpack."""
+"""Frames over the pipes between processes of ours: a 4-byte little-endian length, then msgpack.
+
+And the limits of such a process, where it reads what strangers wrote.
+"""
 
 from __future__ import annotations
 
 import struct
+from time import process_time
 from typing import IO, Any
 
 import msgspec
 
-__all__ = ["read_frame", "write_frame"]
+try:
+    import resource
+except ImportError:  # Windows has none of these limits
+    resource = None  # type: ignore[assignment]
+
+__all__ = ["limit_cpu", "limit_memory", "read_frame", "write_frame"]
 
 _LENGTH = struct.Struct("<I")
 
@@ -29,3 +38,17 @@ def write_frame(sink: IO[bytes], message: Any) -> None:
     body = msgspec.msgpack.encode(message)
     sink.write(_LENGTH.pack(len(body)) + body)
     sink.flush()
+
+
+def limit_memory(size: int) -> None:
+    """Of this process from now on, in bytes; it leaves no core file either."""
+    if resource is not None:
+        resource.setrlimit(resource.RLIMIT_AS, (size, size))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def limit_cpu(seconds: int) -> None:
+    """End this process once it has used so much more CPU time than by now; a later call begins anew."""
+    if resource is not None:
+        _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (int(process_time()) + seconds + 1, hard))

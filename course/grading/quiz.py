@@ -31,6 +31,7 @@ __all__ = [
     "EXERCISE_ID",
     "GRADER_REVISION",
     "QuizScore",
+    "checked_record",
     "grade_quiz",
     "quiz_version",
     "record_sha256",
@@ -130,6 +131,14 @@ def grade_quiz(bank: Bank, record: object) -> Verdict | None:
     )
 
 
+def checked_record(record: object) -> object:
+    """A record as it is if it has the form of one, None if it is empty, else words that say what is wrong.
+
+    Whatever else JSON can say (a list a thousand deep, half a surrogate) goes no further than this.
+    """
+    return (_fault(record) or record) if record else None
+
+
 def record_sha256(record: object) -> str:
     """Digest of a record: what a gradebook keys the result by."""
     try:
@@ -145,11 +154,20 @@ def quiz_version(bank: Bank) -> str:
 
 
 def _read(record: object) -> tuple[_Record, ...]:
+    """The attempts; where there are words in place of a record, they are the reason why there are none."""
+    fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
+    if fault is not None:
+        raise _inconsistent(f"The quiz record is malformed ({fault}).")
+    return msgspec.convert(record, _Records)
+
+
+def _fault(record: object) -> str | None:
     try:
-        return msgspec.convert(record, _Records)
+        msgspec.convert(record, _Records)
     except (msgspec.ValidationError, UnicodeError, RecursionError, OverflowError) as error:
         # What msgspec says names places and types of our own; anything quoted from the record is escaped.
-        raise _inconsistent(f"The quiz record is malformed ({ascii(str(error))[1:-1][:200]}).") from None
+        return ascii(str(error))[1:-1][:200]
+    return None
 
 
 def _score(bank: Bank, attempt: _Record, which: str) -> Result:

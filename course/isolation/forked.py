@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 from course.isolation import launch
 from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
-from course.isolation.frames import ENDED
-from course.isolation.levels import MAX_OUTPUT, START_TIMEOUT, Exit, Level
+from course.isolation.inside.frames import ENDED
+from course.isolation.levels import MAX_OUTPUT, START_TIMEOUT, Exit, Level, ticking
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -270,7 +270,7 @@ class _ForkedHandle:
     def __init__(
         self, sock: socket.socket, pid: int, pidfd: int, output: int, workdir: str, owner: ZygoteSpawner
     ) -> None:
-        self.sock = sock
+        self.channel = self._socket = ticking(sock)
         self._pid = pid
         self._pidfd = pidfd
         self._output = output
@@ -295,7 +295,7 @@ class _ForkedHandle:
             try:
                 self._exit = self._owner.reap(self._pid)
             finally:
-                self.sock.close()
+                self._socket.close()
                 os.close(self._pidfd)
                 os.close(self._output)
                 if self._owner.level is Level.L2:

@@ -34,8 +34,8 @@ __all__ = [
 #: each other by the same relative names in both places.
 _PACKAGE = "course_worker"
 _COPIED = (
-    *(f"isolation/{name}.py" for name in ("frames", "encoding", "decoding", "wire")),
-    *(f"isolation/{name}.py" for name in ("loops", "declared", "worker", "lockdown", "zygote")),
+    *(f"isolation/inside/{name}.py" for name in ("frames", "encoding", "decoding", "wire")),
+    *(f"isolation/inside/{name}.py" for name in ("loops", "declared", "worker", "lockdown", "zygote")),
     "physics/systems.py",
 )
 _PREFIX = "course-worker-"
@@ -50,7 +50,7 @@ def keep_private() -> None:
     Linux has /proc, and the one call that closes it.
     """
     if sys.platform == "linux":
-        from course.isolation import lockdown
+        from course.isolation.inside import lockdown
 
         lockdown.not_dumpable()
 
@@ -60,7 +60,7 @@ def private_folder() -> Path:
 
     Whoever is killed leaves theirs behind, so the ones whose process is gone are deleted on the way.
     """
-    if sys.platform != "win32":  # asking whether a process lives would end it there
+    if hasattr(os, "getuid"):  # on Windows, asking whether a process lives would end it
         for old in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
             owner = old.name.removeprefix(_PREFIX).partition("-")[0]
             with contextlib.suppress(OSError):
@@ -83,7 +83,7 @@ def copy_worker_files(target: Path) -> None:
     """Put what runs in a worker into a folder, readable by whoever the worker becomes."""
     course = Path(__file__).resolve().parents[1]
     package = target / _PACKAGE
-    for folder in (package, package / "isolation", package / "physics"):
+    for folder in (package, package / "isolation", package / "isolation" / "inside", package / "physics"):
         folder.mkdir()
         (folder / "__init__.py").touch()
     for name in _COPIED:
@@ -95,7 +95,8 @@ def copy_worker_files(target: Path) -> None:
 def command(view: View, folder: str, config: dict[str, Any]) -> list[str]:
     # -S and -s: no site-packages, so nothing but the declared packages on the path; -P: no current folder.
     flags = ["-S", "-s", "-P", "-B"]
-    return [str(view.interpreter), *flags, f"{folder}/{_PACKAGE}/isolation/zygote.py", json.dumps(config)]
+    zygote = f"{folder}/{_PACKAGE}/isolation/inside/zygote.py"
+    return [str(view.interpreter), *flags, zygote, json.dumps(config)]
 
 
 def environment() -> dict[str, str]:
@@ -143,19 +144,24 @@ def removing(folder: Path) -> Iterator[None]:
     """
     moved, prefix = 0, secrets.token_hex(8)  # no name that the stranger could have taken
     pending = [folder]
-    with contextlib.suppress(OSError):
-        while pending:
-            here = pending.pop()
+    while pending:
+        here = pending.pop()
+        entries: list[os.DirEntry[str]] = []
+        with contextlib.suppress(OSError):
             here.chmod(0o700)
-            for entry in list(os.scandir(here)):
+            entries = list(os.scandir(here))
+        for entry in entries:
+            with contextlib.suppress(OSError):  # what cannot be deleted keeps nothing else
                 if entry.is_dir(follow_symlinks=False):
                     moved += 1
-                    pending.append(folder / f"{prefix}-{moved}")
                     os.chmod(entry.path, 0o700)  # noqa: PTH101 - moving a folder needs to write to it
-                    os.rename(entry.path, pending[-1])  # noqa: PTH104
+                    os.rename(entry.path, folder / f"{prefix}-{moved}")  # noqa: PTH104
+                    pending.append(folder / f"{prefix}-{moved}")
                 else:
                     os.unlink(entry.path)  # noqa: PTH108
-                yield
-            if here != folder:
+            yield
+        if here != folder:
+            with contextlib.suppress(OSError):
                 here.rmdir()
-    shutil.rmtree(folder, ignore_errors=True)
+    with contextlib.suppress(OSError):
+        folder.rmdir()

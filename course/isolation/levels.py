@@ -1,7 +1,21 @@
-"""Protection levels, what a worker may use, and what every way of starting one provides."""
+"""Protection levels, what a worker may use, and what every way of starting one provides.
+
+What a level promises is what a canary tried (``course.isolation.probe``) and what docs/grading.md says of it:
+
+    L3  files, network, processes and other workers are out of reach; what one uses is limited
+    L2  the same without namespaces: names and sizes of files can be asked for, two workers can tell each
+        other something
+    L1  a worker of its own that can be ended, and deadlines; nothing keeps it from what its user may do
+
+A new kind of worker gives a ``Spawner``, its ``Handle`` and a ``Channel``, and is entered in ``spawn.MAKERS``
+under the level whose promise it keeps. It may be less than a process of this system: what tells the grader
+from the worker is the wire, not the operating system.
+"""
 
 from __future__ import annotations
 
+import struct
+import sys
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Protocol
@@ -9,9 +23,23 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     import socket
 
-__all__ = ["LIMITS", "MAX_OUTPUT", "START_TIMEOUT", "Exit", "Handle", "Level", "Limits", "Spawner"]
+__all__ = [
+    "LIMITS",
+    "MAX_OUTPUT",
+    "START_TIMEOUT",
+    "TICK_S",
+    "Channel",
+    "Exit",
+    "Handle",
+    "Level",
+    "Limits",
+    "Spawner",
+    "ticking",
+]
 
 START_TIMEOUT = 30.0  # s; starting takes about 0.2, a laptop that wakes up may take far longer
+#: How often a blocked read or write returns to look at the clock, in s; it ends by the deadline plus this.
+TICK_S = 0.1
 #: How many bytes of what a worker printed are read; printing itself stops near there.
 MAX_OUTPUT = 128 << 10
 
@@ -53,13 +81,37 @@ class Exit:
     cpu_s: float = 0.0
 
 
-class Handle(Protocol):
-    """A running worker."""
+class Channel(Protocol):
+    """The grader's end of a stream of bytes to a worker and back; ``ticking`` makes one of a socket.
 
-    sock: socket.socket
+    A call that could do nothing for ``TICK_S`` raises BlockingIOError or TimeoutError, so that whoever waits
+    can look at the deadline. A worker that is gone shows as no bytes, or as any other OSError.
+    """
+
+    def recv(self, most: int, /) -> bytes:
+        """Some bytes, at most so many; none once the other end is closed."""
+
+    def recv_into(self, room: memoryview, /) -> int:
+        """The same, into memory that is there already; how many they were."""
+
+    def send(self, data: bytes | bytearray | memoryview, /) -> int:
+        """Hand over some bytes from the beginning; how many were taken."""
+
+
+class Handle(Protocol):
+    """A running worker.
+
+    At the other end of its channel is ``course.isolation.inside.worker.Worker``, or what speaks as it does:
+    READY first, and only once it is locked down as its level promises; then an answer to each request. That
+    nothing of a submission is loaded before READY is the worker's to keep; all else it says is only a claim.
+    """
+
+    @property
+    def channel(self) -> Channel:
+        """To the worker and back."""
 
     def output(self) -> str:
-        """What it printed so far."""
+        """What it printed so far, at most ``MAX_OUTPUT``; "" after ``finish``, unless it is still there."""
 
     def cpu_s(self) -> float:
         """Seconds of CPU time it has used so far; by the wall clock where the system does not tell."""
@@ -68,16 +120,23 @@ class Handle(Protocol):
         """Whether it waits for something else than a processor or a disk, or was stopped."""
 
     def finish(self) -> Exit:
-        """Kill it if it lives, and wait for its end; what it wrote is left for ``Spawner.tidy``."""
+        """Kill it if it lives, and wait for its end; what it wrote is left for ``Spawner.tidy``.
+
+        It must end whatever its code does, in a bounded time, and close the channel; safe to call twice.
+        """
 
 
 class Spawner(Protocol):
-    """Starts workers, one at a time."""
+    """Starts workers, one at a time; a worker has one submission, and what it did is gone with it.
+
+    Attributes:
+        level: what its workers promise; verdicts and gradebooks note it.
+    """
 
     level: Level
 
     def spawn(self) -> Handle:
-        """A new worker.
+        """A new worker, which may import what the spawner was made for and within its limits.
 
         Raises:
             IsolationError: it could not be started.
@@ -88,3 +147,17 @@ class Spawner(Protocol):
 
     def close(self) -> None:
         """End everything that was started; safe to call twice."""
+
+
+def ticking(sock: socket.socket) -> socket.socket:
+    """A socket whose blocking reads and writes return every ``TICK_S``, without a poll before each."""
+    import socket as sockets
+
+    if sys.platform == "win32":
+        sock.settimeout(TICK_S)
+        return sock
+    sock.setblocking(True)
+    tick = struct.pack("@ll", 0, int(TICK_S * 1e6))
+    sock.setsockopt(sockets.SOL_SOCKET, sockets.SO_RCVTIMEO, tick)
+    sock.setsockopt(sockets.SOL_SOCKET, sockets.SO_SNDTIMEO, tick)
+    return sock

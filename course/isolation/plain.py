@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from course.isolation import launch
 from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
-from course.isolation.levels import MAX_OUTPUT, Exit, Level
+from course.isolation.levels import MAX_OUTPUT, Exit, Level, ticking
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -90,7 +90,7 @@ class _ProcessHandle:
         workdir: Path,
         left: list[Iterator[None]],
     ) -> None:
-        self.sock = ours
+        self.channel = self._socket = ticking(ours)
         self._left = left
         self._workdir = workdir
         # Opened twice and at once: later that name may be anything the student's code put there.
@@ -134,14 +134,14 @@ class _ProcessHandle:
         return self._output.read(MAX_OUTPUT).decode("utf-8", "replace")
 
     def finish(self) -> Exit:
-        if sys.platform != "win32":
+        if hasattr(os, "killpg"):  # not on Windows
             # What it started goes with it, also if it ended by itself; until it is waited for, its number
             # cannot have become another's.
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         code = self._process.wait()
-        self.sock.close()
+        self._socket.close()
         self._output.close()
         self._left.append(launch.removing(self._workdir))
         return Exit(max(code, 0), max(-code, 0))

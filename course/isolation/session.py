@@ -6,14 +6,13 @@ ends the worker instead of the grader.
 
 from __future__ import annotations
 
-import struct
 import sys
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from course.isolation import wire
 from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.inside import wire
 from course.isolation.levels import START_TIMEOUT
 from course.isolation.reports import claimed_text, raised
 from course.physics import systems
@@ -34,7 +33,6 @@ _HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
 #: What the callbacks of one call may carry in all; a check may keep every argument it is given.
 _CALLBACK_BYTES = 16 << 20
-_TICK_S = 0.1  # how often a blocked read looks at the clock; it ends by the deadline plus this
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
 
@@ -95,8 +93,7 @@ class Connection:
         self.alive = True
         self.cpu_s = 0.0
         self._handle: Handle = spawner.spawn()
-        self._sock = self._handle.sock
-        _set_tick(self._sock)
+        self._channel = self._handle.channel
         try:
             self.functions = self._load()
         except BaseException:
@@ -307,7 +304,7 @@ class Connection:
         while rest:
             try:
                 # In pieces: a write waits anew whenever the other side has read a little of it.
-                sent = self._sock.send(rest[:_SEND])
+                sent = self._channel.send(rest[:_SEND])
                 if sent == len(rest):
                     return
                 rest = memoryview(rest)[sent:]
@@ -318,9 +315,9 @@ class Connection:
                 raise self._ended() from None
 
     def _receive(self) -> tuple[int, Any]:
-        buffer = self._buffer or self._read(self._sock.recv, _RECV)
+        buffer = self._buffer or self._read(self._channel.recv, _RECV)
         while len(buffer) < 5:
-            buffer += self._read(self._sock.recv, _RECV)
+            buffer += self._read(self._channel.recv, _RECV)
         length, kind = _HEADER(buffer)
         if not 0 < length <= wire.MAX_FRAME:
             raise self._breach("a frame of impossible length")
@@ -341,7 +338,7 @@ class Connection:
     def _read_rest(self, begun: bytes, end: int) -> memoryview:
         frame, at = wire.room_for(end, begun), len(begun)
         while at < end:
-            at += self._read(self._sock.recv_into, frame[at:])
+            at += self._read(self._channel.recv_into, frame[at:])
             self._check_deadline()  # one that trickles never lets a read block
         return frame
 
@@ -382,16 +379,3 @@ def _few_numbers(value: Any) -> bool:
     if isinstance(value, list):
         return len(value) <= 64 and all(isinstance(item, int | float) for item in value)
     return isinstance(value, int | float)
-
-
-def _set_tick(sock: Any) -> None:
-    """Blocking reads and writes that return every ``_TICK_S``, without a poll before each of them."""
-    import socket
-
-    if sys.platform == "win32":
-        sock.settimeout(_TICK_S)
-        return
-    sock.setblocking(True)
-    tick = struct.pack("@ll", 0, int(_TICK_S * 1e6))
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, tick)
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, tick)

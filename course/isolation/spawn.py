@@ -4,17 +4,40 @@
     L2  the zygote without bubblewrap: Landlock, seccomp and limits
     L1  one plain process per worker: the wire protocol and deadlines, nothing else
 
-The rest of the program talks to a ``Handle``: a socket, a way to kill, and how it ended.
+The rest of the program talks to a ``Handle``: a channel, a way to kill, and how it ended. What that must be
+is written in ``course.isolation.levels``; ``MAKERS`` is where another kind of worker is entered, and nothing
+above this package has to know of it.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from course.isolation.forked import ZygoteSpawner
 from course.isolation.levels import LIMITS, Exit, Handle, Level, Limits, Spawner
 from course.isolation.plain import ProcessSpawner
 from course.isolation.view import view_for
 
-__all__ = ["LIMITS", "Exit", "Handle", "Level", "Limits", "Spawner", "spawner"]
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["LIMITS", "MAKERS", "Exit", "Handle", "Level", "Limits", "Spawner", "spawner"]
+
+
+def _plain(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:  # noqa: ARG001 - one of MAKERS
+    return ProcessSpawner(view_for(imports), imports, limits)
+
+
+def _forked(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:
+    return ZygoteSpawner(level, view_for(imports), imports, limits)
+
+
+#: What makes the spawner of each level, from the level, the packages to be imported and the limits.
+MAKERS: dict[Level, Callable[[Level, tuple[str, ...], Limits], Spawner]] = {
+    Level.L1: _plain,
+    Level.L2: _forked,
+    Level.L3: _forked,
+}
 
 
 def spawner(level: Level, imports: tuple[str, ...], *, limits: Limits = LIMITS) -> Spawner:
@@ -23,7 +46,4 @@ def spawner(level: Level, imports: tuple[str, ...], *, limits: Limits = LIMITS) 
     Raises:
         IsolationError: this machine cannot provide that level.
     """
-    view = view_for(imports)
-    if level is Level.L1:
-        return ProcessSpawner(view, imports, limits)
-    return ZygoteSpawner(level, view, imports, limits)
+    return MAKERS[level](level, imports, limits)

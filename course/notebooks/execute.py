@@ -13,7 +13,7 @@ from course.extras import require
 from course.notebooks.building.cells import dumped
 from course.notebooks.sandbox import STILL
 
-__all__ = ["executed"]
+__all__ = ["environment", "executed"]
 
 #: Wall seconds that one cell may take. The slowest of the course takes about three on an idle machine.
 _PATIENCE = 600
@@ -49,7 +49,7 @@ def executed(data: bytes, name: str) -> bytes:
         )
         try:
             # A kernel's own log has nothing for whoever asked for notebooks.
-            client.execute(env=_environment(), stderr=subprocess.DEVNULL)
+            client.execute(env=environment() | {STILL: "1"}, stderr=subprocess.DEVNULL)
         except CellExecutionError as error:
             raise InternalError(
                 f"A cell of {name} raises {error.ename}: {error.evalue[:300]}",
@@ -61,9 +61,9 @@ def executed(data: bytes, name: str) -> bytes:
     return dumped(notebook)
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
     """This process's own, in which a course that is not installed is found as well."""
     here = str(Path(__file__).resolve().parents[2])
     given = os.environ.get("PYTHONPATH")
     path = f"{given}{os.pathsep}{here}" if given else here
-    return os.environ | {"PYTHONPATH": path, STILL: "1"}
+    return os.environ | {"PYTHONPATH": path}

@@ -7,21 +7,19 @@ workspace it is recorded as `course check` records it.
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING, Any
 
-from course.errors import CourseError, NotFoundError
-from course.notebooks.findings import CheckTable
+from course.errors import CourseError
+from course.notebooks.checking import checked, must_have
+from course.notebooks.typed import typed_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
+    from course.notebooks.findings import CheckTable
     from course.notebooks.page import ReportPage
-    from course.scoring.verdict import Verdict
 
-__all__ = ["check", "register", "report", "typed_in"]
+__all__ = ["check", "register", "report"]
 
 
 def register(shell: Any) -> None:
@@ -59,11 +57,6 @@ def _said(text: str) -> None:
     print(text)  # noqa: T201 - a cell's output is its screen
 
 
-def typed_in(shell: Any) -> list[str]:
-    """What was run in a shell so far, oldest first, without the cell that asks."""
-    return list(shell.history_manager.input_hist_raw[1:-1])
-
-
 def report(history: Sequence[str], exercise_id: str) -> ReportPage:
     """What the functions that were run do on public data.
 
@@ -96,63 +89,10 @@ def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> 
         UngradableError: there is nothing to check yet.
     """
     from course.catalog.load import Catalog
-    from course.notebooks.typed import defines_all, module_of
-    from course.scoring.session import GradingSession
+    from course.notebooks.typed import module_of
 
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
-    known = [one.id for one in exercise.task]
-    if task is not None and task not in known:
-        raise NotFoundError(
-            f"{exercise_id} has no function {task}.", help=f"It has: {', '.join(known)}.", code="no_such_task"
-        )
+    must_have(exercise, task)
     module = module_of(history, exercise)
-    begin = time.perf_counter()
-    with GradingSession(exercise, catalog, scope="public") as session:
-        verdict = session.grade(module.submission(exercise))
-    seconds = time.perf_counter() - begin
-    if task is not None and not defines_all(module.source, known):
-        # What was not run yet is not missing: the attempt is at this function alone.
-        verdict = _of_task(verdict, exercise, task)
-        note = _recorded(catalog, exercise, verdict, module.source, seconds, only=task)
-    else:
-        note = _recorded(catalog, exercise, verdict, module.source, seconds)
-    return CheckTable(verdict, task, note)
-
-
-def _of_task(verdict: Verdict, exercise: Exercise, task: str) -> Verdict:
-    """The part of a verdict that is about one function."""
-    import msgspec
-
-    if verdict.state != "graded":
-        return verdict
-    checks = tuple(check for check in verdict.checks if check.task == task)
-    score, most = sum(check.points for check in checks), sum(check.max_points for check in checks)
-    return msgspec.structs.replace(
-        verdict, checks=checks, score=score, max_score=most, passed=score >= exercise.pass_mark * most
-    )
-
-
-def _recorded(
-    catalog: Catalog, exercise: Exercise, verdict: Verdict, source: bytes, seconds: float, *, only: str = ""
-) -> str:
-    """Add an attempt to the progress of the workspace this kernel runs in; what there is to say about that.
-
-    Outside of a workspace there is no record, and nothing to say.
-    """
-    from pathlib import Path
-
-    from course.progress.history import check_data
-    from course.progress.workspace import Workspace
-
-    try:
-        workspace = Workspace.find(Path.cwd())
-        if workspace.course_id != catalog.course_id:
-            return f"This was not recorded: {workspace.root} is a workspace of another course."
-        data = check_data(verdict, source, seconds, catalog.version, only=only)
-        workspace.store.append("check", exercise.id, data)
-    except (NotFoundError, FileNotFoundError):  # also where the folder is gone
-        return ""
-    except CourseError as error:
-        return f"This was not recorded: {error.message} {error.help}"
-    return ""
+    return checked(catalog, exercise, module.submission(exercise), task)

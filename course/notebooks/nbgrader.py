@@ -57,7 +57,8 @@ def points(exercise_id: str, task: str) -> float:
     import IPython.display
     from IPython.core.getipython import get_ipython
 
-    from course.notebooks.magic import check, typed_in
+    from course.notebooks.magic import check
+    from course.notebooks.typed import typed_in
 
     table = check(typed_in(get_ipython()), exercise_id, task)
     show: Callable[..., object] = IPython.display.display  # typed or not, whether it is installed or not
@@ -67,7 +68,7 @@ def points(exercise_id: str, task: str) -> float:
 
 def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
     """Public points of each task."""
-    from course.scoring.collected import CollectedChecks
+    from course.scoring.checks.collected import CollectedChecks
     from course.scoring.session import check_files
 
     collected = CollectedChecks(check_files(exercise, catalog, "public"))

@@ -45,7 +45,7 @@ def _section(section: Section) -> str:
         body = "".join(f"<tr>{row}</tr>" for row in rows)
         parts.append(f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>")
     if section.plot is not None:
-        from course.figures.plots import render
+        from course.figures.drawing.plots import render
 
         picture = base64.b64encode(render(section.plot)).decode()
         described = escape(section.plot.description or section.plot.title)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from course.notebooks.building.cells import Cell, code, document, markdown
+from course.notebooks.building.cells import Cell, code, document, markdown, opening
 from course.notebooks.building.lowering import escaped
 
 if TYPE_CHECKING:
@@ -23,9 +23,13 @@ SEED = 1
 _HEAD = """\
 # Quiz
 
-{mark}. Write the letter of your answer between the quotation marks, run every cell, and run the last one
-to see which were right and why. This is practice and is not recorded: `course quiz take` in a terminal asks
-other variants of the same questions and keeps the result."""
+{mark}. In a workspace the next cell is an attempt that counts, as `course quiz take` in a terminal is one;
+what was begun there goes on here."""
+_PRACTICE = """\
+## Practice
+
+The same questions in one of their variants, without a record. Write the letter of your answer between the
+quotation marks, run every cell, and run the last one to see which were right and why."""
 
 
 def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
@@ -39,7 +43,12 @@ def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
     from course.quizzing.bank import Bank
 
     posed = Bank.of(catalog).pose(seed)
-    cells = [markdown(_HEAD.format(mark=mark_sentence(len(posed)))), code("answers = {}", role="quiz-setup")]
+    cells = [
+        opening(_HEAD.format(mark=mark_sentence(len(posed)))),
+        code("from course.notebooks.taking import take\n\ntake()", role="quiz-take"),
+        markdown(_PRACTICE),
+        code("answers = {}", role="quiz-setup"),
+    ]
     for number, question in enumerate(posed, 1):
         cells += _question(number, len(posed), question)
     cells.append(markdown("## Marks"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import os
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from html import escape
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from course.notebooks.building.cells import code, document, markdown
+from course.notebooks.building.cells import code, document, markdown, opening
 from course.notebooks.building.lowering import escaped
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from course.sandbox.runs.running import Run
     from course.sandbox.scene.model import Scene
 
-__all__ = ["STILL", "Film", "film", "play", "sandbox_notebook"]
+__all__ = ["STILL", "Film", "alive", "film", "play", "sandbox_notebook"]
 
 #: Set in the environment of a kernel whose outputs are kept: nothing lives in a file.
 STILL = "COURSE_NOTEBOOK_STILL"
@@ -39,7 +40,7 @@ def sandbox_notebook(catalog: Catalog) -> bytes:
 
     every = scenes()
     cells = [
-        markdown(_HEAD.format(first=every[0].id)),
+        opening(_HEAD.format(first=every[0].id)),
         code("from course.notebooks.sandbox import play", role="sandbox-setup"),
     ]
     for scene in every:
@@ -60,12 +61,23 @@ def _question(scene: Scene) -> str:
     return f"\n\n**Predict.** {_words(asked)}" if asked else ""
 
 
+def alive() -> bool:
+    """Whether a cell can hold something that moves and answers: in a kernel, with anywidget."""
+    if os.environ.get(STILL) or find_spec("anywidget") is None:
+        return False
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:  # a script
+        return False
+    return True
+
+
 def play(scene_id: str, **settings: float) -> Any:
     """A scene to take hold of; a film of it where this Jupyter cannot show one.
 
     Args and errors are those of ``film``.
     """
-    if os.environ.get(STILL) or find_spec("anywidget") is None:
+    if not alive():
         return film(scene_id, **settings)
     from course.notebooks.widget import Sandbox
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from course.handed_in.cells import CodeCell, typed_cell
 from course.handed_in.notebook import SETUP, NotebookSource, source_of
@@ -20,9 +20,14 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
 
-__all__ = ["defines_all", "module_of"]
+__all__ = ["defines_all", "given", "module_of", "typed_in"]
 
 _DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
+
+
+def typed_in(shell: Any) -> list[str]:
+    """What was run in a shell so far, oldest first, without the cell that asks."""
+    return list(shell.history_manager.input_hist_raw[1:-1])
 
 
 def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
@@ -34,9 +39,9 @@ def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
     Raises:
         UngradableError: none of the exercise's functions was run yet.
     """
-    given = _given(exercise)
+    marks = given(exercise)
     cells = [
-        replace(typed_cell(number, text), tags=given.get(text.strip(), {}))
+        replace(typed_cell(number, text), tags=marks.get(text.strip(), {}))
         for number, text in enumerate(history, 1)
         if text.strip()
     ]
@@ -51,7 +56,7 @@ def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
     return replace(source_of(kept[::-1], exercise, "This notebook"), called="In [{}]")
 
 
-def _given(exercise: Exercise) -> dict[str, dict[str, str]]:
+def given(exercise: Exercise) -> dict[str, dict[str, str]]:
     """The marks of the cells that an exercise's notebook begins with, by their text.
 
     A kernel knows nothing of marks; and what such a cell imports counts whether it is used or not.

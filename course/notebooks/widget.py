@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import anywidget
 
@@ -13,6 +13,9 @@ from course.notebooks.widget_style import STATIC, style
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.web.session import Page, Session
 from course.sandbox.world.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 __all__ = ["Sandbox"]
 
@@ -33,6 +36,7 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
     Raises:
         NotFoundError: there is no such scene.
         UsageError: a setting is unknown or out of range.
+        RuntimeError: no event loop runs here, as one does in every kernel.
     """
 
     _esm = (STATIC / "world.js").read_text("utf-8") + Path(__file__).with_suffix(".js").read_text("utf-8")
@@ -47,9 +51,17 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
         self._tasks: list[asyncio.Task[None]] = []
         self._seen = asyncio.Event()
         self._stalled = False
-        self.on_msg(self._hear)
+        # Messages come on a thread of the kernel's (ipykernel 7 gives them a subshell of their own), and
+        # everything here belongs to the loop that ran this cell.
+        self._loop = asyncio.get_running_loop()
+        self.on_msg(lambda _, message, __: self._soon(self._hear, message))
 
-    def _hear(self, _: Any, message: Any, __: Any) -> None:
+    def _soon(self, call: Callable[..., None], *given: Any) -> None:
+        """Call something on the loop that the world lives in, from whichever thread."""
+        with contextlib.suppress(RuntimeError):  # the loop may have ended first, and the world with it
+            self._loop.call_soon_threadsafe(call, *given)
+
+    def _hear(self, message: Any) -> None:
         """Something that a page says."""
         if self._page is not None and self._stalled:
             self._page.watching, self._stalled = True, False
@@ -69,8 +81,8 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
         self._page = self.session.join()
         if self._page is not None:
             self._tasks = [
-                asyncio.ensure_future(self.session.run()),
-                asyncio.ensure_future(self._speak(self._page)),
+                self._loop.create_task(self.session.run()),
+                self._loop.create_task(self._speak(self._page)),
             ]
 
     def _leave(self) -> None:
@@ -98,6 +110,5 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
 
     def close(self) -> None:
         """End it, here and in every page."""
-        with contextlib.suppress(RuntimeError):  # the loop may have ended first
-            self._leave()
+        self._soon(self._leave)
         super().close()

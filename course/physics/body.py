@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course.physics.rotation import angular_momentum, cross, kinetic_energy, turn_back
-from course.physics.state import RigidBodyState
+from course.physics.rotation import angular_momentum, kinetic_energy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from course.physics.state import RigidBodyState
 
     Array = NDArray[np.float64]
 
@@ -69,11 +70,6 @@ class Body:
         """Push at the centre of mass: N, in the world's axes, shape (..., 3)."""
         self.force = self.force + np.asarray(force, dtype=float)
 
-    def add_force_at(self, force: ArrayLike, arm: ArrayLike) -> None:
-        """Push at a point: ``arm`` (m, world axes) leads there from the centre, which adds a torque."""
-        self.add_force(force)
-        self.add_torque(cross(np.asarray(arm, dtype=float), np.asarray(force, dtype=float)))
-
     def add_torque(self, torque: ArrayLike) -> None:
         """Twist: N m, in the world's axes, shape (..., 3)."""
         self.torque = self.torque + np.asarray(torque, dtype=float)
@@ -85,21 +81,6 @@ class Body:
     def acceleration(self) -> Array:
         """Newton's second law: what the forces so far do, m/s², shape (..., 3)."""
         return self.force / self.mass
-
-    def apply_impulse(self, impulse: Array, arm: Array) -> None:
-        """Change the velocities at once, as a blow does.
-
-        Args:
-            impulse: N s, world axes, shape (..., 3).
-            arm: from the centre of mass to where it acts, m, world axes, shape (..., 3).
-        """
-        state = self.state
-        spin = state.angular_velocity
-        if self.spins:
-            spin = spin + turn_back(state.orientation, cross(arm, impulse)) / self.inertia
-        self.state = RigidBodyState(
-            state.position, state.velocity + impulse / self.mass, state.orientation, spin
-        )
 
     def momentum(self) -> Array:
         """Mass times velocity, kg m/s, shape (..., 3)."""

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
         def task(self) -> str: ...
         @property
         def status(self) -> str: ...
+        @property
+        def diagnosis(self) -> str | None: ...
 
     class _Verdict(Protocol):
         """What is kept of a verdict."""
@@ -214,10 +216,13 @@ def check_data(
         "fingerprint": fingerprint(source),
         "sha256": hashlib.sha256(source).hexdigest(),
         "version": version,
-        "checks": [
-            {"id": check.id, "task": check.task, "status": str(check.status)} for check in verdict.checks
-        ],
+        "checks": [_kept(check) for check in verdict.checks],
     }
+
+
+def _kept(check: _Check) -> dict[str, str]:
+    kept = {"id": check.id, "task": check.task, "status": str(check.status)}
+    return kept | ({"diagnosis": check.diagnosis} if check.diagnosis else {})
 
 
 def fingerprint(source: bytes) -> str:

@@ -6,7 +6,8 @@ is; an existing one is replaced only after ``backup`` has returned the place of 
     course.toml                    which course, which version
     <exercise-id>/<module>.py      the student's
     .course/progress.sqlite        the record (course.progress.store)
-    .course/given/<exercise-id>/   every file as it was handed out
+    warm-ups/<id>/<module>.py      the same of a warm-up
+    .course/given/<place>/         every file as it was handed out, by the folder it lies in
     .course/backups/<when>-<why>/  what reset, update and submit replaced
 """
 
@@ -21,6 +22,7 @@ from datetime import datetime
 from pathlib import Path
 
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
+from course.ids import WARM_UPS
 from course.progress.store import Store
 
 __all__ = ["FORMAT_VERSION", "MARKER", "Workspace", "same_text", "write_atomically"]
@@ -107,9 +109,9 @@ class Workspace:
         """The record of progress."""
         return Store(self.state / "progress.sqlite")
 
-    def path(self, exercise: str, name: str) -> Path:
-        """Where a file of an exercise belongs."""
-        return self.root / exercise / name
+    def path(self, place: str, name: str) -> Path:
+        """Where a file belongs that lies in this folder: an exercise's id, or what its ``place`` says."""
+        return self.root / place / name
 
     def shown(self, path: Path) -> str:
         """``path`` as a person wants to read it: relative to the workspace where it lies inside."""
@@ -117,30 +119,33 @@ class Workspace:
             return path.relative_to(self.root).as_posix()
         return str(path)
 
-    def given(self, exercise: str, name: str) -> bytes | None:
+    def given(self, place: str, name: str) -> bytes | None:
         """A file as it was last handed out; None if it never was."""
         try:
-            return self._given_path(exercise, name).read_bytes()
+            return self._given_path(place, name).read_bytes()
         except OSError:
             return None
 
     def started(self) -> tuple[str, ...]:
         """Ids of the exercises that something was handed out for."""
-        with contextlib.suppress(OSError):
-            return tuple(sorted(entry.name for entry in (self.state / "given").iterdir() if entry.is_dir()))
-        return ()
+        given = self.state / "given"
+        names: list[str] = []
+        for folder in (given, given / WARM_UPS):
+            with contextlib.suppress(OSError):
+                names += (entry.name for entry in folder.iterdir() if entry.is_dir())
+        return tuple(sorted(name for name in names if name != WARM_UPS))
 
-    def give(self, exercise: str, name: str, data: bytes) -> bool:
+    def give(self, place: str, name: str, data: bytes) -> bool:
         """Put a file where none is, and remember how it looked; False if there is one already.
 
         Raises:
             MissingCapabilityError: the workspace cannot be written.
         """
-        target = self.path(exercise, name)
+        target = self.path(place, name)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            if not self._given_path(exercise, name).exists():
-                self.remember(exercise, name, data)
+            if not self._given_path(place, name).exists():
+                self.remember(place, name, data)
             _write_new(target, data)
         except FileExistsError:
             return False
@@ -148,13 +153,13 @@ class Workspace:
             raise _not_writable(target, error) from error
         return True
 
-    def remember(self, exercise: str, name: str, data: bytes) -> None:
+    def remember(self, place: str, name: str, data: bytes) -> None:
         """Keep how a file looked when it was handed out."""
-        write_atomically(self._given_path(exercise, name), data)
+        write_atomically(self._given_path(place, name), data)
 
-    def is_edited(self, exercise: str, name: str, data: bytes) -> bool:
+    def is_edited(self, place: str, name: str, data: bytes) -> bool:
         """True unless ``data`` is the file as it was handed out, line endings aside."""
-        given = self.given(exercise, name)
+        given = self.given(place, name)
         return given is None or not same_text(given, data)
 
     def backup(self, path: Path, why: str) -> Path:
@@ -182,8 +187,8 @@ class Workspace:
         write_atomically(marker, _VERSION_LINE.sub(rf'\g<1>"{version}"', text, count=1).encode())
         return Workspace(root=self.root, course_id=self.course_id, version=version)
 
-    def _given_path(self, exercise: str, name: str) -> Path:
-        return self.state / "given" / exercise / name
+    def _given_path(self, place: str, name: str) -> Path:
+        return self.state / "given" / place / name
 
 
 def same_text(one: bytes, other: bytes) -> bool:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from course.reading.parts import words_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
-    from course.reading.parts import Script
+    from course.reading.record import InProgress
 
 __all__ = ["Hit", "find"]
 
@@ -28,17 +28,17 @@ class Hit:
     excerpt: str
 
 
-def find(script: Script, wanted: str, *, closed: Callable[[int], bool] = lambda _: False) -> Iterator[Hit]:
+def find(progress: InProgress, wanted: str) -> Iterator[Hit]:
     """Where words occur in a lesson, a block at most once; capitals do not matter.
 
-    Args:
-        closed: whether a block may not be looked into, since it answers a prediction that is still open.
+    What may answer a prediction that is still open is not looked into.
     """
+    script = progress.script
     needle = " ".join(wanted.split()).casefold()
     if not needle:
         return
     for index, block in enumerate(script.blocks):
-        if closed(index):
+        if progress.closed_by(index) is not None and script.gives_away(index):
             continue
         text = " ".join(words_of(block).split())
         at = text.casefold().find(needle)

@@ -121,10 +121,6 @@ class Layout:
         before = [first for block, (first, _) in self._spans.items() if block < place.block]
         return max(before, default=0)
 
-    def screen_of(self, row: int) -> int:
-        """Where the screen that shows a row begins."""
-        return self.starts[max(0, bisect_right(self.starts, row) - 1)]
-
     def span(self, block: int) -> tuple[int, int] | None:
         """First row of a block and the row after its last; None if it is not shown."""
         return self._spans.get(block)

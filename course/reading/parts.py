@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog import blocks as b
-from course.catalog.markdown import read_blocks
+from course.catalog.markdown import read_blocks, read_task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
-    from course.catalog.models import Lesson
+    from course.catalog.models import Exercise, Lesson
 
 __all__ = ["Cell", "Question", "Script", "Section", "read_script", "words_of"]
 
@@ -113,6 +113,10 @@ class Script:
         """The prediction that is this block."""
         return next((one for one in self.questions if one.index == index), None)
 
+    def answered_at(self, index: int) -> Question | None:
+        """The prediction that this block answers."""
+        return next((one for one in self.questions if one.answer == index), None)
+
     def question_over(self, index: int) -> Question | None:
         """The prediction that keeps this block closed until it is answered; None if nothing does."""
         return next((one for one in self.questions if one.index < index < one.end), None)
@@ -131,19 +135,27 @@ class Script:
         """The section (level 2) a block stands in; None before the first."""
         return next((s for s in self.sections if s.level == 2 and s.start <= index < s.end), None)
 
+    def section_at(self, index: int) -> Section | None:
+        """The innermost section a block stands in; None before the first."""
+        inside = [section for section in self.sections if section.start <= index < section.end]
+        return max(inside, key=lambda section: section.level, default=None)
+
     def minutes_left(self, index: int) -> float:
         """Reading time from a block to the end, by words."""
         total = sum(self.weights) or 1
         return self.lesson.minutes * sum(self.weights[max(index, 0) :]) / total
 
 
-def read_script(lesson: Lesson) -> Script:
+def read_script(lesson: Lesson, warm_ups: Sequence[Exercise] = ()) -> Script:
     """Read a lesson.
+
+    Args:
+        warm_ups: to stand in it, each at the end of the section that it follows.
 
     Raises:
         ContentError: it cannot be read or parsed.
     """
-    blocks = read_blocks(Path(lesson.path))
+    blocks = _with_warm_ups(read_blocks(Path(lesson.path)), warm_ups)
     return Script(
         lesson=lesson,
         blocks=blocks,
@@ -173,9 +185,24 @@ def words_of(block: b.Block) -> str:
                 parts += [b.plain_text(cell) for row in (header, *rows) for cell in row]
             case b.Sources(items=items):
                 parts += [b.plain_text(item) for item in items]
+            case b.WarmUp(title=title, blocks=task):
+                parts += [title, *map(words_of, task)]
             case _:
                 pass
     return "\n".join(part for part in parts if part)
+
+
+def _with_warm_ups(blocks: tuple[b.Block, ...], warm_ups: Sequence[Exercise]) -> tuple[b.Block, ...]:
+    ends = {section.slug: section.end for section in _sections(blocks)}
+    placed: dict[int, list[b.Block]] = {}
+    for one in warm_ups:
+        task = b.WarmUp(0, one.id, one.title, one.minutes, read_task(one.readme_path))
+        placed.setdefault(ends.get(one.after, len(blocks)), []).append(task)
+    return tuple(
+        each
+        for index in range(len(blocks) + 1)
+        for each in (*placed.get(index, ()), *blocks[index : index + 1])
+    )
 
 
 def _sections(blocks: tuple[b.Block, ...]) -> Iterator[Section]:

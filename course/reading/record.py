@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from course.progress.store import Event, Store
     from course.reading.parts import Cell, Question, Script
 
-__all__ = ["CellState", "InProgress", "Judgement", "Prediction", "Writer"]
+__all__ = ["JUDGEMENTS", "CellState", "InProgress", "Judgement", "Prediction", "Writer"]
 
 Judgement = Literal["right", "nearly", "wrong"]
-_JUDGEMENTS: tuple[Judgement, ...] = ("right", "nearly", "wrong")
+JUDGEMENTS: tuple[Judgement, ...] = ("right", "nearly", "wrong")
 #: As much of what a cell printed as is kept.
 _KEPT = 4000
 #: Enough of a block's words to know it again after a lesson was edited.
@@ -158,6 +158,11 @@ class InProgress:
         question = self.script.question_over(index)
         return question if question is not None and question.key not in self._predictions else None
 
+    def asked_by(self, index: int) -> Question | None:
+        """The open prediction that is this block, or keeps it closed; None if nothing is to be predicted."""
+        question = self.script.question_at(index)
+        return question if question and question.key not in self._predictions else self.closed_by(index)
+
     def predict(self, question: Question, text: str) -> None:
         """Keep what was said; an empty text is a skip. What was said first stays."""
         if question.key not in self._predictions:
@@ -225,7 +230,7 @@ class InProgress:
             said = self._predictions.get(key)
             if said is None:
                 self._predictions[key] = Prediction(str(data.get("text", "")), event.at)
-            elif data.get("judged") in _JUDGEMENTS:
+            elif data.get("judged") in JUDGEMENTS:
                 self._predictions[key] = replace(said, judged=data["judged"])
         elif event.kind == "cell":
             cell = next((one for one in self.script.cells if one.key == key), None)

@@ -1,8 +1,8 @@
 """One submission judged: checks collected once, run through the boundary, and made into a verdict.
 
 session, remote      a proven sandbox kept warm, and the ``submission`` that checks call
-plugin, collected    the checks, as pytest has them
-kit                  what checks are written with (``companions`` are the modules they share)
+checks               the checks, as pytest has them
+kit                  what checks are written with
 values               reading what a student's function returned, which may be anything
 explain, explaining  from a wrong value to a named mistake, one story for each task
 failures, outcomes   how a check ends, in words; ``places`` tells the lines of a file or a notebook

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from course.scoring.explain import Failure, Story, fingerprint, read_table, read_words, tell
 from course.scoring.explain.calls import calls_between
-from course.scoring.explain.fingerprint import in_range
+from course.scoring.explain.fingerprint import in_range, read
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import Row, is_right, matching
 from course.scoring.explain.words import FILE as WORDS
@@ -18,16 +19,18 @@ from course.scoring.failures import CheckFailed, StudentFailure
 from course.scoring.verdict import CheckResult, Finding, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from pathlib import Path
+    from types import ModuleType
 
     from course.scoring.explain import Diagnosis, Table, Words
     from course.scoring.remote import RemoteSubmission
 
-__all__ = ["CASCADE", "Explainer", "answers"]
+__all__ = ["CASCADE", "Explainer", "answers", "asked", "tasks_asked"]
 
 #: Diagnosis of a function that calls another one of the exercise's which is wrong itself.
 CASCADE = "CALLS_A_WRONG_FUNCTION"
+Calls = list[tuple[Any, ...]]
 _GONE = frozenset({Status.TIMEOUT, Status.MEMORY, Status.CRASH})
 
 
@@ -36,13 +39,16 @@ class Explainer:
 
     Args:
         folder: of the exercise.
-        questions: arguments of the calls that tell programs apart, by task.
+        questions: its ``questions.py``; see ``asked``. ``PARTS`` names, for checks of a function that answers
+            for several things, which thing each is about: what is wrong with one says nothing of another, so
+            each has a story of its own.
     """
 
-    def __init__(self, folder: Path, questions: Mapping[str, list[tuple[Any, ...]]]) -> None:
+    def __init__(self, folder: Path, questions: ModuleType) -> None:
         self._words: Words = read_words(folder / WORDS)
         self._table: Table = read_table(folder / TABLE)
         self._questions = questions
+        self._parts: Mapping[str, str] = getattr(questions, "PARTS", {})
 
     def explain(
         self,
@@ -55,39 +61,77 @@ class Explainer:
         wrong = {
             result.task for result in results.values() if result.status not in {Status.PASS, Status.SKIP}
         }
-        callers = calls_between(source, frozenset(self._questions))
+        callers = calls_between(source, tasks_asked(self._questions))
         for task in sorted(wrong):
             of_task = [result for result in results.values() if result.task == task]
             checks = [result for result in of_task if result.id in failed]
             if not checks:
                 continue
-            asked = not any(result.status in _GONE for result in of_task)
-            story = self._story(
-                task, {check.id: failed[check.id] for check in checks}, remote if asked else None
-            )
+            gone = any(result.status in _GONE for result in of_task)
+            names = frozenset(self._parts.get(check.id, task) for check in checks)
+            said = {} if gone else self._asked(task, remote, names)
             culprit = next((name for name in callers.get(task, ()) if name in wrong), None)
-            for check in checks:
-                if check.id not in story.own:
-                    results[check.id] = _retold(check, failed[check.id], story, task, culprit)
+            for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
+                part = [check for check in checks if self._parts.get(check.id, task) == name]
+                story = self._story(name, {check.id: failed[check.id] for check in part}, said.get(name))
+                for check in part:
+                    if check.id not in story.own:
+                        results[check.id] = _retold(check, failed[check.id], story, task, culprit)
 
-    def _story(self, task: str, failed: Mapping[str, CheckFailed], remote: RemoteSubmission | None) -> Story:
+    def _asked(
+        self, task: str, remote: RemoteSubmission, names: frozenset[str]
+    ) -> dict[str, tuple[float, ...]]:
+        remote.begin_check(task)
+        within = self._table.within.get(task)
+        return asked(self._questions, task, lambda calls: answers(remote, task, calls), within, names)
+
+    def _story(self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None) -> Story:
         failures = [
             Failure(check, failure.guess, _finite(failure.finding)) for check, failure in failed.items()
         ]
-        return tell(failures, self._fits(task, remote) if remote else (), self._words)
+        return tell(failures, self._fits(name, sums) if sums else (), self._words)
 
-    def _fits(self, task: str, remote: RemoteSubmission) -> tuple[Row, ...]:
-        questions = self._questions.get(task, [])
-        if not questions:
-            return ()
-        remote.begin_check(task)
-        said = answers(remote, task, questions)
-        sums = tuple(_number(x) for x in said) if task in self._table.within else fingerprint(said)
-        return () if is_right(self._table, task, sums) else matching(self._table, task, sums)
+    def _fits(self, name: str, sums: tuple[float, ...]) -> tuple[Row, ...]:
+        return () if is_right(self._table, name, sums) else matching(self._table, name, sums)
 
 
-def answers(remote: RemoteSubmission, task: str, questions: list[tuple[Any, ...]]) -> list[Any]:
+def tasks_asked(questions: ModuleType) -> frozenset[str]:
+    """The tasks that a ``questions.py`` has questions for."""
+    return frozenset(questions.QUESTIONS) | frozenset(getattr(questions, "ASK", {}))
+
+
+def asked(
+    questions: ModuleType,
+    task: str,
+    answer: Callable[[Calls], list[Any]],
+    within: float | None = None,
+    names: frozenset[str] | None = None,
+) -> dict[str, tuple[float, ...]]:
+    """What a program answers to the questions of a task, as the numbers that are compared.
+
+    Args:
+        questions: ``questions.py`` of an exercise. ``QUESTIONS`` has arguments of calls by task and ``READ``
+            what counts of an answer. Where that is not enough, ``ASK`` has a function of ``answer`` and
+            ``names`` that asks by itself and gives numbers by name, of the task or of its parts. Numbers that
+            are ``SAME`` apart count as equal.
+        answer: what the program answers to a list of calls; ``{"raised": name}`` where it raises.
+        within: relative tolerance, if answers are compared as they are.
+        names: of the parts that are of interest; None for all.
+    """
+    own = getattr(questions, "ASK", {}).get(task)
+    if own is not None:
+        return {name: tuple(numbers) for name, numbers in own(answer, names).items()}
+    calls = questions.QUESTIONS.get(task)
+    if not calls:
+        return {}
+    reader = getattr(questions, "READ", {}).get(task)
+    said = [read(one, reader) for one in answer(calls)]
+    return {task: fingerprint(said) if within is None else tuple(_number(x) for x in said)}
+
+
+def answers(remote: RemoteSubmission, task: str, questions: Calls) -> list[Any]:
     """What a function answers to each question; ``{"raised": name}`` where it raises."""
+    questions = copy.deepcopy(questions)  # a generator among the arguments is at its start each time
     try:
         return list(remote.call_each(task, questions))
     except (StudentFailure, CheckFailed):

@@ -10,7 +10,7 @@ from course.scoring.verdict import CheckResult, Finding, Problem, Status
 if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.isolation.session import LoadRefusedError
-    from course.scoring.collected import Check
+    from course.scoring.checks.collected import Check
     from course.scoring.places import Places
 
 __all__ = ["NOT_JUDGED", "found", "load_problem", "no_functions", "result", "skipped", "unjudged"]
@@ -116,7 +116,9 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         message = f"{where}: Python cannot read this file: {failure.message}."
         return message, "Save it as UTF-8, or declare its encoding in the first line."
     if not failure.line:
-        message = f"{where} is no Python source: {failure.message}."
+        # A MemoryError, which is what deep nesting ends in, says nothing.
+        reason = failure.message or "it is nested more deeply than Python can read"
+        message = f"{where} is no Python source: {reason}."
         return (
             message,
             "Was something else saved under its name? `course reset` puts the stub back, and keeps it.",

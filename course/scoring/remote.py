@@ -40,6 +40,7 @@ class RemoteSubmission:
 
     Attributes:
         returned: name and value of the last function of the student's that returned in this check.
+        asked: names of the functions that this check has asked for.
 
     Raises:
         LoadRefusedError: it cannot be loaded.
@@ -66,6 +67,7 @@ class RemoteSubmission:
         self._printed_before = 0
         self._task = ""
         self.returned: tuple[str, Any] | None = None
+        self.asked: set[str] = set()
         self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
@@ -89,12 +91,12 @@ class RemoteSubmission:
             StudentFailure: it gave no value.
             CheckFailed: a function given to it refused its arguments.
         """
-        with self._asking() as worker:
+        with self._asking(name) as worker:
             return self._told(name, worker.call(name, *args, **kwargs))
 
     def call_inspect(self, name: str, *args: Any) -> Inspected:
         """Call it, and say what became of the arguments."""
-        with self._asking() as worker:
+        with self._asking(name) as worker:
             value, after, shared = worker.inspect(name, *args)
         self._told(name, value)
         return Inspected(value, after, shared)
@@ -105,6 +107,7 @@ class RemoteSubmission:
         Raises:
             StudentFailure: there is none of that name.
         """
+        self.asked.add(name)
         if name not in self._live().functions:
             raise StudentFailure.missing(name)
         return {"$function": name}
@@ -131,7 +134,7 @@ class RemoteSubmission:
             marches: (system, q0, v0, h, n, t0) of each, as for ``march``.
         """
         sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
-        with self._asking() as worker:
+        with self._asking(step_name) as worker:
             values = self._told(step_name, worker.march(step_name, sent))
         return [
             (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
@@ -144,7 +147,7 @@ class RemoteSubmission:
         Raises:
             StudentFailure: one of the calls gave no value; the later ones were not made.
         """
-        with self._asking() as worker:
+        with self._asking(name) as worker:
             return self._told(name, worker.each(name, [list(args) for args in calls]))
 
     def fold(
@@ -169,7 +172,7 @@ class RemoteSubmission:
             StudentFailure: one of the calls gave no value.
         """
         kept = None if keep is None else list(keep)
-        with self._asking() as worker:
+        with self._asking(name) as worker:
             states = worker.fold(name, state, [list(args) for args in calls], carry, kept)
         return self._told(name, states)
 
@@ -195,6 +198,7 @@ class RemoteSubmission:
         self._task = task
         self._deadline = Deadline(min(self._timeout, left), min(WALL * self._timeout, self._wall_left))
         self.returned = None
+        self.asked = set()
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 
@@ -216,8 +220,9 @@ class RemoteSubmission:
         return Connection(self._spawner, self._files, self._main, self._deadline)
 
     @contextlib.contextmanager
-    def _asking(self) -> Iterator[Connection]:
-        """The worker to ask; what comes of it knows how its lines are told."""
+    def _asking(self, name: str) -> Iterator[Connection]:
+        """The worker to ask for a function; what comes of it knows how its lines are told."""
+        self.asked.add(name)
         try:
             yield self._live()
         except StudentFailure as failure:

@@ -17,7 +17,7 @@ from course.scoring.verdict import Finding
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from course.figures.described import Plot
+    from course.figures.drawing.described import Plot
 
 __all__ = ["Report", "Section", "finding_for", "guarded_section"]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from course.errors import NotFoundError, UngradableError
 from course.isolation.failures import StudentFailure
-from course.scoring.companions import companion
+from course.scoring.checks.companions import companion
 from course.scoring.failures import CheckFailed
 from course.scoring.report import Report, finding_for
 from course.scoring.session import GradingSession, Submission

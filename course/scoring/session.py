@@ -11,7 +11,7 @@ import os
 import random
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Literal, Self, TypeVar
 
 import msgspec
 
@@ -21,8 +21,8 @@ from course.isolation.launch import keep_private
 from course.isolation.probe import open_spawner
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
-from course.scoring.collected import Check, CollectedChecks
-from course.scoring.companions import companion
+from course.scoring.checks.collected import Check, CollectedChecks
+from course.scoring.checks.companions import companion
 from course.scoring.explaining import Explainer
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.outcomes import found, load_problem, no_functions, result, skipped, unjudged
@@ -33,10 +33,11 @@ from course.scoring.terms import Terms
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, bounded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.isolation.levels import Spawner
 
 __all__ = ["GradingSession", "Scope", "Submission", "check_files", "kept_on"]
 
@@ -65,6 +66,7 @@ class GradingSession:
 
     Attributes:
         running: title of the check that runs; empty between runs.
+        asked: for each check that has run, the functions of the last submission that it asked for.
 
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
@@ -96,6 +98,7 @@ class GradingSession:
         self.level: str = self._spawner.level.value
         self._remote: RemoteSubmission | None = None
         self.running = ""
+        self.asked: dict[str, frozenset[str]] = {}
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -119,11 +122,12 @@ class GradingSession:
         if remote is not None:
             remote.give_up()
 
-    def grade(self, submission: Submission, *, only: str | None = None) -> Verdict:
+    def grade(self, submission: Submission, *, only: Collection[str] = ()) -> Verdict:
         """The verdict on one submission.
 
         Args:
-            only: id of one check to run, with what it requires; the rest is left out of the verdict.
+            only: ids of the checks to run, with what they require; the rest is left out of the verdict.
+                Empty runs all.
 
         Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
         """
@@ -131,7 +135,7 @@ class GradingSession:
             verdict = self._grade(submission, only)
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
 
-    def _grade(self, submission: Submission, only: str | None) -> Verdict:
+    def _grade(self, submission: Submission, only: Collection[str]) -> Verdict:
         try:
             remote = self._load(submission)
         except LoadRefusedError as refused:
@@ -185,14 +189,17 @@ class GradingSession:
     def _places(self, submission: Submission) -> Places:
         return submission.places or Places(module=self.exercise.module)
 
-    def _run(self, remote: RemoteSubmission, only: str | None, submission: Submission) -> list[CheckResult]:
+    def _run(
+        self, remote: RemoteSubmission, only: Collection[str], submission: Submission
+    ) -> list[CheckResult]:
         places = self._places(submission)
         ordered = self._checks.in_order()
-        if only is not None:
+        if only:
             wanted = _with_required(only, ordered)
             ordered = [check for check in ordered if check.id in wanted]
         results: dict[str, CheckResult] = {}
         self._failed.clear()
+        self.asked.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
@@ -208,6 +215,7 @@ class GradingSession:
         remote.begin_check(check.task)
         start = perf_counter()
         outcome = self._checks.run(check, remote)
+        self.asked[check.id] = frozenset(remote.asked)
         duration_ms = (perf_counter() - start) * 1e3
         if outcome is None:
             return result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
@@ -234,11 +242,11 @@ class GradingSession:
 
     def _passes_the_model(self, check: Check) -> bool | None:
         """Whether a check that broke on a submission passes the model solution; None without one here."""
-        solutions = self._catalog.content.solutions
-        if solutions is None:
+        solution = self._catalog.content.solution_folder(self.exercise.id)
+        if solution is None:
             return None
         if check.id not in self._sound:
-            source = (solutions / self.exercise.id / self.exercise.module).read_bytes()
+            source = (solution / self.exercise.module).read_bytes()
             try:
                 model = self._load(Submission({self.exercise.module: source}))
             except LoadRefusedError:
@@ -300,18 +308,24 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
     """The files whose checks a scope runs.
 
     Raises:
-        MissingCapabilityError: the full scope needs hidden checks, and this installation has none.
+        MissingCapabilityError: the full scope needs hidden checks and model solutions; one is not here.
     """
     files = [(exercise.checks_path, Visibility.PUBLIC)]
     if scope == "full":
-        graders = catalog.content.graders
+        graders = catalog.content.grader_folder(exercise.id)
         if graders is None:
             raise MissingCapabilityError(
                 "This installation has no hidden graders: it is a student's.",
                 help="Grade from a checkout of the course.",
                 code="needs_checkout",
             )
-        hidden = graders / exercise.id / "checks.py"
+        if catalog.content.solutions is None:
+            raise MissingCapabilityError(
+                "This installation has no model solutions, and hidden checks take right answers from them.",
+                help="Grade from a checkout of the course.",
+                code="needs_checkout",
+            )
+        hidden = graders / "checks.py"
         if hidden.is_file():
             files.append((hidden, Visibility.HIDDEN))
     return files
@@ -321,10 +335,10 @@ def _explainer(exercise: Exercise) -> Explainer | None:
     """What explains failed checks, for an exercise whose words are data."""
     if not (Path(exercise.folder) / "diagnoses.toml").is_file():
         return None
-    return Explainer(Path(exercise.folder), companion(exercise.id, "questions").QUESTIONS)
+    return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))
 
 
-def _open(imports: tuple[str, ...], terms: Terms) -> Any:
+def _open(imports: tuple[str, ...], terms: Terms) -> Spawner:
     lowest = Level(terms.level or terms.at_least)
     highest = Level.L3 if terms.level is None else lowest
     try:
@@ -363,9 +377,10 @@ def kept_on(processor: int | None) -> Iterator[None]:
         os.sched_setaffinity(0, before)
 
 
-def _with_required(only: str, checks: list[Check]) -> set[str]:
+def _with_required(only: Collection[str], checks: list[Check]) -> set[str]:
     by_id = {check.id: check for check in checks}
-    wanted, left = set(), [only]
+    wanted: set[str] = set()
+    left = list(only)
     while left:
         name = left.pop()
         if name not in wanted:

@@ -15,9 +15,11 @@ class Terms(msgspec.Struct, frozen=True):
         at_least: the weakest level to accept when ``level`` is None.
         timeout: seconds of CPU time per check.
         seed: of the run, for checks that draw their inputs.
+        graders: digest of the snapshot that judges; empty for the course as it is here.
     """
 
     level: str | None = None
     at_least: str = "L1"
     timeout: float = 10.0
     seed: int = 0
+    graders: str = ""

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from course.scoring.explain.words import Divergence
+from course.scoring.divergence import Divergence
 
 __all__ = [
     "CheckResult",

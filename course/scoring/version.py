@@ -13,14 +13,17 @@ if TYPE_CHECKING:
 __all__ = ["grader_version"]
 
 
-def grader_version(exercise: Exercise, catalog: Catalog) -> str:
-    """A digest of the exercise's checks, their helpers and their reference, and of what runs them."""
-    package = Path(__file__).resolve().parents[1]
+def grader_version(exercise: Exercise, catalog: Catalog, package: Path | None = None) -> str:
+    """A digest of the exercise's checks, their helpers and their reference, and of what runs them.
+
+    Args:
+        package: where ``course`` is; None for the one that runs here.
+    """
+    package = package or Path(__file__).resolve().parents[1]
     folders = [Path(exercise.folder), package / "scoring", package / "isolation", package / "physics"]
-    if catalog.content.graders is not None:
-        folders.append(catalog.content.graders / exercise.id)
-    if catalog.content.solutions is not None:
-        folders.append(catalog.content.solutions / exercise.id)
+    content = catalog.content
+    theirs = content.grader_folder(exercise.id), content.solution_folder(exercise.id)
+    folders += [folder for folder in theirs if folder is not None]
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*")):

@@ -43,5 +43,5 @@ def get(name: str) -> Simulation:
             help=f"{meant}There are {', '.join(SIMULATIONS)}.",
             code="simulation_not_found",
         )
-    module = import_module(f"course.simulations.{name.replace('-', '_')}")
+    module = import_module(f"course.simulations.experiments.{name.replace('-', '_')}")
     return cast("Simulation", module.SIMULATION)

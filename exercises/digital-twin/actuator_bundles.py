@@ -31,7 +31,7 @@ def expect_play(submission, inputs, gap, states, outputs):
         )
 
 
-def expect_delayed(value, x, dt, latency, expected):
+def expect_delayed(submission, value, x, dt, latency, expected):
     """A signal comes out late; samples whose time is zero but for rounding may be either side of it."""
     y = kit.as_vector(value, len(x), "the delayed signal")
     t = dt * np.arange(len(x))
@@ -46,14 +46,14 @@ def expect_delayed(value, x, dt, latency, expected):
         input={"x": x, "dt": dt, "latency": latency},
         message="What comes out is not the signal of latency ago.",
         help="At time k dt look at k dt - latency: between two samples on their line, before all 0.0.",
-        diagnose=lambda: actuators.of_delay(y, x, dt, latency),
+        diagnose=lambda: actuators.of_delay(submission),
     )
 
 
 def expect_new_signal(submission, x, dt):
     """Without latency the signal comes out as it went in, as an array of its own."""
     value = expect_clean(submission, "delay_line", (x, dt, 0.0), ("x", None, None))
-    expect_delayed(value, x, dt, 0.0, x)
+    expect_delayed(submission, value, x, dt, 0.0, x)
 
 
 def expect_motor(submission, w, calls, message, source="rounding"):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from course.grading import kit
 
-diagnosis = kit.companion("digital-twin", "diagnosis")
 twins = kit.companion("digital-twin", "twin_probes")
 
 CALIBRATED = "200 seeds of every correct solution, tests/benchmarks/calibration/digital-twin.md"
@@ -17,13 +16,13 @@ def expect_clean(submission, task, args, names):
         if name and not twins.same(before, after):
             kit.fail(
                 f"The call changed its argument `{name}` in place.",
-                diagnose=diagnosis.named("MUTATES_INPUT"),
+                diagnose=twins.named("MUTATES_INPUT"),
                 expected={name: before},
                 actual={name: after},
             )
     if inspected.shared:
         kit.fail(
             "What the call returned is the caller's own array, not a new one.",
-            diagnose=diagnosis.named("RETURNS_ARGUMENT"),
+            diagnose=twins.named("RETURNS_ARGUMENT"),
         )
     return inspected.value

@@ -262,7 +262,9 @@ def test_delay_between_samples(submission):
     """A delay that is no whole number of samples interpolates, and nothing comes out before it"""
     x = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 2.0])
     expected = [0.0, 0.0, 0.0, 2.75, 1.5, 4.0, 4.25, 4.0]
-    actuators.expect_delayed(submission.call("delay_line", x, 0.1, 0.225), x, 0.1, 0.225, expected)
+    actuators.expect_delayed(
+        submission, submission.call("delay_line", x, 0.1, 0.225), x, 0.1, 0.225, expected
+    )
 
 
 @pytest.mark.task("delay_line")
@@ -271,7 +273,9 @@ def test_delay_none_and_all(submission):
     """Without latency a new array like the old one comes out; of a latency beyond the signal only zeros do"""
     x = np.array([2.0, -3.0, 1.0, 5.0])
     actuators.expect_new_signal(submission, x, 0.1)
-    actuators.expect_delayed(submission.call("delay_line", x, 0.1, 0.75), x, 0.1, 0.75, np.zeros(4))
+    actuators.expect_delayed(
+        submission, submission.call("delay_line", x, 0.1, 0.75), x, 0.1, 0.75, np.zeros(4)
+    )
 
 
 @pytest.mark.task("diff_drive_step")

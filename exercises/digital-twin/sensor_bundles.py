@@ -11,7 +11,7 @@ from course.grading import kit
 bundles = kit.companion("digital-twin", "bundles")
 scenes = kit.companion("digital-twin", "scenes")
 sensors = kit.companion("digital-twin", "sensor_probes")
-diagnosis, expect_clean = bundles.diagnosis, bundles.expect_clean
+expect_clean = bundles.expect_clean
 
 
 def angles_between_counts(rng, n, most, per_turn):
@@ -45,13 +45,13 @@ def expect_counts(counts, theta, counts_per_rev):
         input=given,
         message="The counts are neither the angles rounded down to whole counts nor rounded to nearest.",
         help="counts = theta * counts_per_rev / (2 pi), rounded the same way on both sides of zero.",
-        diagnose=lambda: sensors.of_encoder(values, theta, counts_per_rev),
+        diagnose=lambda: sensors.of_encoder(values, wanted),
     )
     kit.expect_true(
         whole,
         "The counts do not come as whole numbers.",
         input=given,
-        diagnose=diagnosis.named("COUNTS_AS_FLOATS"),
+        diagnose=sensors.named("COUNTS_AS_FLOATS"),
     )
 
 
@@ -61,8 +61,30 @@ def std(values):
         return float(np.std(values))
 
 
+#: Of noise and steps whose mean is 0, their mean as a share of their std: six times its scatter at the most.
+MEAN_WITHIN = 0.15
+
+
+def expect_no_mean(values, spread, quantity, diagnose, **finding):
+    """Noise, or the steps of a walk, (n,), of this std go neither way on the whole."""
+    with np.errstate(all="ignore"):
+        mean = float(np.mean(values))
+    kit.expect_close(
+        mean,
+        0.0,
+        abs=MEAN_WITHIN * spread,
+        source="the README's share of the std",
+        quantity=f"mean of {quantity}",
+        units="rad/s",
+        message="On the whole, noise or steps go one way: their mean is not zero.",
+        help="A standard normal number is as often negative as positive; nothing is added to it.",
+        diagnose=diagnose,
+        **finding,
+    )
+
+
 def expect_std(values, expected, rel, source, message, diagnose, **finding):
-    """The std of a sample is the expected one."""
+    """The std of a sample is the expected one, and its mean is zero."""
     kit.expect_close(
         std(values),
         expected,
@@ -73,6 +95,8 @@ def expect_std(values, expected, rel, source, message, diagnose, **finding):
         diagnose=diagnose,
         **finding,
     )
+    shown = {key: finding[key] for key in ("input",) if key in finding}
+    expect_no_mean(values, expected, finding["quantity"].removeprefix("std of "), diagnose, **shown)
 
 
 def imu_pairs(submission, calls):
@@ -120,6 +144,8 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
             help="Independent steps add up: the variance grows with the time between two samples.",
             diagnose=lambda: sensors.of_imu(submission, bias_first=True),
         )
+    ask = lambda: sensors.of_imu(submission, bias_first=True)  # noqa: E731
+    expect_no_mean(np.diff(bias), walk * math.sqrt(dt), "the steps", ask, input={"bias0": bias0, "dt": dt})
 
 
 def expect_rate_kept(submission, true, dt, bias0, rng):

@@ -8,33 +8,23 @@ import numpy as np
 
 from course.grading import kit
 
-named = kit.companion("digital-twin", "diagnosis").named
-
-_TURN = 2 * math.pi
+named = kit.words("digital-twin")
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_encoder(counts, theta, counts_per_rev):
-    """The mistake behind these counts of these angles."""
-    exact = theta * counts_per_rev / _TURN
-    looks = (
-        ("TRUNCATES_TOWARD_ZERO", np.trunc(exact)),
-        ("ROUNDS_UP", np.ceil(exact)),
-        ("NOT_QUANTISED", exact),
-        ("TURNS_FORGOTTEN", np.floor(exact) % counts_per_rev),
-        ("TURNS_FORGOTTEN", np.rint(exact) % counts_per_rev),
-        ("TURNS_FORGOTTEN", np.fmod(np.floor(exact), counts_per_rev)),
-        ("RADIANS_AS_TURNS", np.floor(theta * counts_per_rev)),
-        ("RADIANS_AS_TURNS", np.rint(theta * counts_per_rev)),
-        ("DEGREES_FOR_RADIANS", np.floor(theta * counts_per_rev / 360)),
-        ("DEGREES_FOR_RADIANS", np.rint(theta * counts_per_rev / 360)),
-        ("RETURNS_ANGLE", np.floor(exact) * _TURN / counts_per_rev),
-        ("RETURNS_ANGLE", np.rint(exact) * _TURN / counts_per_rev),
-    )
-    for code, values in looks:
-        if np.allclose(counts, values, rtol=1e-9, atol=1e-9):
-            return named(code)
-    return None
+def of_encoder(counts, wanted):
+    """What counts (N,) have in common with the wanted ones: a factor, if each is off by the same."""
+    if not np.all(np.isfinite(counts)):
+        return None
+    if np.any(counts != np.rint(counts)):
+        return named("NOT_QUANTISED") if np.max(np.abs(counts - wanted)) <= 1.0 else None
+    far = np.abs(wanted) > 0.5 * np.max(np.abs(wanted))
+    ratios = counts[far] / wanted[far]
+    # Rounded to whole counts, a constant ratio scatters by a count in the far ones.
+    within = 2.0 / np.min(np.abs(wanted[far])) * max(1.0, abs(float(np.median(ratios))))
+    middle = float(np.median(ratios))
+    steady = np.all(np.abs(ratios - middle) <= within) and middle > 0 and abs(middle - 1) > within
+    return named("COUNTS_OFF_BY_FACTOR") if steady else None
 
 
 # -- gyroscope ------------------------------------------------------------------------------------------
@@ -64,27 +54,36 @@ def of_imu(submission, bias_first=False):
         for run in runs
     ]
     looks = [lambda: _of_white(pairs), lambda: _of_bias(pairs, ones)]
-    codes = (look() for look in (lambda: _swapped(pairs), *looks[:: -1 if bias_first else 1]))
-    code = next(filter(None, codes), None) or _of_both(pairs)
+    codes = (look() for look in looks[:: -1 if bias_first else 1])
+    code = _of_parts(pairs) or next(filter(None, codes), None) or _of_both(pairs)
     return named(code) if code else of_randomness(submission)
 
 
 _NAMES = ("measured", "bias")
 
 
-def _swapped(pairs):
-    rough = [float(np.std(np.diff(part))) for part in pairs[0]]
-    return "RETURNS_SWAPPED" if rough[1] > 0 and rough[0] < 1e-12 else None
+def _of_parts(pairs):
+    """Whether the two parts are what they are called: without a walk the bias is flat, the rate is not."""
+    measured, bias = pairs[0]
+    rough, flat = (float(np.std(np.diff(part))) for part in (bias, measured))
+    if not rough > 0:
+        return None
+    if flat < 1e-12:
+        return "RETURNS_SWAPPED"
+    return "BIAS_HOLDS_WHITE_NOISE" if np.allclose(measured - bias, np.mean(measured - bias)) else None
 
 
 def _of_white(pairs):
     """From two recordings without a walk."""
     noise = [measured - bias for measured, bias in pairs[:2]]
+    if all(np.ptp(part) < 1e-12 < abs(part[0]) for part in noise):
+        return "WHITE_NOISE_SHARED"
     if np.corrcoef(noise[0][1:], noise[0][:-1])[0, 1] > 0.5 if np.std(noise[0]) > 0 else False:
         return "WHITE_NOISE_ACCUMULATES"
     powers = {
         0.0: "WHITE_NOISE_NOT_SCALED_BY_SQRT_DT",
         0.5: "WHITE_NOISE_TIMES_SQRT_DT",
+        1.0: "WHITE_NOISE_TIMES_DT",
         -1.0: "WHITE_NOISE_OVER_DT",
     }
     return _of_power(noise, -0.5, powers, "WHITE_NOISE_MISSING", "WHITE_NOISE_FACTOR")
@@ -95,11 +94,13 @@ def _of_bias(pairs, true):
     biases = [bias for _, bias in pairs[2:4]]
     if np.std(np.diff(biases[0])) == 0:
         return "BIAS_CONSTANT"
-    ten = np.var(biases[0][10:] - biases[0][:-10]) / np.var(np.diff(biases[0]))
-    if ten < 2:
-        return "BIAS_NOT_RANDOM_WALK"
+    later = biases[0][_N // 2 :]  # what it does at first may have to do with where it starts
+    ten = np.var(later[10:] - later[:-10]) / np.var(np.diff(later))
+    if ten < 8:  # of a walk 10, to some hundredths
+        return "BIAS_NOT_RANDOM_WALK" if ten < 2 else "BIAS_PULLED_BACK"
     powers = {0.0: "BIAS_NOT_SCALED_BY_SQRT_DT", 1.0: "BIAS_TIMES_DT", -0.5: "BIAS_OVER_SQRT_DT"}
     code = _of_power([np.diff(bias) for bias in biases], 0.5, powers, "BIAS_CONSTANT", "BIAS_FACTOR")
+    code = code or _of_drift(biases)
     if code:
         return code
     if any(abs(bias[0] - 0.3) > 1e-12 for bias in biases):
@@ -110,6 +111,16 @@ def _of_bias(pairs, true):
         if np.allclose(measured, values, rtol=0, atol=1e-12):
             return name
     return None if np.allclose(measured, true + biases[0], rtol=0, atol=1e-9) else "BIAS_OUT_OF_STEP"
+
+
+def _of_drift(biases):
+    """Whether two walks from bias0 = 0.3 rad/s run off to one side, and by how much in each step."""
+    steps = [np.diff(bias) for bias in biases]
+    if not all(abs(np.mean(each)) > 0.15 * np.std(each) for each in steps):
+        return None
+    return (
+        "BIAS0_ADDED_EACH_STEP" if all(abs(np.mean(each) - 0.3) < 0.05 for each in steps) else "BIAS_DRIFTS"
+    )
 
 
 def _of_first(biases):
@@ -177,21 +188,33 @@ def _of_draws(draws):
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_density(found, cases):
     """The mistake behind noise densities found in recordings; found (n,), cases as of ``expect_fits``."""
-    stills, dts, right = [case[0] for case in cases], *np.array([case[1:3] for case in cases]).T
-    std, step = (np.array([np.std(f(still)) for still in stills]) for f in (np.asarray, np.diff))
+    right = np.array([case[2] for case in cases])
+    stills, dts = [case[0] for case in cases], np.array([case[1] for case in cases])
+    std = np.array([np.std(still) for still in stills])
     root = np.sqrt(dts)
+    # Each in proportion to the recordings' own numbers, which differ by more than the scatter allowed here.
     looks = (
-        ("DENSITY_NOT_SCALED_BY_SQRT_DT", step / math.sqrt(2)),
-        ("DENSITY_NOT_SCALED_BY_SQRT_DT", std),
-        ("DENSITY_NOT_SCALED_BY_SQRT_DT", step),
         ("DENSITY_NOT_SCALED_BY_SQRT_DT", right / root),
+        ("DENSITY_NOT_SCALED_BY_SQRT_DT", math.sqrt(2) * right / root),
+        ("DENSITY_NOT_SCALED_BY_SQRT_DT", std),
         ("DRIFT_COUNTED_AS_NOISE", std * root),
-        ("DENSITY_FROM_DIFFERENCES", step * root),
+        ("DENSITY_FROM_DIFFERENCES", math.sqrt(2) * right),
+        ("ROOT_FORGOTTEN", right**2),
     )
     for code, values in looks:
-        if np.all(np.abs(found - values) < 0.01 * values):
+        if _all_near(found, values, 0.08 if values is not std else 0.01):
             return named(code)
-    return named("DENSITY_FROM_DIFFERENCES") if _off_by(found / right, math.sqrt(2), 0.03) else None
+    walks = np.array([case[3] for case in cases if len(case) > 3])
+    if len(walks) == len(found) and _all_near(found, walks, 0.6) and not _all_near(found, right, 0.3):
+        return named("FIT_SWAPPED")
+    if not (np.all(np.isfinite(found)) and np.all(found >= 0)):
+        return None
+    return named("DENSITY_TOO_LARGE" if np.median(found / right) > 1 else "DENSITY_TOO_SMALL")
+
+
+def _all_near(found, values, rel):
+    """Whether each number is the value of its recording, and nothing else would be: values that differ."""
+    return bool(np.all(np.abs(found / values - 1) < rel))
 
 
 def _off_by(ratios, factor, rel):
@@ -202,15 +225,22 @@ def _off_by(ratios, factor, rel):
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_walk(found, cases):
     """The mistake behind random walks found in recordings; as ``of_density``."""
-    ratios = found / np.array([case[3] for case in cases])
+    right = np.array([case[3] for case in cases])
+    ratios = found / right
     steps = np.array([np.std(np.diff(still)) / math.sqrt(dt) for still, dt, *_ in cases])
     if any(_off_by(found / steps, factor, 0.1) for factor in (1.0, 1 / math.sqrt(2))):
         return named("NOISE_COUNTED_AS_DRIFT")
+    if not (np.all(np.isfinite(ratios)) and np.all(found >= 0)):
+        return None
+    if _off_by(found / right**2, 1.0, 0.5) and not _off_by(ratios, 1.0, 0.8):
+        return named("ROOT_FORGOTTEN")
+    with np.errstate(all="ignore"):
+        scatter = np.ptp(np.quantile(np.log(np.maximum(ratios, 1e-9)), (0.1, 0.9)))
+    if scatter > 1.5:  # those of right programs scatter by 0.1 to 0.6
+        return named("WALK_SCATTERS")
     # A median over eight recordings or more is known to some ten per cent.
     if _off_by(ratios, 1 / math.sqrt(3), 0.15):
         return named("WALK_WITHOUT_THREE")
-    if not np.all(np.isfinite(ratios)):
-        return None
     return named("WALK_TOO_LARGE" if np.median(ratios) > 1 else "WALK_TOO_SMALL")
 
 
@@ -233,35 +263,12 @@ _ROW = np.array([[[2.0, -1.0], [2.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]], [[3.5, -1
 _LONG = np.array([[[1.0, 0.5], [3.0, 0.5]]])  # parallel to a beam along x
 _ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
 
-#: A crooked room without a door: whichever way a beam goes, it hits, and each way another distance off.
+#: Four beams in a crooked room, and how far off its walls are along each.
 _CORNERS = np.array([[-2.0, -1.5], [3.0, -1.0], [2.5, 2.0], [-1.5, 1.2]])
 _ROOM = np.stack((_CORNERS, np.roll(_CORNERS, -1, axis=0)), axis=1)
-_FAN = np.linspace(-2.9, 2.7, 15)
 _X, _Y, _HEADING = 0.4, 0.3, 0.7
-
-
-def _seen(beams, start=1.0):
-    """Distances (B,) in the crooked room along directions in the world; start: -1 turns where walls begin."""
-    ax, ay = start * (_ROOM[:, 0] - (_X, _Y)).T
-    wx, wy = (_ROOM[:, 1] - _ROOM[:, 0]).T
-    dx, dy = np.cos(beams)[:, None], np.sin(beams)[:, None]
-    cross = dx * wy - dy * wx
-    along, share = (ax * wy - ay * wx) / cross, (ax * dy - ay * dx) / cross
-    hit = (along >= 0) & (share >= 0) & (share <= 1) & (along <= _REACH)
-    return np.min(np.where(hit, along, _REACH), axis=1)
-
-
-def _lidar_slips():
-    """(code, what the fan reads in the crooked room)."""
-    a, h = _FAN, _HEADING
-    yield "HEADING_IGNORED", _seen(a)
-    yield "HEADING_SUBTRACTED", _seen(a - h)
-    for f in (np.degrees, np.radians):
-        for beams in (f(a + h), f(a) + h, a + f(h)):
-            yield "BEAM_IN_DEGREES", _seen(beams)
-    yield "BEAM_SIN_COS_SWAPPED", _seen(np.pi / 2 - (a + h))
-    yield "WALL_VECTOR_REVERSED", _seen(a + h + np.pi)
-    yield "WALL_VECTOR_REVERSED", _seen(a + h, start=-1.0)
+_FAN = np.array([-2.9, -0.8, 0.5, 2.1])
+_READS = (2.080981412770427, 2.4360363400828278, 1.4891209215957006, 2.0579057845480433)
 
 
 def _at(beam, *distances):
@@ -297,34 +304,41 @@ def of_lidar(submission):
     A mistake is named where the readings are those that it gives, not only where they are wrong.
     """
     scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
-    calls = [((_X, _Y, heading), _ROOM, _FAN) for heading in (_HEADING, 0.0)]
+    beams = ((_HEADING, _FAN), (0.0, _FAN), (0.0, _FAN - _HEADING), (0.0, _FAN + _HEADING))
+    calls = [((_X, _Y, heading), _ROOM, fan) for heading, fan in beams]
     calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
     calls += [(_ORIGIN, _WALL + shift, np.array([0.05])) for shift in _SHIFTS]
     calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
     results = submission.call_each("lidar", calls)
-    turned, ahead = (kit.as_vector(result, len(_FAN), "ranges") for result in results[:2])
-    for code, readings in _lidar_slips():
-        if np.allclose(turned, readings, rtol=0, atol=1e-9):
-            return named(code)
-    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[2:-3]])
-    if len({float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-3:]}) == 1:
+    fans = [kit.as_vector(result, len(_FAN), "ranges") for result in results[: len(beams)]]
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[len(beams) : -3]])
+    shifted = {float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-3:]}
+    if len(shifted) == 1 and shifted != {_REACH}:
         return named("WALLS_NOT_READ")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
-    if np.all(right) and np.allclose(turned, _seen(_FAN + _HEADING), rtol=0, atol=1e-9):
+    if np.all(right) and np.allclose(fans[0], _READS, rtol=0, atol=1e-9):
         return of_lidar_noise(submission)
-    stuck = np.ptp(ahead) > 0.1 and np.allclose(turned, ahead, rtol=0, atol=1e-9)
-    return _of_scenes(readings, right, stuck)
+    return _of_scenes(readings, right, _turning(*fans))
 
 
-def _of_scenes(readings, right, stuck):
-    """From what was read in the scenes, and whether the beams of the room are ``stuck`` to the world."""
+def _turning(turned, ahead, less, more):
+    """What turning the robot does to its beams, if not to turn them along; fans as they were asked for."""
+    if np.ptp(ahead) < 0.1 or np.allclose(turned, more, rtol=0, atol=1e-9):
+        return None
+    if np.allclose(turned, ahead, rtol=0, atol=1e-9):
+        return "HEADING_IGNORED"
+    return "HEADING_SUBTRACTED" if np.allclose(turned, less, rtol=0, atol=1e-9) else None
+
+
+def _of_scenes(readings, right, turning):
+    """From what was read in the scenes, and what ``turning`` the robot does to the beams of the room."""
     plain, parallel, nothing = right[-3:]
     if not nothing:
         return named("NO_HIT_NOT_MAX")
     if not plain:
         return None  # beams go astray, and not in a way that is known: nothing else can be told from them
-    if stuck:
-        return named("HEADING_IGNORED")
+    if turning:
+        return named(turning)
     if np.all(right[:-3]) and not parallel:
         return named("PARALLEL_WALLS")
     seen = zip(_SCENES, readings, strict=False)

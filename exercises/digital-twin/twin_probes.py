@@ -8,7 +8,7 @@ import numpy as np
 
 from course.grading import kit
 
-named = kit.companion("digital-twin", "diagnosis").named
+named = kit.words("digital-twin")
 scenes = kit.companion("digital-twin", "scenes")
 
 
@@ -122,12 +122,17 @@ def _in_one_step(submission, late):
         (pushed, expected, t + 0.2),
         (warm, x - 0.4 * v, t - 0.4),
         (warm, soon, t + 0.1),
+        (warm, soon + _SURPRISE, t + 0.1),
     ]
     twins = submission.call_each("sync", calls)
     rows = states(twins)
-    (t0, x0, v0, b0), (_, ahead, _, b_ahead), _, (_, driven, v_driven, _), (t_late, x_late, _, _) = rows[:5]
-    kept = [kit.as_number(twin["drive"], "drive") for twin in twins[:2]] == [warm["drive"]] * 2
+    (t0, x0, v0, b0), (_, ahead, v_ahead, b_ahead), _, (_, driven, v_driven, _), (t_late, x_late, _, _) = (
+        rows[:5]
+    )
+    kept = [kit.as_number(twins[i]["drive"], "drive") for i in (1, 3)] == [warm["drive"], pushed["drive"]]
+    kept = kept and kit.as_number(twins[1]["sigma"], "sigma") == scenes.SIGMA
     moved = (ahead - x0) / _SURPRISE
+    gains = (v_ahead - v0) / _SURPRISE * 0.2, (rows[6, 2] - rows[5, 2]) / _SURPRISE * 0.1
     stuck = x0 - x < 0.75 * (expected - x)
     same_way_at_first = rows[5, 1] - x > 0.95 * (soon - x)
     tests = (
@@ -140,9 +145,12 @@ def _in_one_step(submission, late):
         ("BELIEVES_MEASUREMENT", abs(ahead - expected - _SURPRISE) < 1e-9),
         ("STEP_FIXED", stuck and same_way_at_first),
         ("NO_PREDICTION", stuck),
+        ("SPEED_DIFFERENTIATED", all(abs(gain - 1) < 0.05 for gain in gains)),
         ("DRIVE_NOT_USED", abs(v_driven - v0) < 0.05 and abs(driven - x0) < 1e-6),
-        ("LATE_USED_AS_CURRENT", late and x_late - x < -0.02 * abs(v)),
+        # As if it were new: by that share of the way back, or so, and not by twice as much.
+        ("LATE_USED_AS_CURRENT", late and 0.02 * abs(v) < x - x_late < 0.64 * max(moved, 0.1) * abs(v)),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
+        ("SPEED_NOT_CORRECTED", abs(v_ahead - v0) < 1e-9),
     )
     return next((code for code, seen in tests if seen), None)
 
@@ -177,8 +185,10 @@ def _learning(submission):
             return "SHARE_TOO_LARGE"
         if isinstance(memory, dict) and not memory:
             return "MEMORY_DROPPED"
-    if abs(np.mean(friction[-20:]) - 0.8) > 0.08:
-        return None  # it has not learned well at first
+    learned = float(np.mean(friction[-20:]))
+    if abs(learned - 0.8) > 0.08:  # it has not learned well at first
+        slow = "FRICTION_LIMITED" if np.ptp(friction[-20:]) < 1e-9 else "FRICTION_LEARNS_SLOWLY"
+        return slow if 0.505 < learned < 0.7 else None
     twins, _ = _run(submission, 0.5, ((0.0, 0.5), (30.0, 0.8)), 42.0)
     return "FORGETS_TO_DOUBT" if states(twins[-1:])[0, 3] < 0.72 else None
 
@@ -203,20 +213,26 @@ def of_command(submission):
         base | {"drive": 0.5},
         base | {"target": 3.0},
         base | {"speed": 0.75},
+        base | {"target": 0.1, "speed": 0.1},
+        base | {"friction": 2.0},
     ]
     calls = [
         (scenes.new_twin(case["friction"], case["drive"], speed=case["speed"]), case["target"])
         for case in tries
     ]
     values = [kit.as_number(value, "the drive") for value in submission.call_each("command", calls)]
-    first, slower, slick, back, driven, faster, behind = values
+    first, slower, slick, back, driven, faster, behind, slowest, sticky = values
     tests = (
-        ("BRAKES", first < 0),
+        ("BRAKES", first < 0 and slower < 0 and back > 0),
         ("ADDS_CURRENT_DRIVE", abs(driven - first) > 1e-9),
         ("USES_TWIN_SPEED", abs(faster - first) < 1e-9 and abs(slower - first) > 1e-9),
-        ("TARGET_IGNORED", abs(slower - first) < 1e-9),
-        ("FRICTION_IGNORED", abs(slick - first) < 1e-9),
-        ("DIVIDES_BY_FRICTION", slick > first),
+        (
+            "DRIVE_LIMITED",
+            abs(slowest - 0.08) < 1e-9 and max(abs(slower - first), abs(faster - first)) < 1e-9,
+        ),
+        ("TARGET_IGNORED", max(abs(slower - first), abs(slowest - first), abs(faster - first)) < 1e-9),
+        ("FRICTION_IGNORED", max(abs(slick - first), abs(sticky - first)) < 1e-9),
+        ("DIVIDES_BY_FRICTION", slick > first > sticky),
         ("BACKWARDS_NOT_DRIVEN", abs(back + first) > 1e-9),
         ("PUSHES_AWAY", behind < first - 1e-9),
     )

@@ -6,6 +6,7 @@ submission, and what came back, be it a report or a failure, is kept for the che
 
 from __future__ import annotations
 
+import itertools
 import weakref
 from dataclasses import dataclass, field
 from typing import Any
@@ -157,6 +158,18 @@ def _in_order(args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
         raise TypeError("the arguments are scene, q0, v0, h, n and force")
     values |= kwargs
     return [values[name] for name in _NAMES]
+
+
+def repeated(case: Case) -> int:
+    """How a run was made twice in a row, as to compare: 0 not at all, 1 with nothing that moves, 2 moving."""
+    pairs = itertools.pairwise(case.runs)
+    return max((2 if _moves(run) else 1 for run, again in pairs if run == again), default=0)
+
+
+def _moves(run: tuple[Any, ...]) -> bool:
+    scene, q0, v0, _, n, force = run
+    pulled = scene == "floor" or (scene == "spring" and any(q0))
+    return n > 0 and (any(v0) or any(force) or pulled)
 
 
 def _numbers(values: Any) -> tuple[float, ...]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from course.grading import kit
 
-diagnosis = kit.companion("engine-comparison", "diagnosis")
+named = kit.words("engine-comparison")
 
 TASK = "engine_facts"
 ENGINES = ("ode", "bullet", "physx", "mujoco")
@@ -63,7 +63,7 @@ def expect_complete(listed: list[dict[str, Any]]) -> None:
             missing = pairs.count(pair) == 0
             kit.fail(
                 "The list is not complete." if missing else "The list says something twice.",
-                diagnose=diagnosis.named("PAIR_MISSING" if missing else "PAIR_TWICE"),
+                diagnose=named("PAIR_MISSING" if missing else "PAIR_TWICE"),
                 expected="one entry",
                 actual={"/".join(pair): pairs.count(pair)},
             )
@@ -99,14 +99,14 @@ _STEP = "Give the step in seconds, or None where the engine has none of its own.
 def expect_sources(listed: list[dict[str, Any]]) -> None:
     """Every entry names an address and a day; all twenty pairs are there."""
     if len(by_pair(listed)) < len(ENGINES) * len(FIELDS):
-        kit.fail("The list is not complete.", diagnose=diagnosis.named("PAIR_MISSING"), actual=len(listed))
+        kit.fail("The list is not complete.", diagnose=named("PAIR_MISSING"), actual=len(listed))
     for entry in listed:
         about = {"engine": entry["engine"], "field": entry["field"]}
         source = kit.as_text(entry["source"], "a source")
         if not _ADDRESS.fullmatch(source.strip()) or any(host in source for host in _NO_SOURCE):
             kit.fail(
                 "A fact has no source that can be opened.",
-                diagnose=diagnosis.named("SOURCE_NOT_A_URL"),
+                diagnose=named("SOURCE_NOT_A_URL"),
                 input=about,
                 actual=source,
             )
@@ -114,7 +114,7 @@ def expect_sources(listed: list[dict[str, Any]]) -> None:
         if day is None or day.year < 2001:
             kit.fail(
                 "A fact does not say when it held.",
-                diagnose=diagnosis.named("NOT_A_DATE"),
+                diagnose=named("NOT_A_DATE"),
                 input=about,
                 actual=entry["as_of"],
             )
@@ -122,7 +122,7 @@ def expect_sources(listed: list[dict[str, Any]]) -> None:
         if day > datetime.datetime.now(tz=datetime.UTC).date() + datetime.timedelta(days=1):
             kit.fail(
                 "A fact says that it will hold some day.",
-                diagnose=diagnosis.named("DATE_AHEAD"),
+                diagnose=named("DATE_AHEAD"),
                 input=about,
                 actual=entry["as_of"],
             )

@@ -87,7 +87,17 @@ def test_excitation_obeys(submission):
 def test_excitation_shows(submission):
     """Twenty seconds of the excitation could measure every parameter of the public cart"""
     value = submission.call("design_excitation", 20.0, 3.0, np.random.default_rng(8))
-    judge.expect_shows(probes.command_of(value, 20.0, 3.0), [cart.PUBLIC])
+    u = probes.command_of(value, 20.0, 3.0)
+    judge.expect_shows(u, [cart.PUBLIC])
+    judge.expect_fitted(u, [cart.PUBLIC])
+
+
+@pytest.mark.task("design_excitation")
+@pytest.mark.points(0)
+def test_excitation_shorter_and_weaker(submission):
+    """Fifteen seconds at less force could measure every parameter too (no points here, three in the run)"""
+    value = submission.call("design_excitation", 15.35, 2.5, np.random.default_rng(9))
+    judge.expect_shows(probes.command_of(value, 15.35, 2.5), [cart.SHEET])
 
 
 @pytest.mark.task("identify")
@@ -109,8 +119,11 @@ def test_identify_intervals(submission):
     estimates = [probes.estimate_of(value) for value in values]
     full, weak = estimates[: len(carts)], estimates[len(carts) :]
     judge.expect_intervals(full, carts)
+    judge.expect_growth(
+        full, weak, carts
+    )  # widths that follow from nothing are told so before they are too wide
     judge.expect_honest_widths(full, recordings, carts)
-    judge.expect_growth(full, weak)
+    judge.expect_truth(full, carts, recordings, 1)
 
 
 @pytest.mark.task("tune")

@@ -84,12 +84,16 @@ def expect_shows(u, carts):
             input={"parameter": name},
             diagnose=lambda: probes.of_command(u),
         )
-    errors = np.max([bench.fit_errors(u, each) for each in carts], axis=0)
+
+
+def expect_fitted(u, carts):
+    """The README's fit, too, finds every parameter from what this command makes the carts do."""
+    errors = np.mean([bench.fit_errors(u, each) for each in carts], axis=0)
     for (name, limit), error in zip(GIVEN_FIT.items(), errors, strict=True):
         kit.expect_bounded(
             float(error),
             high=limit,
-            source="the README's; random full force leaves a tenth of it, a chirp four fifths",
+            source="the README's; sums of sines at random phases came to 0.97 of it in 85 classes",
             quantity=f"rms error of {name} in the given fit, as a share",
             message="From a recording with this excitation, the README's fit does not find every parameter.",
             input={"parameter": name},
@@ -97,10 +101,11 @@ def expect_shows(u, carts):
         )
 
 
-#: How far the README's fit may be off on a recording with the excitation (rms over draws of the noise, worst
-#: cart). A chirp reaches 20 % in Fc and a multisine 3 % in m and 5 % in the lag; one push of 2 s leaves 9 to
-#: 16 % in the lag, and a sine of 0.05 Hz 100 % and more.
-GIVEN_FIT = {"m": 0.06, "b": 0.25, "Fc": 0.25, "lag": 0.07}
+#: How far the README's fit may be off on recordings with the excitation: rms over draws of the noise, mean
+#: over the carts. In 85 classes sums of sines came to 4.6, 23, 13 and 7.3 %, a chirp to 19 % in Fc; one push
+#: of 2 s left 6.3 to 14 % in the lag (eleven pass), a sine of 0.05 Hz 88 % and more. The worst cart tells
+#: them apart less well: a good recording has one bad cart in twenty classes.
+GIVEN_FIT = {"m": 0.05, "b": 0.27, "Fc": 0.23, "lag": 0.075}
 
 
 def expect_kept(i, gap, seconds, carts, seed):
@@ -225,12 +230,12 @@ def expect_honest_widths(estimates, recordings, carts):
             source="the README's; correct solutions are 1 to 8 times as wide",
             quantity=f"mean half-width of {name} over the narrowest possible",
             message="The intervals are far wider than what the recordings hold.",
-            diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_WITHOUT_RECORDING"),
+            diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
             input={"parameter": name},
         )
 
 
-def expect_growth(full, weak):
+def expect_growth(full, weak, carts):
     """Intervals from short and weak recordings are wider than those from full ones of the same carts."""
     with np.errstate(all="ignore"):
         ratios = np.mean([_shares(each) for each in weak], axis=0) / np.mean(
@@ -243,7 +248,7 @@ def expect_growth(full, weak):
         source="the README's; those of correct solutions are 2.4 to 13 times as wide",
         quantity="half-widths from the weak recordings over those from the full ones, geometric mean",
         message="The intervals do not grow when the recording tells less.",
-        diagnose=named("INTERVAL_WITHOUT_RECORDING"),
+        diagnose=lambda: probes.of_values(full, carts) or named("INTERVAL_WITHOUT_RECORDING"),
         input={"weak recordings": "8 s at 1.2 N", "full ones": "20 s at 3 N"},
     )
 
@@ -251,6 +256,20 @@ def expect_growth(full, weak):
 #: How many times as wide as the narrowest possible intervals may be, and how many times as wide those of a
 #: weak recording have to be.
 WIDEST, WIDER = 12.0, 1.5
+
+
+def expect_truth(estimates, carts, recordings, most):
+    """Intervals hold the truth, taken twice as wide; ``most`` of the scored ones may miss it."""
+    missed, total = misses(estimates, carts)
+    kit.expect_bounded(
+        missed,
+        high=most,
+        source="the README's; tests/benchmarks/calibration/sim-to-real.md",
+        quantity="intervals that miss the truth when doubled",
+        message="Intervals twice as wide as those of identify miss the truth too often.",
+        diagnose=lambda: probes.of_misses(estimates, carts, recordings),
+        input={"intervals": total},
+    )
 
 
 def misses(estimates, carts):

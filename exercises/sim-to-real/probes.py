@@ -14,7 +14,7 @@ from course.grading import kit
 
 bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")
-named = kit.companion("sim-to-real", "diagnosis").named
+named = kit.words("sim-to-real")
 NAMES = cart.NAMES
 ALL = (*NAMES, "lag")
 
@@ -115,6 +115,8 @@ def of_command(u):
     u = np.asarray(u, dtype=float)
     if np.count_nonzero(np.diff(u)) <= 2:
         return named("EXCITATION_CONSTANT")
+    if np.mean(u == 0.0) > 0.6:
+        return named("EXCITATION_RESTS")
     if np.abs(u).max() < 2.5 * cart.SHEET["Fc"]:
         return named("EXCITATION_TOO_WEAK")
     power = np.abs(np.fft.rfft(u - u.mean())) ** 2
@@ -142,7 +144,7 @@ def of_values(estimates, truths, recordings=()):
                 return named(code)
     wrong = [bench.differentiated(u, y, truth) for (_, u, y), truth in zip(recordings, truths, strict=False)]
     for masses in zip(*wrong, strict=True):  # by either way to differentiate
-        if _alike(got["m"], np.array(masses), 0.1) and not _right(got, true, "m"):
+        if _alike(got["m"], np.array(masses), 0.04) and not _right(got, true, "m"):
             return named("NOISE_DIFFERENTIATED")
     return None
 
@@ -201,6 +203,18 @@ _LIKENESSES = (
         "TIME_FROM_SHEET",
         lambda got, true: len(got["tau"]) > 1 and any(_sheet(got, true, k) for k in ("tau", "latency")),
     ),
+    (
+        "PARAMETER_FIXED",
+        lambda got, true: len(got["m"]) > 1 and any(_fixed(got, true, k) for k in NAMES),
+    ),
+    (
+        "FORCE_SCALED",
+        lambda got, true: (
+            _right(got, true, "lag")
+            and not _alike(got["m"], true["m"], 0.1)
+            and all(_alike(got[k] / true[k], got["m"] / true["m"], 0.08) for k in ("b", "Fc"))
+        ),
+    ),
     ("LOCAL_MINIMUM", lambda got, true: np.median(np.abs(got["lag"] / true["lag"] - 1)) > 0.25),
     ("FRICTION_SIGN", lambda got, true: _share(got, true, "b") < -0.5 or _share(got, true, "Fc") < -0.5),
     (
@@ -225,6 +239,12 @@ _LIKENESSES = (
 def _sheet(got, true, name):
     """Whether a time is the data sheet's each time, to many digits, though the carts have others."""
     return bool(np.all(np.abs(got[name] / cart.SHEET[name] - 1) < 1e-6)) and bool(np.ptp(true[name]) > 0)
+
+
+def _fixed(got, true, name):
+    """Whether a parameter, not a missing one, is the same to many digits though the carts differ in it."""
+    steady = np.ptp(got[name]) <= 1e-9 * np.max(np.abs(got[name]))
+    return bool(steady and np.ptp(true[name]) > 0 and abs(_share(got, true, name)) > 0.3)
 
 
 def _right(got, true, name):
@@ -263,14 +283,22 @@ def of_gains(submission, estimate, box, gains, success):
     stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other) >= 3
     prompt = {**estimate, "latency": [0.001] * 3}
     looks = (
-        ("GAINS_HARD_CODED", lambda: all(same)),
-        ("SEARCH_ENDED_EARLY", lambda: stays and ended_early),
+        ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
+        ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
+        ("ESTIMATE_IGNORED", lambda: all(same[:3]) and not same[3]),
         ("GAINS_BY_FORMULA", lambda: same[2] and same[3] and not (same[0] or same[1])),
         ("DELAY_IGNORED", lambda: same[2] and _is_best(kp, kd, prompt, box)),
         ("RANDOMIZATION_IGNORED", lambda: same[3]),
         ("SEARCH_ENDED_EARLY", lambda: ended_early),
     )
     return next((named(code) for code, seen in looks if seen()), None)
+
+
+def _never_changes(submission, estimate, box, gains):
+    """Whether carts twenty times as heavy, or a fifth, get these gains too: no grid is so coarse."""
+    asked = [(_with(estimate, ("m", "b", "Fc"), factor), box) for factor in (20.0, 0.2)]
+    far = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", asked)])
+    return far is not None and all(pair == gains for pair in far)
 
 
 #: How a box is shifted to see whether it is read: a load, and everything later.

@@ -7,7 +7,7 @@ import math
 from course.grading import kit
 
 cart = kit.companion("sim-to-real", "cart")
-named = kit.companion("sim-to-real", "diagnosis").named
+named = kit.words("sim-to-real")
 
 #: Which parameters each source of the gap shows in.
 PARAMETERS_OF = {

@@ -2,7 +2,7 @@
 
 import gc
 import struct
-from course_worker.isolation import wire
+from course_worker.isolation.inside import wire
 
 worker = next(thing for thing in gc.get_objects() if type(thing).__name__ == "Worker")
 sock = worker._sock

@@ -4,7 +4,7 @@ import atexit
 import gc
 import weakref
 
-from course_worker.isolation import wire
+from course_worker.isolation.inside import wire
 
 
 def forge(*_):

@@ -1,6 +1,6 @@
 """Makes the codec beside it answer every question with True."""
 
-from course_worker.isolation import wire
+from course_worker.isolation.inside import wire
 
 original = wire.Codec.encode
 

@@ -2,7 +2,7 @@
 
 import threading
 
-from course_worker.isolation import wire
+from course_worker.isolation.inside import wire
 
 
 def scale(values, factor):

@@ -26,7 +26,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 from local_submission import LocalSubmission  # noqa: E402
 
-from course.grading.kit import CheckFailed, Finding, StudentFailure, finding_of  # noqa: E402
+from course.grading.kit import CheckFailed, Finding, StudentFailure  # noqa: E402
+from course.scoring.failures import finding_of  # noqa: E402
 
 
 @dataclass

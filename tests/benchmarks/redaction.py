@@ -108,7 +108,7 @@ def trial(numbers: int, level: str | None = None) -> dict[str, tuple[set[str], s
         with GradingSession(exercise, catalog, scope="full", terms=terms) as session:
             for name, (arrived, noted) in found.items():
                 handed_in = Submission({exercise.module: program(SENDERS[name])})
-                verdict = session.grade(handed_in, only="draw_seeded")
+                verdict = session.grade(handed_in, only=["draw_seeded"])
                 assert verdict.state == "graded", verdict.error
                 arrived.add(shown(verdict))
                 noted.add(known(verdict, timed=name.startswith("time")))

@@ -91,7 +91,7 @@ class Arena:
 
     def grade(self, source: str | bytes, only: str = "") -> Verdict:
         raw = source if isinstance(source, bytes) else source.encode()
-        return self.session.grade(Submission({self.module: raw}), only=only or None)
+        return self.session.grade(Submission({self.module: raw}), only=[only] if only else ())
 
 
 class Listener:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -16,9 +13,9 @@ from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.catalog.markdown import read_blocks
+from course.cli.frame.app import run
 from course.figures.registry import figure_ids
 
-ROOT = Path(__file__).resolve().parents[2]
 CATALOG = Catalog(content())
 LESSONS = CATALOG.lesson_ids()
 
@@ -50,24 +47,34 @@ def test_every_cell_prints_what_is_recorded_and_every_number_is_what_its_code_gi
 
 
 @pytest.mark.parametrize("lesson_id", LESSONS)
-def test_every_command_to_try_works_in_a_fresh_workspace(lesson_id: str, tmp_path: Path) -> None:
+def test_every_source_has_its_address(lesson_id: str) -> None:
+    (sources,) = [block for block in blocks_of(lesson_id) if isinstance(block, b.Sources)]
+    for item in sources.items:
+        words = "".join(inline.text for inline in item if isinstance(inline, b.Text))
+        links = [inline.target for inline in item if isinstance(inline, b.Link)]
+        # What was measured for the course is found in the course.
+        assert any(link.startswith("https://") for link in links) or "measured for this course" in words, (
+            words
+        )
+
+
+@pytest.mark.parametrize("lesson_id", LESSONS)
+def test_every_command_to_try_works_in_a_fresh_workspace(
+    lesson_id: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In this process: starting one for each command would cost more than most of them do."""
     lists = [block for block in b.walk_blocks(blocks_of(lesson_id)) if isinstance(block, b.CommandList)]
     commands = [command.command for block in lists for command in block.commands]
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
     for command in ["course init .", *commands]:
         program, *words = shlex.split(command)
         assert program == "course"
-        done = subprocess.run(
-            [sys.executable, "-m", "course", *words],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            timeout=600,
-            check=False,
-            env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"},
-        )
+        code = run(words)
+        said = capsys.readouterr()
         # 1 is what a check of an unfinished exercise ends with; everything else is a command that fails.
-        assert done.returncode in (0, 1), (command, done.stdout, done.stderr)
-        assert "Traceback" not in done.stderr
+        assert code in (0, 1), (command, said.out, said.err)
+        assert "Traceback" not in said.err
 
 
 def test_every_figure_is_shown_in_some_lesson_or_by_a_simulation() -> None:

@@ -122,10 +122,12 @@ def test_nothing_of_the_instructors_is_inside(kind: str, request: pytest.Fixture
 
 def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel: Path) -> None:
     """Moved or renamed, a hidden file would still be found by what it says."""
-    hidden = [*ROOT.glob("solutions/*/*.py"), *ROOT.glob("tests/graders/*/*.py")]
+    hidden = [*ROOT.glob("tests/graders/*/*.py")]
+    for folder in ("*", "warm-ups/*", "warm-ups/*/accepted"):
+        hidden += ROOT.glob(f"solutions/{folder}/*.py")
     assert hidden
     # What a stub gives is in the solution as well, and no secret.
-    given = {line for path in ROOT.glob("exercises/*/*.py") for line in path.read_text().splitlines()}
+    given = {line for path in ROOT.glob("exercises/**/*.py") for line in path.read_text().splitlines()}
     marks = {
         path: max(set(path.read_text(encoding="utf-8").splitlines()) - given, key=len) for path in hidden
     }
@@ -143,6 +145,15 @@ def test_the_wheel_has_everything_a_student_needs(wheel: Path) -> None:
     assert _student_files("course") <= names
     for needed in ("exercise.toml", "README.md", "checks.py", "hints.toml", "integrators.py"):
         assert f"course/content/exercises/integrators/{needed}" in names
+    for needed in (
+        "exercise.toml",
+        "README.md",
+        "checks.py",
+        "fall_time.py",
+        "diagnoses.toml",
+        "hypotheses.json",
+    ):
+        assert f"course/content/exercises/warm-ups/fall-time/{needed}" in names
     assert "course/lessons/syllabus.toml" in names
 
 

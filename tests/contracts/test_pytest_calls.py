@@ -1,4 +1,4 @@
-"""What course/scoring/collected.py needs of pytest's insides still holds for the pytest installed here.
+"""What scoring/checks/collected.py needs of pytest's insides still holds for the pytest installed here.
 
 Checks are collected once and run again for every submission; that takes calls which pytest does not promise.
 Each test names one thing that must go on being true. When a new major of pytest breaks one, it is repaired in
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from course.errors import ContentError
-from course.scoring.collected import CollectedChecks
+from course.scoring.checks.collected import CollectedChecks
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding, Visibility
 

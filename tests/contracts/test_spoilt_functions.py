@@ -183,7 +183,7 @@ def verdicts(session: GradingSession, task: str, plan: tuple[str, str, str]) -> 
     source = spoilt(solution_path(CATALOG, session.exercise).read_text("utf-8"), task, *plan)
     for check in session.checks:
         if check.task == task:
-            yield session.grade(Submission({session.exercise.module: source.encode()}), only=check.id)
+            yield session.grade(Submission({session.exercise.module: source.encode()}), only=[check.id])
 
 
 def cases() -> Iterator[Any]:
@@ -194,6 +194,10 @@ def cases() -> Iterator[Any]:
         some = every[number :: len(tasks)]
         yield pytest.param(exercise, task, some, id=f"{exercise.id}-{task}-some")
         yield pytest.param(exercise, task, every, id=f"{exercise.id}-{task}-all", marks=pytest.mark.soak)
+    for warm_up in CATALOG.warm_ups():
+        for one in warm_up.task:
+            name = f"warm-up-{warm_up.id}-{one.id}-all"
+            yield pytest.param(warm_up, one.id, every, id=name, marks=pytest.mark.soak)
 
 
 @pytest.mark.parametrize(("exercise", "task", "chosen"), list(cases()))

@@ -48,9 +48,9 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     [
         ("catalog/locate.py", "import course.cli.frame.console", "Floors: imports go down only BROKEN"),
         ("physics/systems.py", "import course.scoring.verdict", "Floors: imports go down only BROKEN"),
-        ("catalog/pack.py", "import course.isolation.wire", "Floors: imports go down only BROKEN"),
+        ("catalog/pack.py", "import course.isolation.inside.wire", "Floors: imports go down only BROKEN"),
         ("authoring/report.py", "import typer", "Only the command line knows typer BROKEN"),
-        ("isolation/worker.py", "import course.errors", "imports nothing of the course BROKEN"),
+        ("isolation/inside/worker.py", "import course.errors", "imports nothing of the course BROKEN"),
     ],
 )
 def test_a_planted_violation_is_caught(copy: Path, module: str, planted: str, contract: str) -> None:

@@ -7,7 +7,7 @@ import os
 import time
 from pathlib import Path
 
-__all__ = ["below", "left_running"]
+__all__ = ["below", "left_running", "stored"]
 
 
 def below(pid: int) -> dict[int, tuple[int, str]]:
@@ -45,3 +45,13 @@ def left_running(marker: object, patience_s: float = 30.0) -> list[str]:
         if not left or time.monotonic() > deadline:
             return left
         time.sleep(0.2)
+
+
+def stored(folder: Path) -> int:
+    """Bytes on disk of all files below a folder, while others write and delete there."""
+    total = 0
+    for path, _, names in os.walk(folder):
+        for name in names:
+            with contextlib.suppress(OSError):
+                total += Path(path, name).lstat().st_blocks * 512
+    return total

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -189,6 +190,37 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
     assert again.returncode == 0, again.stderr
     assert again.stdout.count(f"/{students} student") == students - done
     assert len(scores(out)) == students
+
+
+@pytest.mark.parametrize("kill_at", [-1, 3], ids=["undisturbed", "a worker killed"])
+def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(
+    tmp_path: Path, catalog: Catalog, monkeypatch: pytest.MonkeyPatch, kill_at: int
+) -> None:
+    """Workers that start late, or again, judge by the snapshot too."""
+    from course.grading.cluster.connect import local_cluster
+
+    shutil.copytree(MINI, tmp_path / "content")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "content"))
+    course = Catalog()
+    make_class(tmp_path / "class", 60)
+    version = grader_version(course.exercise("doubling"), course)
+    checks = tmp_path / "content" / "graders" / "doubling" / "checks.py"
+    seen: list[str] = []
+
+    def report(item: Effective, *_: object) -> None:
+        seen.append(item.student)
+        if len(seen) == 1:
+            checks.write_text(checks.read_text().replace("-34.5,", "-35.5,"))
+        if len(seen) == kill_at:
+            os.kill(dask_workers(os.getpid())[0], signal.SIGKILL)
+
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
+    with local_cluster(2, course) as grade:
+        grade_class(tmp_path / "class", tmp_path / "out", course, options, report, grade=grade)
+    with Gradebook(tmp_path / "out" / "gradebook.sqlite") as book:
+        assert {result.key.grader_version for result in book.results()} == {version}
+        assert {result.verdict.score for result in book.results()} == {10.0, 6.0}
+    assert grader_version(course.exercise("doubling"), course) != version
 
 
 @contextlib.contextmanager

@@ -203,40 +203,73 @@ def test_a_save_is_answered_within_a_quarter_second_of_the_checks_own_time(cours
     assert sorted(took)[2] - checks < 0.25
 
 
-def test_the_demonstration_fails_a_stub_passes_an_example_and_leaves_nothing(course, tmp_path):
+def test_the_demonstration_names_a_mistake_mends_it_and_leaves_nothing(course, tmp_path):
     empty = tmp_path / "empty"
     empty.mkdir()
     ran = course("demo", cwd=empty)
     assert ran.returncode == 0
-    assert ran.stdout.index("0 of 2 public checks pass") < ran.stdout.index("All 5 public checks pass")
+    said = [
+        "v_next = v - h * rate**2 * x",
+        "diagnosis: EULER_IS_SEMI_IMPLICIT",
+        "0 of 2 public checks pass",
+        "- x_next = x + h * v_next",
+        "+ x_next = x + h * v",
+        "All 2 public checks pass",
+        "Next: course init",
+    ]
+    places = [ran.stdout.index(words) for words in said]
+    assert places == sorted(places)
     assert list(empty.iterdir()) == []
-    body = json.loads(course("demo", "--json", cwd=empty).stdout)
-    assert (body["stub"]["ok"], body["worked"]["ok"], body["exit_code"]) == (False, True, 0)
+
+
+def test_the_demonstration_measures_what_theory_says_of_both_methods(course, tmp_path):
+    body = json.loads(course("demo", "--json", cwd=tmp_path).stdout)
+    assert (body["before"]["ok"], body["after"]["ok"], body["exit_code"]) == (False, True, 0)
+    assert len(body["change"]) == 2, "one line"
+    rate_h = 2.0 * body["step_size"]
+    # Explicit Euler multiplies the energy by 1 + (rate h)^2; semi-implicit Euler keeps it within rate h / 2.
+    assert body["energy_after"] == pytest.approx([1.0, (1.0 + rate_h**2) ** body["steps"]], rel=1e-9)
+    low, high = body["energy_before"]
+    assert 1.0 - rate_h < low < 1.0 < high < 1.0 + rate_h
+
+
+def test_no_task_has_the_signature_of_the_worked_example():
+    """What `course demo` ships would answer it."""
+    import ast
+
+    from course.catalog.load import Catalog
+    from course.cli.work.demo import worked_example
+
+    def signatures(exercise):
+        tree = ast.parse(exercise.stub_path.read_text(encoding="utf-8"))
+        return {
+            (node.name, tuple(a.arg for a in node.args.args))
+            for node in tree.body
+            if isinstance(node, ast.FunctionDef)
+        }
+
+    catalog = Catalog()
+    ((name, parameters),) = signatures(worked_example(catalog))
+    exercises = [*catalog.exercises(), *getattr(catalog, "warm_ups", tuple)()]
+    taken = set().union(*(signatures(exercise) for exercise in exercises))
+    assert name not in {known for known, _ in taken}
+    assert parameters not in {known for _, known in taken}
 
 
 @pytest.mark.parametrize(
-    ("what", "instead", "check"),
+    ("what", "instead", "failed", "diagnosis"),
     [
-        ("math.sqrt(2 * height / g)", "math.sqrt(height / g)", "fall_time_value"),
-        ("math.sqrt(2 * height / g)", "2 * height / g", "fall_time_value"),
-        ("math.sqrt(2 * height / g)", "1.4278431229270645 * height / 10", "fall_time_grows_with_the_root"),
-        (
-            "if height < 0 or g <= 0:",
-            "if height < 0:\n        return 0.0\n    if g <= 0:",
-            "fall_time_refuses_nonsense",
-        ),
-        ("(v[i] + v[i + 1]) / 2", "v[i]", "drop_follows_the_parabola"),
-        ("- g * h", "- g", "drop_follows_the_parabola"),
-        ("np.arange(n + 1)", "np.arange(1, n + 2)", "drop_samples"),
-        ("z = np.empty(n + 1)", "z = np.empty(n + 2)", "drop_samples"),
+        ("x + h * v\n", "x + h * v_next\n", "first_step", "EULER_IS_SEMI_IMPLICIT"),
+        ("x + h * v\n", "x + h * v + h * v_next\n", "first_step", None),
+        ("v - h * rate**2 * x", "v - h * rate * x", "energy_grows", None),
+        ("v - h * rate**2 * x", "v + h * rate**2 * x", "energy_grows", None),
     ],
 )
-def test_each_check_of_the_worked_example_can_fail(worked, what, instead, check):
+def test_each_check_of_the_worked_example_can_fail(worked, what, instead, failed, diagnosis):
     session, right = worked
     assert what in right
     verdict = session(right.replace(what, instead))
-    failed = [result.id for result in verdict.checks if result.status == "fail"]
-    assert failed == [check]
+    assert [(c.id, c.diagnosis) for c in verdict.checks if c.status == "fail"] == [(failed, diagnosis)]
 
 
 class _watch:  # noqa: N801 - a context manager, used like a function

@@ -7,7 +7,6 @@ expect for their fixed inputs. The audit refuses a file that is older than what 
 
 from __future__ import annotations
 
-import copy
 import hashlib
 import math
 from dataclasses import asdict, is_dataclass
@@ -16,10 +15,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from course.authoring.exercises.mutants import mutant_path
+from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import accepted_files, compose, solution_path, solutions_folder
 from course.grading import kit
-from course.scoring.explain.fingerprint import fingerprint, in_range
+from course.scoring.checks.companions import words
 from course.scoring.explain.table import FILE, Row, Table, is_right, write_table
+from course.scoring.explain.words import FILE as WORDS
+from course.scoring.explaining import answers, asked, tasks_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -41,8 +43,11 @@ _MOST_PAIRS = 260
 
 
 def build(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write the table of an exercise; None if it has no hypotheses."""
-    if not (solutions_folder(catalog, exercise) / "hypotheses.py").is_file():
+    """Write the table of an exercise; None if its checks speak for themselves.
+
+    Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``; a warm-up has none.
+    """
+    if not exercise.readme_path.with_name(WORDS).is_file():
         return None
     path = exercise.readme_path.with_name(FILE)
     write_table(path, table_of(catalog, exercise))
@@ -67,24 +72,25 @@ def table_of(catalog: Catalog, exercise: Exercise) -> Table:
     """The table of an exercise, computed anew."""
     questions = kit.companion(exercise.id, "questions")
     within: dict[str, float] = getattr(questions, "WITHIN", {})
-    asked = {task: _Asked(args, within.get(task, 0.0)) for task, args in questions.QUESTIONS.items()}
-    right = {
-        task: tuple(sorted({ask.sums(fn) for fn in _right(catalog, exercise, task)}))
-        for task, ask in asked.items()
-    }
+    tasks = sorted(tasks_asked(questions))
+    right: dict[str, set[tuple[float, ...]]] = {}
+    for task in tasks:
+        for function in _right(catalog, exercise, task):
+            for name, sums in _sums(questions, task, function).items():
+                right.setdefault(name, set()).add(sums)
     made = Table(
         made_from=digest(catalog, exercise),
         within=within,
-        right=right,
+        right={name: tuple(sorted(sums)) for name, sums in right.items()},
         answers=_plain(_expected(exercise)),
     )
-    rows: dict[str, dict[tuple[float, ...], dict[tuple[str, ...], Row]]] = {task: {} for task in asked}
+    rows: dict[str, dict[tuple[float, ...], dict[tuple[str, ...], Row]]] = {name: {} for name in right}
     for task, codes, function in hypotheses_of(catalog, exercise):
-        sums = asked[task].sums(function)
-        known = rows[task].setdefault(sums, {})
-        if not is_right(made, task, sums) and not any(len(other) < len(codes) for other in known):
-            known.setdefault(codes, Row(codes, sums))
-    made.rows.update({task: _kept(some) for task, some in rows.items()})
+        for name, sums in _sums(questions, task, function).items():
+            known = rows[name].setdefault(sums, {})
+            if not is_right(made, name, sums) and not any(len(other) < len(codes) for other in known):
+                known.setdefault(codes, Row(codes, sums))
+    made.rows.update({name: _kept(some) for name, some in rows.items()})
     return made
 
 
@@ -96,37 +102,31 @@ def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]]) -> tuple[Ro
     return (*single, *double[:: max(1, math.ceil(len(double) / _MOST_PAIRS))])
 
 
-class _Asked:
-    """The questions of one task."""
-
-    def __init__(self, questions: list[tuple[Any, ...]], within: float) -> None:
-        self._questions = questions
-        self._within = within
-
-    def sums(self, function: Callable[..., Any]) -> tuple[float, ...]:
-        answers = [_answer(function, args) for args in self._questions]
-        if not self._within:
-            return fingerprint(answers)
-        return tuple(float(f"{in_range(a):.5g}") if isinstance(a, int | float) else -1.0 for a in answers)
-
-
-def _answer(function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
-    try:
-        with np.errstate(all="ignore"):
-            return function(*copy.deepcopy(args))
-    except Exception as error:  # noqa: BLE001 - a wrong program may raise anything
-        return {"raised": type(error).__name__}
+def _sums(questions: ModuleType, task: str, function: Callable[..., Any]) -> dict[str, tuple[float, ...]]:
+    """What a function answers to the questions of its task, by name."""
+    local: Any = LocalSubmission("", replaced={task: function})
+    within = getattr(questions, "WITHIN", {}).get(task)
+    found = asked(questions, task, lambda calls: answers(local, task, calls), within)
+    if within is None:
+        return found
+    return {name: tuple(float(f"{number:.5g}") for number in numbers) for name, numbers in found.items()}
 
 
 def hypotheses_of(
     catalog: Catalog, exercise: Exercise
 ) -> Iterator[tuple[str, tuple[str, ...], Callable[..., Any]]]:
-    """Task, codes and function of every known wrong program: the mutants, then ``hypotheses.py``."""
+    """Task, codes and function of every known wrong program: the mutants, then ``hypotheses.py``.
+
+    Mutants whose diagnosis has no words of the exercise's own are left out: reading a value shows it.
+    """
     solution = solution_path(catalog, exercise)
-    for mutant in catalog.mutants(exercise):
+    told = words(exercise.id).entries
+    for mutant in (mutant for mutant in catalog.mutants(exercise) if mutant.diagnosis in told):
         module = _executed(compose(solution, mutant_path(catalog, exercise, mutant)))
         yield mutant.task, (mutant.diagnosis,), module[mutant.task]
-    reference: ModuleType | None = kit.reference(exercise.id, "hypotheses")
+    reference: ModuleType | None = None
+    if (solutions_folder(catalog, exercise) / "hypotheses.py").is_file():
+        reference = kit.reference(exercise.id, "hypotheses")
     if reference is not None:
         yield from reference.hypotheses()
 

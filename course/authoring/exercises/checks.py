@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from course.authoring.exercises.grading import declared_checks
 from course.authoring.exercises.source import DECIMAL, CheckSource, checks_in, parse, quoted_numbers
-from course.authoring.exercises.variants import instructors
-from course.catalog.models import Exercise
-from course.catalog.reading import read_document, read_text
+from course.authoring.exercises.variants import exercise_graders
+from course.catalog.reading import read_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,8 +17,9 @@ if TYPE_CHECKING:
 
     from course.authoring.report import Findings
     from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
 
-__all__ = ["audit_checks", "public_numbers"]
+__all__ = ["audit_checks", "declared", "public_numbers"]
 
 
 def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
@@ -28,12 +28,7 @@ def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tu
     Raises:
         ContentError: a file is missing or is not Python.
     """
-    public, hidden = exercise.checks_path, instructors(catalog)[1] / exercise.id / "checks.py"
-    checks = (
-        *checks_in(public, parse(public), hidden=False),
-        *checks_in(hidden, parse(hidden), hidden=True),
-    )
-    checks = _with_computed_marks(catalog, exercise, checks)
+    checks = declared(catalog, exercise)
     first: dict[str, CheckSource] = {}
     for check in checks:
         if check.id in first:
@@ -42,9 +37,21 @@ def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tu
         first.setdefault(check.id, check)
     for check in checks:
         _audit_check(exercise, check, first, findings)
-    _audit_words(exercise, hidden.parent, findings)
-    _audit_points(exercise, checks, findings)
+    _audit_words(exercise, exercise_graders(catalog, exercise), findings)
     return checks
+
+
+def declared(catalog: Catalog, exercise: Exercise) -> tuple[CheckSource, ...]:
+    """The checks of an exercise with their markers, public ones first.
+
+    Raises:
+        ContentError: a file is missing or is not Python.
+    """
+    public, hidden = exercise.checks_path, exercise_graders(catalog, exercise) / "checks.py"
+    checks = tuple(checks_in(public, parse(public), hidden=False))
+    if hidden.is_file() or not exercise.is_warm_up:
+        checks += tuple(checks_in(hidden, parse(hidden), hidden=True))
+    return _with_computed_marks(catalog, exercise, checks)
 
 
 def _with_computed_marks(
@@ -133,38 +140,6 @@ def public_numbers(exercise: Exercise) -> frozenset[str]:
     """Decimal numbers in the files that a student is given: naming them gives nothing away."""
     files = [path for path in exercise.stub_path.parent.iterdir() if path.suffix in {".py", ".md", ".toml"}]
     return frozenset(match[0] for path in files for match in DECIMAL.finditer(read_text(path)))
-
-
-def _audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
-    """The declaration and the markers add up to the same."""
-    path = exercise.checks_path.with_name("exercise.toml")
-    lines = read_document(path, Exercise).lines
-
-    def wrong(where: tuple[str | int, ...], message: str, fix: str) -> None:
-        findings.add(path, lines.line(where), "points", message, fix)
-
-    for index, task in enumerate(exercise.task):
-        total = sum(check.points or 0.0 for check in checks if check.task == task.id)
-        if not math.isclose(total, task.points):
-            wrong(
-                ("task", index, "points"),
-                f"task {task.id} has {task.points:g} points, and its checks {total:g}.",
-                f"Write {total:g}, or change the checks' points.",
-            )
-    hidden = [check for check in checks if check.hidden]
-    if len(hidden) != exercise.hidden_checks:
-        wrong(
-            ("hidden_checks",),
-            f"`hidden_checks` is {exercise.hidden_checks}, and there are {len(hidden)}.",
-            f"Write {len(hidden)}.",
-        )
-    points = sum(check.points or 0.0 for check in hidden)
-    if not math.isclose(points, exercise.hidden_points, abs_tol=1e-9):
-        wrong(
-            ("hidden_points",),
-            f"`hidden_points` is {exercise.hidden_points:g}, and the hidden checks have {points:g}.",
-            f"Write {points:g}.",
-        )
 
 
 def _wrong(findings: Findings, check: CheckSource, message: str, fix: str) -> None:

@@ -16,7 +16,7 @@ import msgspec
 from course.authoring.exercises.build import digest, hypotheses_of
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import exercise_graders, solution_path, solutions_folder
-from course.scoring.companions import words
+from course.scoring.checks.companions import words
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import read_table
 from course.scoring.session import GradingSession, Scope, Submission
@@ -24,7 +24,7 @@ from course.scoring.terms import Terms
 from course.scoring.verdict import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from course.authoring.report import Progress
@@ -37,6 +37,7 @@ __all__ = [
     "Tally",
     "Told",
     "confusion_of",
+    "fate_of",
     "made_from",
     "read_confusion",
     "tally",
@@ -117,7 +118,7 @@ def _tried(
     exercise: Exercise,
     scope: Scope,
     chosen: list[tuple[str, tuple[str, ...], Callable[..., Any]]],
-) -> Any:
+) -> Iterator[tuple[str, tuple[str, ...], str]]:
     source = solution_path(catalog, exercise).read_text(encoding="utf-8")
     own = words(exercise.id)
     with _Rehearsal(exercise, catalog, scope=scope, terms=Terms(timeout=60.0)) as session:
@@ -167,26 +168,30 @@ class Tally:
         )
 
 
-def tally(exercise: Exercise, rows: tuple[Told, ...]) -> Tally:
+def tally(fate: Callable[[Told], str], rows: tuple[Told, ...]) -> Tally:
     """How the programs of these rows fare."""
+    return sum((Tally(**{fate(row): row.count}) for row in rows), Tally())
+
+
+def fate_of(exercise: Exercise) -> Callable[[Told], str]:
+    """Tells of a row under which word of ``Tally`` its programs are counted."""
     own, names = words(exercise.id), _names(exercise)
-    total = Tally()
-    for row in rows:
+
+    def fate(row: Told) -> str:
         if row.said == "survives":
-            total += Tally(survived=row.count)
-        elif row.said in row.codes or any((row.task, code, row.said) in names for code in row.codes):
-            total += Tally(named=row.count)
-        elif not row.said or own.kind(row.said) != "cause":
-            total += Tally(general=row.count)
-        else:
-            total += Tally(otherwise=row.count)
-    return total
+            return "survived"
+        if row.said in row.codes or any((row.task, code, row.said) in names for code in row.codes):
+            return "named"
+        return "general" if not row.said or own.kind(row.said) != "cause" else "otherwise"
+
+    return fate
 
 
 def _names(exercise: Exercise) -> set[tuple[str, str, str]]:
     """(task, code, code) of programs with one mistake that answer every question alike."""
     found = set()
-    for task, rows in read_table(exercise.readme_path.with_name(TABLE)).rows.items():
+    for name, rows in read_table(exercise.readme_path.with_name(TABLE)).rows.items():
+        task = name.partition(".")[0]  # parts of a task are "task.part"
         same: dict[tuple[float, ...], set[str]] = {}
         for row in rows:
             if len(row.codes) == 1:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["audit_diagnoses"]
 
-_CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)+")
+_CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
@@ -47,7 +47,9 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
             f"Run `course author build {exercise.id}`.",
         )
     kept = read_confusion(catalog, exercise)
-    if kept is None or kept.made_from != made_from(catalog, exercise):
+    fresh = kept is not None and kept.made_from == made_from(catalog, exercise)
+    # A warm-up's wrong programs are its mutants, each of which is graded.
+    if not fresh and not exercise.is_warm_up:
         findings.add(
             solutions_folder(catalog, exercise) / CONFUSION,
             None,

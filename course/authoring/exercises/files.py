@@ -6,18 +6,20 @@ What only a grading run can show is in ``course.authoring.exercises.proofs``.
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import TYPE_CHECKING
 
 from course.authoring.exercises.checks import audit_checks
+from course.authoring.exercises.points import audit_points
 from course.authoring.exercises.source import CheckSource, foreign_imports, parse, signatures
 from course.authoring.exercises.variants import instructors, solution_path, solutions_folder
 from course.catalog.models import Exercise
 from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
+from course.reading.parts import read_script
 
 if TYPE_CHECKING:
-    import ast
     from pathlib import Path
 
     from course.authoring.report import Findings
@@ -30,6 +32,7 @@ BLANK = re.compile(r"<<FILL IN:\s*(?P<what>.*?)>>")
 
 #: Mildest first; the last may nearly be the solution.
 LEAST_HINTS = 3
+LEAST_HINTS_OF_WARM_UP = 2
 
 _TEXT_SUFFIXES = {".py", ".toml", ".md"}
 
@@ -37,7 +40,8 @@ _TEXT_SUFFIXES = {".py", ".toml", ".md"}
 def exercise_folders(catalog: Catalog, exercise_id: str) -> tuple[Path, Path, Path]:
     """The folders an exercise is spread over: the student's part, solutions, hidden graders."""
     solutions, graders = instructors(catalog)
-    return catalog.content.exercises / exercise_id, solutions / exercise_id, graders / exercise_id
+    place = catalog.content.place_of(exercise_id)
+    return catalog.content.exercises / place, solutions / place, graders / place
 
 
 def find_blanks(catalog: Catalog, exercise_id: str, findings: Findings) -> bool:
@@ -67,12 +71,20 @@ def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tup
     """Everything that reading can show; returns the checks the exercise declares."""
     _audit_declaration(catalog, exercise, findings)
     _audit_hints(catalog, exercise, findings)
+    catalog.rubric(exercise)
     _audit_code(catalog, exercise, findings)
-    return audit_checks(catalog, exercise, findings)
+    checks = audit_checks(catalog, exercise, findings)
+    # What lacks a marker cannot be added up, and is reported.
+    if not findings.of("check"):
+        audit_points(exercise, checks, findings)
+    return checks
 
 
 def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    """The lesson exists and names the exercise; no other exercise claims the same place."""
+    """The lesson exists and names the exercise; no other exercise claims the same place.
+
+    A warm-up names its lesson and the section it follows instead, so that a lesson need not list them.
+    """
     path = exercise.readme_path.with_name("exercise.toml")
     lines = read_document(path, Exercise).lines
     if exercise.lesson not in catalog.lesson_ids():
@@ -83,6 +95,8 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
             f"there is no lesson {exercise.lesson}.",
             f"Known: {', '.join(catalog.lesson_ids())}.",
         )
+    elif exercise.is_warm_up:
+        _audit_section(catalog, exercise, path, lines.line(("after",)), findings)
     elif exercise.id not in catalog.lesson(exercise.lesson).exercises:
         findings.add(
             path,
@@ -91,35 +105,60 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
             f"lesson {exercise.lesson} does not name this exercise.",
             f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.',
         )
-    for other in catalog.exercise_ids():
-        if other < exercise.id and _order_of(catalog, other) == exercise.order:
+    rivals = catalog.warm_up_ids() if exercise.is_warm_up else catalog.exercise_ids()
+    for other in rivals:
+        if other < exercise.id and _order_of(catalog, other) == _rank(exercise):
             findings.add(
                 path,
                 lines.line(("order",)),
                 "exercise",
-                f"exercise {other} has the order {exercise.order} too.",
+                f"{exercise.kind} {other} has the order {exercise.order} too.",
                 "Give each exercise a place of its own.",
             )
 
 
-def _order_of(catalog: Catalog, exercise_id: str) -> int | None:
+def _audit_section(
+    catalog: Catalog, exercise: Exercise, path: Path, line: int | None, findings: Findings
+) -> None:
+    """The section that a warm-up follows is one of its lesson."""
+    if not exercise.after:
+        return
+    headings = read_script(catalog.lesson(exercise.lesson)).sections
+    known = [section.slug for section in headings]
+    if exercise.after not in known:
+        findings.add(
+            path,
+            line,
+            "exercise",
+            f"lesson {exercise.lesson} has no section {exercise.after!r}.",
+            f"Known: {', '.join(known)}.",
+        )
+
+
+def _rank(exercise: Exercise) -> tuple[str, int]:
+    """Its place in lists: exercises are counted through, warm-ups by lesson."""
+    return (exercise.lesson if exercise.is_warm_up else "", exercise.order)
+
+
+def _order_of(catalog: Catalog, exercise_id: str) -> tuple[str, int] | None:
     try:
-        return catalog.exercise(exercise_id).order
+        return _rank(catalog.exercise(exercise_id))
     except ContentError:
         return None  # reported where that exercise is audited
 
 
 def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     document = catalog.hints_document(exercise)
+    least = LEAST_HINTS_OF_WARM_UP if exercise.is_warm_up else LEAST_HINTS
     for task in exercise.task:
         hints = document.value.of(task.id)
-        if len(hints) < LEAST_HINTS:
+        if len(hints) < least:
             index = next((i for i, entry in enumerate(document.value.task) if entry.id == task.id), None)
             findings.add(
                 exercise.hints_path,
                 document.lines.line(("task", index, "hints")) if index is not None else None,
                 "hints",
-                f"task {task.id} has {len(hints)} hints, and needs {LEAST_HINTS}.",
+                f"task {task.id} has {len(hints)} hints, and needs {least}.",
                 "Add hints, mildest first.",
             )
 
@@ -138,6 +177,15 @@ def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> Non
                 "stub",
                 f"the stub has no function {task.id}, and a task is called so.",
                 "Add the function, or correct the id of the task.",
+            )
+    for node in stub.body:
+        if isinstance(node, ast.FunctionDef) and not ast.get_docstring(node):
+            findings.add(
+                exercise.stub_path,
+                node.lineno,
+                "stub",
+                f"{node.name} has no docstring.",
+                "Say there what it gives, with shapes and units of arguments and result.",
             )
     for name, signature in theirs.items():
         if name not in ours:

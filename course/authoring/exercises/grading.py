@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import ast
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
+
+import msgspec
+
+from course.authoring.exercises.variants import solution_path
+from course.catalog.load import Catalog
+from course.catalog.reading import read_text
+from course.grading.intake.students import Entry
+from course.grading.running.batch import grade_all
+from course.scoring.checks.collected import CollectedChecks
+from course.scoring.explain.calls import reached_from
+from course.scoring.session import GradingSession, Submission, check_files
+from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.scoring.collected import Check
+    from course.scoring.checks.collected import Check
     from course.scoring.verdict import Verdict
 
 __all__ = ["GradeSources", "declared_checks", "grade_sources"]
@@ -21,9 +34,11 @@ GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator
 
 
 def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
-    """Grade sources with all checks of their exercises, as a grading run would, on every processor.
+    """Grade sources as a grading run would, on every processor.
 
-    The seed is fixed: the same files get the same verdicts, whichever of them are done first.
+    The seed is fixed: the same files get the same verdicts, whichever of them are done first. Most sources
+    are the model solution with a few definitions after it. A check that asks for no function which these
+    change, directly or through others, ends as it does for the model, and is not run again.
 
     Args:
         sources: exercise and submission of each.
@@ -35,18 +50,91 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
         CourseError: nothing can be graded here.
     """
     from course.engines.machine import this_machine
-    from course.grading.intake.students import Entry
-    from course.grading.running.batch import grade_all
-    from course.scoring.session import Submission
-    from course.scoring.terms import Terms
 
+    catalog = Catalog()
+    models = {
+        exercise.id: _Model.graded(catalog, exercise)
+        for exercise in {exercise.id: exercise for exercise, _ in sources}.values()
+        if len(exercise.task) > 1  # where there is one function, every check asks for it
+    }
     entries = (
-        Entry(str(index), exercise, Submission(files={exercise.module: source}))
+        Entry(
+            str(index), exercise, Submission({exercise.module: source}),
+            only=models[exercise.id].concerned(source) if exercise.id in models else (),
+        )
         for index, (exercise, source) in enumerate(sources)
-    )
+    )  # fmt: skip
     graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
     for graded in grade_all(entries, Terms(), graders=graders):
-        yield int(graded.entry.student), graded.verdict
+        verdict = graded.verdict
+        if graded.entry.only and verdict.state == "graded":
+            verdict = models[graded.entry.exercise.id].completed(verdict, graded.entry.exercise)
+        yield int(graded.entry.student), verdict
+
+
+@dataclass(frozen=True, slots=True)
+class _Model:
+    """The model solution, its verdict, and which functions each check asked it for."""
+
+    source: str
+    verdict: Verdict
+    asked: dict[str, frozenset[str]]
+
+    @classmethod
+    def graded(cls, catalog: Catalog, exercise: Exercise) -> _Model:
+        source = read_text(solution_path(catalog, exercise))
+        with GradingSession(exercise, catalog, scope="full") as session:
+            verdict = session.grade(Submission({exercise.module: source.encode()}))
+            return cls(source.rstrip(), verdict, dict(session.asked))
+
+    def concerned(self, source: bytes) -> tuple[str, ...]:
+        """Ids of the checks that can see what a source changes; empty stands for all."""
+        changed = _changed(source.decode("utf-8", "replace"), self.source)
+        if not changed or self.verdict.state != "graded" or not self.verdict.passed:
+            return ()
+        reach = reached_from(source)
+        return tuple(
+            check.id
+            for check in self.verdict.checks
+            if any(changed & {name, *reach.get(name, ())} for name in self.asked.get(check.id) or changed)
+        )
+
+    def completed(self, verdict: Verdict, exercise: Exercise) -> Verdict:
+        """A verdict on the checks concerned, with the model's results for the others."""
+        own = {check.id: check for check in verdict.checks}
+        checks = tuple(own.get(check.id, check) for check in self.verdict.checks)
+        score, most = sum(check.points for check in checks), self.verdict.max_score
+        passed = score >= exercise.pass_mark * most - 1e-9  # as in GradingSession: rounding, not mercy
+        return msgspec.structs.replace(verdict, checks=checks, score=score, max_score=most, passed=passed)
+
+
+def _changed(source: str, model: str) -> frozenset[str]:
+    """The names that a source defines after the model solution; empty if it is not of that kind."""
+    if not source.startswith(model):
+        return frozenset()
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return frozenset()
+    names: set[str] = set()
+    for node in tree.body:
+        if node.lineno <= model.count("\n") + 1:
+            continue
+        match node:
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
+            case ast.Assign() | ast.AnnAssign():
+                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+                if not all(isinstance(target, ast.Name) for target in targets):
+                    return frozenset()  # it reaches into something
+                names |= {target.id for target in targets if isinstance(target, ast.Name)}
+            case ast.Import() | ast.ImportFrom():
+                names |= {(alias.asname or alias.name).partition(".")[0] for alias in node.names}
+            case ast.Expr(value=ast.Constant()):
+                pass
+            case _:
+                return frozenset()
+    return frozenset(names)
 
 
 def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
@@ -55,9 +143,6 @@ def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
     Raises:
         ContentError: a file cannot be imported, or a check lacks its marks.
     """
-    from course.scoring.collected import CollectedChecks
-    from course.scoring.session import check_files
-
     collected = CollectedChecks(check_files(exercise, catalog, "full"))
     try:
         return {check.id: check for check in collected.checks}

@@ -8,21 +8,25 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from course.authoring.exercises.confusion import read_confusion, tally
+from course.authoring.exercises.confusion import fate_of, read_confusion, tally
 from course.authoring.exercises.variants import accepted_files
+from course.progress.workspace import write_atomically
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from course.authoring.report import Findings
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["kill_table"]
+__all__ = ["audit_page", "kill_table", "write_page"]
+
+_PAGE = "docs/graders.md"
 
 _HEAD = """\
 # What the graders catch
 
-Written by `course author mutants --table docs/graders.md`; `course author check` proves every line of it:
+Written by `course author build`; `course author check` proves every line of it:
 each accepted solution gets full marks, and each wrong one loses points of its own task only, to the check
 named, with the diagnosis named.
 """
@@ -36,6 +40,33 @@ def kill_table(catalog: Catalog) -> str:
         MissingCapabilityError: this installation is a student's.
     """
     return "\n".join([_HEAD, *(_section(catalog, exercise) for exercise in catalog.exercises())])
+
+
+def audit_page(catalog: Catalog, findings: Findings) -> None:
+    """Report a page that is not of the exercises as they are."""
+    page = _page(catalog)
+    if page.is_file() and page.read_text(encoding="utf-8") != kill_table(catalog):
+        findings.add(
+            page,
+            None,
+            "stale",
+            "it is not of the exercises, variants and mutants there are now.",
+            "Run `course author build`.",
+        )
+
+
+def write_page(catalog: Catalog) -> Path | None:
+    """Write the page, where the course has one; None if it is up to date."""
+    page = _page(catalog)
+    text = kill_table(catalog)
+    if not page.is_file() or page.read_text(encoding="utf-8") == text:
+        return None
+    write_atomically(page, text.encode())
+    return page
+
+
+def _page(catalog: Catalog) -> Path:
+    return catalog.content.root / _PAGE
 
 
 def _section(catalog: Catalog, exercise: Exercise) -> str:
@@ -80,20 +111,21 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
         "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",
         "|---|---|---|---|---|---|---|",
     ]
+    fate = fate_of(exercise)
     wheres = {"public": "at home", "full": "in a run"}
     for task in exercise.task:
         for number in (1, 2):
             for scope, where in wheres.items():
                 rows = tuple(r for r in table.rows[scope] if r.task == task.id and len(r.codes) == number)
                 if rows:
-                    t = tally(exercise, rows)
+                    t = tally(fate, rows)
                     cells = (f"`{task.id}`", number, where, t.named, t.general, t.otherwise, t.survived)
                     lines.append(f"| {' | '.join(map(str, cells))} |")
     off = [
         f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} is told `{row.said}` ({where})"
         for scope, where in wheres.items()
         for row in table.rows[scope]
-        if tally(exercise, (row,)).otherwise
+        if fate(row) == "otherwise"
     ]
     return [*lines, "", *(["Told otherwise:", "", *off] if off else [])]
 

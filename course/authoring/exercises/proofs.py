@@ -27,9 +27,13 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise, Mutant
     from course.scoring.verdict import CheckResult, Verdict
 
-__all__ = ["Proof", "Prover", "plan"]
+__all__ = ["MUTANTS_EACH", "Proof", "Prover", "least_proofs", "plan"]
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
+#: Of an exercise of n functions: n + 1 unusual solutions that must pass, and this many wrong ones times n.
+MUTANTS_EACH = 4
+#: The same of a warm-up, however many functions it has.
+LEAST_OF_WARM_UP = 2, 3
 #: Smaller whole numbers are words: "two arguments", "order 4".
 _TELLING = 10
 
@@ -60,18 +64,45 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         Proof("solution", solution, read_text(solution).encode()),
     ]
     accepted = accepted_files(catalog, exercise)
-    if not accepted:
+    least, least_mutants = least_proofs(exercise)
+    if len(accepted) < least:
         findings.add(
             solution.parent / "accepted",
             None,
             "accepted",
-            "there is no accepted variant.",
+            f"accepted variants: {len(accepted)}, and an exercise of this size has at least {least}.",
             "Add correct but unusual code: checks that refuse it are too narrow.",
         )
     for path in accepted:
         _add(proofs, findings, "accepted", path, solution)
     _plan_mutants(catalog, exercise, findings, proofs, solution)
+    entries = catalog.mutant_document(exercise)
+    mutants = entries.value.mutant
+    if len(mutants) < least_mutants:
+        findings.add(
+            entries.path,
+            None,
+            "mutants",
+            f"mutants: {len(mutants)}, and an exercise of this size has at least {least_mutants}.",
+            "Add the mistakes that students make.",
+        )
+    if 2 * len({mutant.diagnosis for mutant in mutants}) <= len(exercise.task):
+        findings.add(
+            entries.path,
+            None,
+            "mutants",
+            "most tasks share their diagnoses, which tell no mistakes apart then.",
+            "Give each kind of mistake a code of its own.",
+        )
     return tuple(proofs)
+
+
+def least_proofs(exercise: Exercise) -> tuple[int, int]:
+    """How many accepted variants and how many mutants an exercise of this size has at least."""
+    functions = len(exercise.task)
+    if exercise.is_warm_up:
+        return LEAST_OF_WARM_UP
+    return functions + 1, functions * MUTANTS_EACH
 
 
 def _plan_mutants(

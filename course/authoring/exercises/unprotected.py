@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.isolation import loops
+from course.isolation.inside import loops
 from course.physics.systems import SYSTEMS
 from course.scoring.failures import StudentFailure
 from course.scoring.values import Inspected, as_march
@@ -40,6 +40,7 @@ class LocalSubmission:
     def __init__(self, source: str, seed: int = 0, replaced: Mapping[str, Any] | None = None) -> None:
         self.seed = seed
         self.returned: tuple[str, Any] | None = None
+        self.asked: set[str] = set()
         self._module = types.ModuleType("submission")
         exec(compile(source, _FILE, "exec", dont_inherit=True), self._module.__dict__)
         self._module.__dict__.update(replaced or {})
@@ -49,8 +50,9 @@ class LocalSubmission:
         """Names of what can be called."""
         return frozenset(name for name, value in vars(self._module).items() if callable(value))
 
-    def begin_check(self, task: str = "") -> None:
-        """Nothing to do: there is no deadline."""
+    def begin_check(self, task: str = "") -> None:  # noqa: ARG002 - of the interface
+        """Forget what the last check asked for; there is no deadline."""
+        self.asked = set()
 
     def printed(self) -> str:
         """Nothing: what it prints goes where this process prints."""
@@ -120,6 +122,7 @@ class LocalSubmission:
         return Inspected(_plain(value), after, _shares(value, given))
 
     def _function(self, name: str) -> Any:
+        self.asked.add(name)
         function = getattr(self._module, name, None)
         if not callable(function):
             raise StudentFailure.missing(name)

@@ -46,12 +46,12 @@ def instructors(catalog: Catalog) -> tuple[Path, Path]:
 
 def solutions_folder(catalog: Catalog, exercise: Exercise) -> Path:
     """Where the solutions of an exercise lie."""
-    return instructors(catalog)[0] / exercise.id
+    return instructors(catalog)[0] / exercise.place
 
 
 def exercise_graders(catalog: Catalog, exercise: Exercise) -> Path:
-    """Where the hidden checks of an exercise lie."""
-    return instructors(catalog)[1] / exercise.id
+    """Where the hidden checks of an exercise lie; a warm-up has none."""
+    return instructors(catalog)[1] / exercise.place
 
 
 def solution_path(catalog: Catalog, exercise: Exercise) -> Path:

@@ -12,7 +12,8 @@ from urllib.parse import unquote
 
 from course.catalog.blocks import Heading, Link, Text, slug, walk_blocks, walk_inlines
 from course.catalog.markdown import read_blocks
-from course.catalog.reading import read_text
+from course.catalog.models import Exercise
+from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
 
 if TYPE_CHECKING:
@@ -47,6 +48,13 @@ class LinkChecker:
         for line, target in _links(read_text(path)):
             self._check(path, line, target)
 
+    def check_reading(self, path: Path, exercise: Exercise) -> None:
+        """The sections that an ``exercise.toml`` sends its students to."""
+        lines = read_document(path, Exercise).lines
+        for index, task in enumerate(exercise.task):
+            if task.read:
+                self._check(path, lines.line(("task", index, "read")), f"lesson:{task.read}")
+
     def _check(self, path: Path, line: int | None, target: str) -> None:
         problem = self._problem_with(path, target)
         if problem:
@@ -61,8 +69,12 @@ class LinkChecker:
             name, known = place.removeprefix("lesson:"), self._catalog.lesson_ids()
             destination = self._catalog.content.lessons / f"{name}.md"
         elif place.startswith("exercise:"):
-            name, known = place.removeprefix("exercise:"), self._catalog.exercise_ids()
-            destination = self._catalog.content.exercises / name / "README.md"
+            catalog = self._catalog
+            name, known = (
+                place.removeprefix("exercise:"),
+                (*catalog.exercise_ids(), *catalog.warm_up_ids()),
+            )
+            destination = catalog.content.exercise_folder(name) / "README.md"
         elif place:
             return self._problem_with_file(path, unquote(place), anchor)
         else:

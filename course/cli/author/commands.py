@@ -15,6 +15,7 @@ from course.authoring.exercises.variants import instructors
 from course.authoring.packing import write_pack
 from course.catalog.models import CourseRef
 from course.cli.author.coverage import counted, coverage, shown
+from course.cli.author.pictures import pictures
 from course.cli.author.replies import (
     AuthorCheck,
     AuthorMutants,
@@ -33,7 +34,7 @@ from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from course.authoring.exercises.mutants import MutantOutcome
     from course.authoring.report import AuditReport
@@ -50,7 +51,9 @@ __all__ = [
     "new_lesson",
     "new_question",
     "new_scene",
+    "new_warm_up",
     "pack",
+    "pictures",
 ]
 
 _HELP = {"help_option_names": ["-h", "--help"]}
@@ -75,17 +78,23 @@ def _any_id(incomplete: str) -> list[str]:
     return [*lesson_ids(incomplete), *exercise_ids(incomplete), *scenes]
 
 
+#: What is known of something new with functions, before its files are written.
+_Functions = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--function", metavar="'NAME(ARGUMENTS)'", help="A function that it asks for; as often as needed."
+    ),
+]
+_Title = Annotated[str, typer.Option("--title", metavar="WORDS", help="What people call it.")]
+_Summary = Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")]
+
+
 @_new.command("exercise", epilog="Example: course author new exercise pendulum-clock")
 def new_exercise(
     name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-    function: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--function", metavar="'NAME(ARGUMENTS)'", help="A function that it asks for; as often as needed."
-        ),
-    ] = None,
-    title: Annotated[str, typer.Option("--title", metavar="WORDS", help="What people call it.")] = "",
-    summary: Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")] = "",
+    function: _Functions = None,
+    title: _Title = "",
+    summary: _Summary = "",
     lesson: Annotated[
         str,
         typer.Option(
@@ -102,14 +111,45 @@ def new_exercise(
     then, and only what nobody else can know is left blank. Nothing is overwritten. `course author check ID`
     names each blank that is left.
     """
+    return _new_with_functions(scaffold.new_exercise, "exercise", name, function, title, summary, lesson)
+
+
+@_new.command("warmup", epilog="Example: course author new warmup swing --lesson engines")
+def new_warm_up(
+    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+    lesson: Annotated[
+        str,
+        typer.Option("--lesson", metavar="ID", help="Where it stands.", autocompletion=lesson_ids),
+    ],
+    function: _Functions = None,
+    title: _Title = "",
+    summary: _Summary = "",
+) -> int:
+    """Write a warm-up with blanks to fill in.
+
+    As `course author new exercise`, and smaller: public checks only, two accepted solutions, three wrong.
+    Once the blanks are filled, `course author build ID` computes what the wrong ones answer.
+    """
+    return _new_with_functions(scaffold.new_warm_up, "warm-up", name, function, title, summary, lesson)
+
+
+def _new_with_functions(
+    write: Callable[..., tuple[Path, ...]],
+    kind: str,
+    name: str,
+    function: list[str] | None,
+    title: str,
+    summary: str,
+    lesson: str,
+) -> int:
     console, catalog = current(), load_catalog()
     asked = [scaffold.Function.parse(text) for text in function or ()]
     if not asked and console.interactive:
         title = title or console.ask("Title: ") or ""
         summary = summary or console.ask("What it is about, in one line: ") or ""
         asked = list(_ask_functions(console))
-    written = scaffold.new_exercise(catalog, name, asked, title=title, summary=summary, lesson=lesson)
-    return _report_new(catalog, "exercise", name, written)
+    written = write(catalog, name, asked, title=title, summary=summary, lesson=lesson)
+    return _report_new(catalog, kind, name, written)
 
 
 def _ask_functions(console: Console) -> Iterator[scaffold.Function]:
@@ -172,6 +212,8 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, where it is to be read.")
+    if kind == "warm-up":
+        console.note(f"What wrong solutions answer is computed by: course author build {name}")
     then = "sandbox play" if kind == "scene" else "author check"
     console.note(f"Fill in what is marked, then run: course {then} {name}")
     console.emit(AuthorNew(kind=kind, id=name, files=written))
@@ -193,24 +235,34 @@ def check(
 
     Links lead somewhere, hints and titles are there, points add up, stubs fail, solutions and accepted
     variants score full marks, and each mutant loses only its task's points, with the diagnosis it names.
-    Scenes hold together, and every formula in their texts has a value. Exit code 1 if something is wrong.
+    What is built is up to date, and ruff has nothing to say. Scenes hold together, and every formula in their
+    texts has a value. Exit code 1 if something is wrong.
     """
 
     console, catalog = current(), load_catalog()
     with meter(console) as on_progress:
         report = audit(catalog, name, on_progress=on_progress)
-    _show_report(console, report)
+    _show_report(console, catalog, report)
     _emit_report(console, catalog, report)
     return 0 if report.ok else 1
 
 
-def _show_report(console: Console, report: AuditReport) -> None:
+def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
+    blanks = [problem for problem in report.problems if problem.code == "blank"]
+    for problem in blanks:
+        console.line((problem.where, "bold"), f"  {problem.message}")
+    if blanks:
+        console.line((blanks[0].fix, "dim"), indent=2)
     for problem in report.problems:
+        if problem.code == "blank":
+            continue
         console.line((problem.where, "bold"))
         console.line(problem.message, indent=2)
         console.line((problem.fix, "dim"), indent=2)
+    warm_ups = len({*report.exercises} & {*catalog.warm_up_ids()})
+    among = f" ({counted(warm_ups, 'warm-up')} among them)" if warm_ups else ""
     looked = (
-        f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}, "
+        f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}{among}, "
         f"{counted(len(report.questions), 'question')}, {counted(len(report.scenes), 'scene')}, "
         f"{counted(report.checks, 'check')}, "
         f"{counted(report.graded, 'submission')} graded"
@@ -262,35 +314,41 @@ def build(
         typer.Option("--confusion", help="Try every wrong program too, and keep what each is told. Minutes."),
     ] = False,
 ) -> int:
-    """Compute what is shipped so that a diagnosis works at home, where there are no solutions.
+    """Write what follows from an exercise's files.
 
-    Writes `hypotheses.json` into each exercise that has hypotheses: what every known wrong program answers to
-    the exercise's questions, as fingerprints. `course author check` refuses one that is out of date. With
-    --confusion each is graded, at home and as in a grading run, and what it is told is kept beside the
-    solution for docs/graders.md.
+    The points and counts in `exercise.toml`, which its checks' markers add up to; `hypotheses.json`, where it
+    has hypotheses, so that a diagnosis works at home, where there are no solutions: what every known wrong
+    program answers to the exercise's questions, as fingerprints; and docs/graders.md. `course author check`
+    refuses what is out of date. With --confusion each wrong program is graded, at home and as in a grading
+    run, and what it is told is kept beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import build as desk
-    from course.authoring.exercises.variants import instructors
+    from course.authoring.exercises.kill_table import write_page
+    from course.authoring.exercises.points import write_points
     from course.cli.author.replies import AuthorBuild
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
-    chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
-    written = [shown(path, catalog) for exercise in chosen if (path := desk.build(catalog, exercise))]
+    every = (*catalog.exercises(), *catalog.warm_ups())
+    chosen = every if name is None else (catalog.exercise(name),)
+    made = [step(catalog, exercise) for exercise in chosen for step in (write_points, desk.build)]
+    written = [shown(path, catalog) for path in made if path]
     if confusion:
         from course.authoring.exercises.confusion import confusion_of, write_confusion
         from course.scoring.explain.table import read_table
 
         read_table.cache_clear()  # it was just written anew
         for exercise in chosen:
-            if exercise.readme_path.with_name("diagnoses.toml").is_file():
+            if exercise.readme_path.with_name("diagnoses.toml").is_file() and not exercise.is_warm_up:
                 with meter(console) as on_progress:
                     table = confusion_of(catalog, exercise, on_progress=on_progress)
                 written.append(shown(write_confusion(catalog, exercise, table), catalog))
+    if page := write_page(load_catalog()):  # with the points that were just written
+        written.append(shown(page, catalog))
     for file in written:
         console.line(f"Wrote {file}")
     if not written:
-        console.note("None of these exercises has hypotheses.")
+        console.note("All of it is up to date.")
     console.emit(AuthorBuild(files=tuple(written)))
     return 0
 
@@ -416,3 +474,4 @@ def pack(
 
 
 app.command(epilog="Example: course author coverage --write")(coverage)
+app.command(epilog="Example: course author pictures --check")(pictures)

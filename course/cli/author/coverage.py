@@ -28,8 +28,8 @@ def coverage(
 ) -> int:
     """Show where the course has each part of the chapter it grew out of.
 
-    Every heading, paragraph, bullet, objective, demonstration, printed line, exercise, solution, question,
-    diagram and figure, and that each place exists. Exit code 1 if a part or a place is missing.
+    Its headings, objectives, examples, exercises and questions, each with one word on how it came over, and
+    that each place exists. Exit code 1 if a part or a place is missing.
     """
 
     console, catalog = current(), load_catalog()
@@ -49,8 +49,8 @@ def coverage(
 def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProblem, ...]) -> None:
     for section in table.section:
         console.heading(section.title)
-        rows = [(part.lines, part.kind, part.what, ", ".join(part.where)) for part in section.parts]
-        console.table(("lines", "kind", "part", "where"), rows)
+        rows = [(part.what, part.word, ", ".join(part.where)) for part in section.parts]
+        console.table(("part", "word", "where"), rows)
         console.blank()
     for problem in problems:
         console.line((problem.where, "bold"))
@@ -64,7 +64,14 @@ def _emit_coverage(
     console: Console, table: Coverage, problems: tuple[AuditProblem, ...], written: str | None
 ) -> None:
     parts = [
-        CoverageRow(section=section.title, lines=part.lines, kind=part.kind, what=part.what, where=part.where)
+        CoverageRow(
+            section=section.title,
+            lines=part.lines,
+            kind=section.kind,
+            what=part.what,
+            word=part.word,
+            where=part.where,
+        )
         for section in table.section
         for part in section.parts
     ]

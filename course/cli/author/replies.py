@@ -14,6 +14,7 @@ __all__ = [
     "AuthorMutants",
     "AuthorNew",
     "AuthorPack",
+    "AuthorPictures",
     "AuthorProblem",
     "CoverageRow",
     "MutantRow",
@@ -31,7 +32,7 @@ class AuthorProblem(msgspec.Struct, frozen=True):
 
 
 class AuthorNew(Envelope, tag="course.author-new/1", frozen=True, kw_only=True):
-    """``kind`` is "exercise" or "lesson"."""
+    """``kind`` is "exercise", "warm-up", "lesson", "question" or "scene"."""
 
     kind: str
     id: str
@@ -66,6 +67,7 @@ class CoverageRow(msgspec.Struct, frozen=True, kw_only=True):
     lines: str
     kind: str
     what: str
+    word: str
     where: tuple[str, ...]
 
 
@@ -103,3 +105,9 @@ class AuthorPack(Envelope, tag="course.author-pack/1", frozen=True, kw_only=True
     output: str
     sha256: str
     solutions: dict[str, tuple[str, ...]]
+
+
+class AuthorPictures(Envelope, tag="course.author-pictures/1", frozen=True, kw_only=True):
+    """``stale`` names the pictures that were not up to date; without ``--check`` they are now."""
+
+    stale: tuple[str, ...]

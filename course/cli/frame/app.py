@@ -6,6 +6,7 @@ This is the only place where an error becomes words and an exit code.
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 import os
 import sys
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from course.cli.frame.console import Console, install
+from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, hoist
 from course.cli.frame.registry import COMMANDS, HOME, LazyGroup, build, find
 from course.errors import CourseError, NotFoundError, UsageError
@@ -21,14 +22,21 @@ from course.errors import CourseError, NotFoundError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-__all__ = ["main", "run"]
+__all__ = ["again", "main", "run"]
 
 INTERRUPTED = 130
 OUR_FAULT = 70
+SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
+
+
+#: Loading a command makes tens of thousands of objects, and no garbage among them. Collecting every 700, as
+#: Python does of itself, was a tenth of the time to a lesson's first page.
+_GARBAGE = 50_000
 
 
 def main() -> NoReturn:
     """The ``course`` command."""
+    gc.set_threshold(_GARBAGE, 20, 20)
     if "_COURSE_COMPLETE" in os.environ:
         _program(fancy=False).main(prog_name="course")
     sys.exit(run(sys.argv[1:]))
@@ -59,6 +67,12 @@ def run(arguments: Sequence[str]) -> int:
     return code
 
 
+def again(arguments: Sequence[str]) -> int:
+    """Run a command within this run, with its console; raises what the command raises."""
+    program = _program(fancy=current().fancy)
+    return _code(program.main(list(arguments), prog_name="course", standalone_mode=False))
+
+
 def _dispatch(line: Line, console: Console) -> int:
     if line.problem:
         raise UsageError(line.problem, help="Try `course --help`.")
@@ -66,6 +80,8 @@ def _dispatch(line: Line, console: Console) -> int:
         return _version(console)
     if line.settings.directory is not None:
         _enter(line.settings.directory)
+    if line.rest[:1] in {("--show-completion",), ("--install-completion",)} and len(line.rest) == 2:
+        return _completion(console, *line.rest)
     program = _program(fancy=console.fancy)
     if not console.json:
         return _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
@@ -85,7 +101,11 @@ def _dispatch(line: Line, console: Console) -> int:
 def _program(*, fancy: bool) -> Any:
     app = build(LazyGroup, fancy=fancy)
     app.callback(epilog="Start with: course demo, then course init my-course.")(_root)
-    return typer.main.get_command(app)
+    program = typer.main.get_command(app)
+    for option in program.params:
+        if option.name in {"install_completion", "show_completion"}:
+            option.help = f"{option.help.rstrip('.')}; for another one, name it: zsh."  # type: ignore[attr-defined]
+    return program
 
 
 def _root(
@@ -127,6 +147,23 @@ def _version(console: Console) -> int:
         from course.cli.frame.replies import Version
 
         console.emit(Version(version=__version__, python=python))
+    return 0
+
+
+def _completion(console: Console, option: str, shell: str) -> int:
+    """For the shell that is named; typer's own options take none, and look which one they run in."""
+    from typer.completion import get_completion_script, install  # type: ignore[attr-defined]
+
+    if shell not in SHELLS:
+        raise UsageError(
+            f"{option} {shell[:20]}: no such shell is known.", help=f"Known: {', '.join(SHELLS)}."
+        )
+    if option == "--show-completion":
+        variable = "_COURSE_COMPLETE"
+        console.raw(get_completion_script(prog_name="course", complete_var=variable, shell=shell) + "\n")
+        return 0
+    _, path = install(shell=shell, prog_name="course", complete_var="_COURSE_COMPLETE")
+    console.line(f"Completion for {shell} is in {path}; it works once a new shell is started.")
     return 0
 
 

@@ -2,19 +2,45 @@
 
 from __future__ import annotations
 
+import ast
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
 __all__ = [
+    "check_ids",
+    "choice_of",
     "engine_ids",
     "exercise_ids",
+    "grade_lists",
     "lesson_ids",
     "notebook_ids",
+    "run_numbers",
     "scenario_ids",
     "scene_ids",
+    "scene_settings",
     "simulation_ids",
+    "simulation_settings",
+    "student_ids",
+    "submitted_ids",
+    "task_ids",
+    "warm_up_ids",
 ]
 
 
+def choice_of(*values: str) -> Callable[[str], list[str]]:
+    """Completes a value that is one of a few."""
+
+    def complete(incomplete: str) -> list[str]:
+        return _beginning(incomplete, values)
+
+    return complete
+
+
 def exercise_ids(incomplete: str) -> list[str]:
-    """Exercises whose id begins with what was typed."""
+    """Exercises and warm-ups whose id begins with what was typed."""
     from course.catalog.locate import content
     from course.errors import CourseError
 
@@ -23,7 +49,20 @@ def exercise_ids(incomplete: str) -> list[str]:
     except (CourseError, OSError):
         return []
     names = (folder.name for folder in folders if (folder / "exercise.toml").is_file())
-    return sorted(name for name in names if name.startswith(incomplete))
+    return _beginning(incomplete, (*names, *warm_up_ids("")))
+
+
+def warm_up_ids(incomplete: str) -> list[str]:
+    """Warm-ups whose id begins with what was typed."""
+    from course.catalog.locate import content
+    from course.errors import CourseError
+    from course.ids import WARM_UPS
+
+    try:
+        folders = list((content().exercises / WARM_UPS).iterdir())
+    except (CourseError, OSError):
+        return []
+    return _beginning(incomplete, (folder.name for folder in folders))
 
 
 def lesson_ids(incomplete: str) -> list[str]:
@@ -35,39 +74,154 @@ def lesson_ids(incomplete: str) -> list[str]:
         files = list(content().lessons.glob("*.md"))
     except (CourseError, OSError):
         return []
-    return sorted(file.stem for file in files if file.stem.startswith(incomplete))
+    return _beginning(incomplete, (file.stem for file in files))
 
 
 def simulation_ids(incomplete: str) -> list[str]:
     """Simulations whose id begins with what was typed."""
     from course.simulations.registry import SIMULATIONS
 
-    return sorted(name for name in SIMULATIONS if name.startswith(incomplete))
+    return _beginning(incomplete, SIMULATIONS)
 
 
 def engine_ids(incomplete: str) -> list[str]:
     """Physics engines whose id begins with what was typed."""
     from course.engines.registry import ENGINES
 
-    return sorted(name for name in ENGINES if name.startswith(incomplete))
+    return _beginning(incomplete, ENGINES)
 
 
 def scenario_ids(incomplete: str) -> list[str]:
     """Scenarios of the engine comparison whose id begins with what was typed."""
     from course.engines.scenarios import SCENARIOS
 
-    return sorted(name for name in SCENARIOS if name.startswith(incomplete))
+    return _beginning(incomplete, SCENARIOS)
 
 
 def scene_ids(incomplete: str) -> list[str]:
     """Scenes of the sandbox whose id begins with what was typed; lists a folder."""
-    from pathlib import Path
-
-    folder = Path(__file__).parents[2] / "sandbox" / "scenes"
-    return sorted(path.stem for path in folder.glob("*.toml") if path.stem.startswith(incomplete))
+    return _beginning(incomplete, (path.stem for path in _scenes().glob("*.toml")))
 
 
 def notebook_ids(incomplete: str) -> list[str]:
     """Everything there is a notebook of whose id begins with what was typed."""
     extra = [name for name in ("quiz", "sandbox") if name.startswith(incomplete)]
     return sorted({*exercise_ids(incomplete), *lesson_ids(incomplete), *extra})
+
+
+def task_ids(ctx: Any, incomplete: str) -> list[str]:
+    """Functions of the exercise on the line, or of all of them where none is named."""
+    import tomllib
+
+    files = _of_exercises(ctx, "exercise.toml")
+    heads = (tomllib.loads(file.read_text(encoding="utf-8")) for file in files)
+    return _beginning(incomplete, (task["id"] for head in heads for task in head.get("task", ())))
+
+
+def check_ids(ctx: Any, incomplete: str) -> list[str]:
+    """Public checks of the exercise on the line, or of all of them; their modules are read, not run."""
+    trees = (ast.parse(file.read_bytes()) for file in _of_exercises(ctx, "checks.py"))
+    names = (node.name for tree in trees for node in tree.body if isinstance(node, ast.FunctionDef))
+    return _beginning(incomplete, (name.removeprefix("test_") for name in names if name.startswith("test_")))
+
+
+def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
+    """What ``--set`` takes for the simulation on the line, up to the sign of equality."""
+    from course.errors import NotFoundError
+    from course.simulations.registry import get
+
+    try:
+        chosen = get(_given(ctx, "name"))
+    except NotFoundError:
+        return []
+    return _beginning(incomplete, (f"{one.name}=" for one in chosen.parameters))
+
+
+def scene_settings(ctx: Any, incomplete: str) -> list[str]:
+    """What ``--set`` takes for the scene on the line, up to the sign of equality."""
+    import tomllib
+    from pathlib import Path
+
+    name = _given(ctx, "scene")
+    path = Path(name) if name.endswith(".toml") else _scenes() / f"{name}.toml"
+    try:
+        found = tomllib.loads(path.read_text(encoding="utf-8")).get("parameter", ())
+    except (OSError, ValueError):
+        return []
+    return _beginning(incomplete, (f"{one['name']}=" for one in found))
+
+
+def submitted_ids(ctx: Any, incomplete: str) -> list[str]:
+    """Students who handed something in to the folder on the line."""
+    from pathlib import Path
+
+    try:
+        found = [entry.name for entry in Path(_given(ctx, "submissions")).iterdir() if entry.is_dir()]
+    except OSError:
+        return []
+    return _beginning(incomplete, found)
+
+
+def student_ids(ctx: Any, incomplete: str) -> list[str]:
+    """Students of the grading run on the line."""
+    found = _in_gradebook(ctx, "SELECT student FROM results UNION SELECT student FROM students")
+    return _beginning(incomplete, map(str, found))
+
+
+def run_numbers(ctx: Any, incomplete: str) -> list[str]:
+    """Runs that the gradebook on the line has had, by their numbers."""
+    return _beginning(incomplete, map(str, _in_gradebook(ctx, "SELECT number FROM runs")))
+
+
+def _in_gradebook(ctx: Any, query: str) -> list[Any]:
+    """A column of a gradebook, which is looked at and never made; nothing if that cannot be."""
+    import sqlite3
+    from contextlib import closing
+    from pathlib import Path
+
+    path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
+    try:
+        with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
+            return [value for (value,) in book.execute(query)]
+    except sqlite3.Error:
+        return []
+
+
+def _beginning(incomplete: str, names: Iterable[str]) -> list[str]:
+    return sorted(name for name in names if name.startswith(incomplete))
+
+
+def _given(ctx: Any, name: str) -> str:
+    """The first argument of the command; "" if it is not on the line.
+
+    A line that ends in an option without its value is no line that can be parsed: what the parser had read
+    of it by then are the arguments, and none of them has its name yet.
+    """
+    value = ctx.params.get(name) or (ctx.args[0] if ctx.args else "")
+    return str(value)
+
+
+def _of_exercises(ctx: Any, name: str) -> list[Path]:
+    """A file of the exercise on the line, or of every exercise where none is named."""
+    from course.catalog.locate import content
+    from course.errors import CourseError
+    from course.ids import WARM_UPS
+
+    wanted = _given(ctx, "exercise") or "*"
+    try:
+        folder = content().exercises
+        return sorted((*folder.glob(f"{wanted}/{name}"), *folder.glob(f"{WARM_UPS}/{wanted}/{name}")))
+    except (CourseError, OSError, ValueError):
+        return []
+
+
+def _scenes() -> Path:
+    from pathlib import Path
+
+    return Path(__file__).parents[2] / "sandbox" / "scenes"
+
+
+def grade_lists(incomplete: str) -> list[str]:
+    """Grades that a student gives, joined by commas: what was typed with the next one."""
+    before, comma, last = incomplete.rpartition(",")
+    return [f"{before}{comma}{grade}" for grade in ("yes", "partly", "no") if grade.startswith(last)]

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from rich.console import Console as RichConsole
     from rich.text import Text
 
+    from course.figures.registry import Builder
+
 __all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
 
 #: Long lines of prose are hard to read however wide the window is.
@@ -159,6 +161,14 @@ class Console:
         return self.fancy and not self.quiet and bool(self._human.isatty())
 
     @property
+    def draws(self) -> bool:
+        """True if the output can show a picture made of half blocks: many colours, and the letter itself."""
+        if not self.fancy or self.quiet or self.rich().no_color:
+            return False
+        encoding = getattr(self._human, "encoding", None) or ""
+        return self.rich().color_system in {"256", "truecolor"} and encoding.lower().startswith("utf")
+
+    @property
     def width(self) -> int:
         """Columns to write in."""
         return self.rich().width if self.fancy else min(self.terminal_width, MAX_WIDTH)
@@ -249,6 +259,31 @@ class Console:
         for row in rows:
             table.add_row(*(_text((cell,)) for cell in row))
         self.rich().print(table)
+
+    def table_or_facts(self, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """The rows as a table or, where it is too wide for the window, each fact under its row's name."""
+        width = sum(max(map(len, column)) + 3 for column in zip(headers, *rows, strict=True))
+        if self.plain or width <= self.width:
+            self.table(headers, rows)
+            return
+        for first, *rest in rows:
+            self.line(first)
+            facts = [f"{head} {cell}" for head, cell in zip(headers[1:], rest, strict=True) if cell]
+            self.line(", ".join(facts), indent=2)
+
+    def figure(self, make: Builder) -> None:
+        """Draw a figure as well as this terminal can show it; nothing where it cannot.
+
+        Args:
+            make: draws it; called in the house style, and only if there is somewhere to show it.
+        """
+        if not self.fancy or self.quiet:
+            return
+        from course.cli.frame.pictures import picture
+
+        shown = picture(self.rich(), self._environ, make, self.width)
+        if shown is not None:
+            self.rich().print(shown)
 
     def block(self, text: str, language: str = "", indent: int = 0) -> None:
         """Text shown exactly as it is: code, a diff, a traceback."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError
+from course.ids import WARM_UPS
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
@@ -66,8 +67,8 @@ class Here:
         """
         if wanted is not None:
             # Completion of a folder name leaves a separator at its end.
-            return self.catalog.exercise(wanted.rstrip("/\\"))
-        known = self.catalog.exercise_ids()
+            return self.catalog.exercise_called(wanted.rstrip("/\\"))
+        known = (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
         for name in (self._folder_name(), self._last_worked_on(), *self._only_started()):
             if name in known:
                 return self.catalog.exercise(str(name))
@@ -83,13 +84,18 @@ class Here:
         names = set(self.workspace.started())
         return tuple(exercise for exercise in self.catalog.exercises() if exercise.id in names)
 
+    def warm_ups_started(self) -> tuple[Exercise, ...]:
+        """The warm-ups that have been started, in the order of the lessons."""
+        names = set(self.workspace.started())
+        return tuple(one for one in self.catalog.warm_ups() if one.id in names)
+
     def source(self, exercise: Exercise) -> bytes:
         """The student's file.
 
         Raises:
             UngradableError: there is none, or it cannot be read, or it is too large.
         """
-        path = self.workspace.path(exercise.id, exercise.module)
+        path = self.workspace.path(exercise.place, exercise.module)
         shown = self.workspace.shown(path)
         if not path.exists():
             raise UngradableError(
@@ -116,7 +122,7 @@ class Here:
 
     def stub(self, exercise: Exercise) -> bytes:
         """The module as it was handed out here, or as it would be now."""
-        given = self.workspace.given(exercise.id, exercise.module)
+        given = self.workspace.given(exercise.place, exercise.module)
         return exercise.stub_path.read_bytes() if given is None else given
 
     def history(self, exercise: Exercise) -> History:
@@ -142,7 +148,8 @@ class Here:
             parts = cwd().relative_to(self.workspace.root).parts
         except ValueError:
             return None
-        return parts[0] if parts else None
+        inside = parts[1:] if parts[:1] == (WARM_UPS,) else parts
+        return inside[0] if inside else None
 
     def _last_worked_on(self) -> str | None:
         """The exercise last started, checked by name or asked a hint for."""

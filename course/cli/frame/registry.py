@@ -47,13 +47,19 @@ class Entry:
 
 COMMANDS: dict[str, Entry] = {
     "demo": Entry(
-        "work.demo", "demo", LEARN, "See what checking looks like, without a workspace.", "course demo"
+        "work.demo", "demo", LEARN, "See a mistake found and mended, without a workspace.", "course demo"
     ),
     "init": Entry("work.starting", "init", LEARN, "Make a workspace.", "course init my-course"),
     "lessons": Entry("reading.commands", "lessons", LEARN, "List the lessons.", "course lessons"),
     "lesson": Entry(
         "reading.commands", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"
     ),
+    "warmup": Entry(
+        "reading.warming", "warmup", LEARN, "Do a lesson's small tasks.", "course warmup fall-time"
+    ),
+    "exercises": Entry("work.listing", "exercises", LEARN, "List the exercises.", "course exercises"),
+    "next": Entry("work.going", "next_command", LEARN, "Say what is next.", "course next"),
+    "go": Entry("work.going", "go", LEARN, "Go on from where you stopped.", "course go"),
     "quiz": Entry(
         "quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"
     ),
@@ -81,6 +87,13 @@ COMMANDS: dict[str, Entry] = {
         "Get lessons and exercises as Jupyter notebooks.",
         "course notebook build integrators",
     ),
+    "open": Entry(
+        "notebook.opening",
+        "open_notebook",
+        LEARN,
+        "Open a notebook in JupyterLab.",
+        "course open integrators",
+    ),
     "start": Entry(
         "work.starting", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
     ),
@@ -96,6 +109,13 @@ COMMANDS: dict[str, Entry] = {
         WORK,
         "Show what your code does, with figures.",
         "course report sim-to-real",
+    ),
+    "reflect": Entry(
+        "work.reflecting",
+        "reflect",
+        WORK,
+        "Answer in prose, and grade your answer.",
+        "course reflect sim-to-real",
     ),
     "solution": Entry(
         "work.hinting",
@@ -115,6 +135,10 @@ COMMANDS: dict[str, Entry] = {
         "work.submitting", "submit", KEEP, "Write the file to hand in.", "course submit -o mine.zip"
     ),
     "doctor": Entry("work.doctor", "doctor", KEEP, "Say what works on this machine.", "course doctor"),
+    "bug": Entry("work.bug", "bug", KEEP, "Write what a fault report needs into a file.", "course bug"),
+    "schema": Entry(
+        "frame.schemas", "schema", KEEP, "Print the JSON Schema of a reply.", "course schema check"
+    ),
     "grade": Entry(
         "grade.commands", "app", TEACH, "Grade a class.", "course grade run submissions --out grades"
     ),

@@ -7,7 +7,7 @@ version; renaming, removing or changing the meaning of one makes a new version.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 
@@ -27,19 +27,27 @@ __all__ = [
     "ErrorBody",
     "ErrorReply",
     "ExerciseState",
+    "Exercises",
     "FileReply",
     "Fix",
+    "Go",
     "Help",
     "Hint",
     "Init",
     "LessonReply",
     "LessonState",
     "Lessons",
+    "Next",
     "NextStep",
+    "ObjectiveState",
     "Package",
     "Progress",
     "QuizState",
+    "Reflect",
+    "ReflectPoint",
     "Reset",
+    "Schema",
+    "Schemas",
     "Solution",
     "Start",
     "Status",
@@ -93,6 +101,19 @@ class Help(Envelope, tag="course.help/1", frozen=True, kw_only=True):
     text: str
 
 
+class Schemas(Envelope, tag="course.schema-list/1", frozen=True, kw_only=True):
+    """Which schemas there are."""
+
+    schemas: tuple[str, ...]
+
+
+class Schema(Envelope, tag="course.schema/1", frozen=True, kw_only=True):
+    """The JSON Schema of one kind of reply."""
+
+    name: str
+    document: dict[str, Any]
+
+
 class Bare(msgspec.Struct, frozen=True, kw_only=True):
     """The answer of a command that had nothing to report beyond its exit code."""
 
@@ -115,15 +136,31 @@ class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
     warnings: tuple[str, ...] = ()
 
 
+#: What a check ended in. JSON tells the two apart by their fields, msgspec does not.
+CheckOrError = Annotated[
+    Any,
+    msgspec.Meta(extra_json_schema={"anyOf": [{"$ref": "#/$defs/Check"}, {"$ref": "#/$defs/ErrorReply"}]}),
+]
+
+
 class CheckAll(Envelope, tag="course.check-all/1", frozen=True, kw_only=True):
-    results: tuple[Check | ErrorReply, ...]
+    results: tuple[CheckOrError, ...]
 
 
-class Demo(Envelope, tag="course.demo/1", frozen=True, kw_only=True):
-    """An untouched stub and a finished example, checked the same way."""
+class Demo(Envelope, tag="course.demo/2", frozen=True, kw_only=True):
+    """A worked example with a mistake, and mended.
 
-    stub: Check
-    worked: Check
+    ``change`` is the mended line as a diff. ``energy`` is the energy of each motion in units of its energy at
+    the start: the least and the most over ``steps`` steps of ``step_size`` seconds.
+    """
+
+    before: Check
+    after: Check
+    change: tuple[str, ...]
+    steps: int
+    step_size: float
+    energy_before: tuple[float, float]
+    energy_after: tuple[float, float]
 
 
 class WatchRun(msgspec.Struct, frozen=True):
@@ -142,7 +179,7 @@ class Watch(Envelope, tag="course.watch/1", frozen=True, kw_only=True):
 
     exercise: str
     runs: tuple[WatchRun, ...]
-    last: Check | ErrorReply | None = None
+    last: CheckOrError | None = None
 
 
 class ExerciseState(msgspec.Struct, frozen=True, kw_only=True):
@@ -153,6 +190,8 @@ class ExerciseState(msgspec.Struct, frozen=True, kw_only=True):
     summary: str
     lesson: str
     state: str
+    #: The number it has in the chapter; None if it is not the chapter's.
+    number: int | None = None
     score: float | None = None
     max_score: float | None = None
     best_score: float | None = None
@@ -172,6 +211,20 @@ class LessonState(msgspec.Struct, frozen=True, kw_only=True):
     read_at: str | None = None
 
 
+class WarmUpState(msgspec.Struct, frozen=True, kw_only=True):
+    """One warm-up. ``state`` is "new", "started" or "done": all its checks passed once."""
+
+    id: str
+    title: str
+    summary: str
+    lesson: str
+    minutes: int
+    state: str
+    checks_run: int = 0
+    hints_shown: int = 0
+    done_at: str | None = None
+
+
 class QuizState(msgspec.Struct, frozen=True):
     """The quiz so far: the attempts that count, and the best of them; None before the first."""
 
@@ -179,6 +232,65 @@ class QuizState(msgspec.Struct, frozen=True):
     best: int | None
     total: int
     passed: bool
+
+
+class ReflectPoint(msgspec.Struct, frozen=True):
+    """Something to grade an answer by. ``grade`` is "yes", "partly", "no" or None."""
+
+    text: str
+    grade: str | None
+
+
+class Reflect(Envelope, tag="course.reflect/1", frozen=True, kw_only=True):
+    """A question for prose. ``good_answer`` and ``points`` come once there is an answer."""
+
+    exercise: str
+    question: str
+    answer: str | None
+    good_answer: str | None
+    points: tuple[ReflectPoint, ...]
+    next: NextStep | None = None
+
+
+class ObjectiveState(msgspec.Struct, frozen=True, kw_only=True):
+    """A learning objective and the evidence for it.
+
+    ``predictions`` counts those that were made, not skipped. ``passed`` names its exercises whose pass mark
+    was reached at home, ``answered`` its quiz questions answered rightly in a finished attempt.
+    """
+
+    title: str
+    lessons: tuple[str, ...]
+    lessons_read: tuple[str, ...]
+    predictions: int
+    warm_ups: int
+    warm_ups_done: int
+    exercises: tuple[str, ...]
+    passed: tuple[str, ...]
+    questions: tuple[str, ...]
+    answered: tuple[str, ...]
+
+
+class Next(Envelope, tag="course.next/1", frozen=True, kw_only=True):
+    """The next step; ``why`` says what it is."""
+
+    next: NextStep
+    why: str
+
+
+class Go(Envelope, tag="course.go/1", frozen=True, kw_only=True):
+    """The step that would be run; a run in a terminal prints what its command prints."""
+
+    next: NextStep
+    why: str
+
+
+class Exercises(Envelope, tag="course.exercises/1", frozen=True, kw_only=True):
+    """In the order in which the lessons lead to them. ``workspace`` is None outside of one."""
+
+    workspace: str | None
+    exercises: tuple[ExerciseState, ...]
+    next: NextStep | None = None
 
 
 class Status(Envelope, tag="course.status/1", frozen=True, kw_only=True):
@@ -192,7 +304,73 @@ class Status(Envelope, tag="course.status/1", frozen=True, kw_only=True):
     exercises: tuple[ExerciseState, ...]
     next: NextStep
     quiz: QuizState | None = None
+    objectives: tuple[ObjectiveState, ...] = ()
     warnings: tuple[str, ...] = ()
+
+
+class PredictionState(msgspec.Struct, frozen=True, kw_only=True):
+    """A prediction in a lesson. ``said`` is None if it was skipped.
+
+    ``judged`` is "right", "nearly" or "wrong", by the student's own word; None before. ``section`` is
+    "lesson#section"; it and ``question`` are "" if the lesson does not ask this any more.
+    """
+
+    lesson: str
+    section: str
+    question: str
+    said: str | None
+    judged: str | None
+    at: str
+
+
+class PredictionsOf(msgspec.Struct, frozen=True, kw_only=True):
+    """Predictions counted: of a lesson, of a day (local time) or of all. ``said`` leaves out skipped ones."""
+
+    of: str
+    said: int
+    right: int
+    nearly: int
+    wrong: int
+    unjudged: int
+    skipped: int
+
+
+class PredictionsState(msgspec.Struct, frozen=True, kw_only=True):
+    """What was predicted in lessons, and how well."""
+
+    all: PredictionsOf
+    by_lesson: tuple[PredictionsOf, ...]
+    by_day: tuple[PredictionsOf, ...]
+    each: tuple[PredictionState, ...]
+
+
+class MistakeState(msgspec.Struct, frozen=True, kw_only=True):
+    """A mistake that checks recognised. ``read`` is where it is explained, as "lesson#section" or "lesson".
+
+    ``mended_at`` is None while a check that showed it has not passed since; ``looks_like`` is "" where the
+    exercise keeps no words for the code.
+    """
+
+    exercise: str
+    task: str
+    title: str
+    diagnosis: str
+    looks_like: str
+    read: str
+    first_seen: str
+    last_seen: str
+    runs: int
+    mended_at: str | None
+
+
+class Revisit(msgspec.Struct, frozen=True, kw_only=True):
+    """A section to read again: open mistakes point at it, or predictions in it were wrong."""
+
+    lesson: str
+    section: str
+    title: str
+    why: tuple[str, ...]
+    command: str
 
 
 class Progress(Envelope, tag="course.progress/1", frozen=True, kw_only=True):
@@ -203,6 +381,17 @@ class Progress(Envelope, tag="course.progress/1", frozen=True, kw_only=True):
     submissions: tuple[str, ...]
     next: NextStep
     quiz: QuizState | None = None
+    warm_ups: tuple[WarmUpState, ...] = ()
+    predictions: PredictionsState | None = None
+    mistakes: tuple[MistakeState, ...] = ()
+    revisit: tuple[Revisit, ...] = ()
+
+
+class WarmUps(Envelope, tag="course.warmup/1", frozen=True, kw_only=True):
+    """The warm-ups, in the order of the lessons. With an id the answer is that of ``start`` or ``check``."""
+
+    warm_ups: tuple[WarmUpState, ...]
+    next: NextStep | None = None
 
 
 class Lessons(Envelope, tag="course.lessons/1", frozen=True, kw_only=True):
@@ -230,6 +419,14 @@ class Init(Envelope, tag="course.init/1", frozen=True, kw_only=True):
     created: bool
     course: CourseRef
     next: NextStep
+    files: tuple[WrittenFile, ...] = ()
+
+
+class Bug(Envelope, tag="course.bug/1", frozen=True, kw_only=True):
+    """A report for whoever looks for a fault; ``traceback`` is False where no crash was found."""
+
+    file: WrittenFile
+    traceback: bool
 
 
 class FileReply(msgspec.Struct, frozen=True):
@@ -369,6 +566,7 @@ class Doctor(Envelope, tag="course.doctor/1", frozen=True, kw_only=True):
     workspace: str | None
     repaired: str | None
     fixes: tuple[Fix, ...]
+    unserved: tuple[str, ...] = ()
 
 
 def encode(body: msgspec.Struct) -> bytes:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import exercise_ids
+from course.cli.frame.completion import choice_of, exercise_ids, run_numbers, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.grade.changes import points as _points
+from course.cli.grade.changes import show_change
 from course.cli.grade.running import levels, score_of
 from course.errors import UsageError
 from course.grading.exports.cells import write_bytes
@@ -27,10 +30,12 @@ from course.scoring.numbers import format_points
 if TYPE_CHECKING:
     from course.cli.grade.replies import LateOne
     from course.grading.results.effective import Effective
-    from course.grading.running.rerun import Change, Regraded
+    from course.grading.results.journal import Moved
+    from course.grading.running.rerun import Regraded
 
 __all__ = ["late", "override", "rerun", "similar"]
 
+_SHOWN = 20
 Out = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")]
 
 
@@ -48,10 +53,26 @@ def rerun(
         typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="As in the run if left out."),
     ] = None,
     isolation: Annotated[
-        str, typer.Option("--isolation", metavar="auto|strict|process", help="As for `course grade run`.")
+        str,
+        typer.Option(
+            "--isolation",
+            metavar="auto|strict|process",
+            help="As for `course grade run`.",
+            autocompletion=choice_of("auto", "strict", "process"),
+        ),
     ] = "auto",
+    against: Annotated[
+        str,
+        typer.Option(
+            "--against",
+            metavar="RUN|SNAPSHOT",
+            help="With the graders of that run; `log` lists them.",
+            autocompletion=run_numbers,
+        ),
+    ] = "",
+    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the regrading.")] = "",
 ) -> int:
-    """Grade again, with the graders as they are now.
+    """Grade again, with the graders as they are now, or as they were.
 
     Regrades what other graders scored, and what a fault of ours left without a score. Shows who changes, by
     how much and by which check. The submissions are in the gradebook; old results stay beside the new, and
@@ -65,7 +86,7 @@ def rerun(
 
     console = current()
     level, at_least = levels(isolation)
-    options = RerunOptions(dry_run, everything, level, at_least, timeout)
+    options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
     catalog = load_catalog()
     with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
         done = regrade(results, catalog, options, grade=partial(grade_all, graders=jobs))
@@ -81,6 +102,7 @@ def rerun(
                 kept=done.kept,
                 grader_error=done.faults,
                 changes=done.changes,
+                graders=done.graders,
             )
         )
     else:
@@ -90,7 +112,7 @@ def rerun(
 
 def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
     for change in done.changes:
-        _show_change(console, change)
+        show_change(console, change)
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
@@ -103,29 +125,9 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
         console.note("Nothing was changed. Without --dry-run it is, and the old results are kept.")
 
 
-def _show_change(console: Console, change: Change) -> None:
-    scores = f"{_points(change.raw_before)} -> {_points(change.raw_after)}"
-    if change.state_before != change.state_after:
-        scores += f", {change.state_before} -> {change.state_after}"
-    if change.overridden:
-        scores += f"; the override stands at {_points(change.score_after)}"
-    elif (change.score_before, change.score_after) != (change.raw_before, change.raw_after):
-        scores += f"; counting {_points(change.score_before)} -> {_points(change.score_after)}"
-    console.item(f"{one_line(change.student)} {change.exercise}", scores)
-    for check in change.checks:
-        delta = f", {check.points_after - check.points_before:+g} points"
-        console.item(
-            check.id, f"{check.before or 'no such check'} -> {check.after or 'gone'}{delta}", indent=4
-        )
-
-
-def _points(score: float | None) -> str:
-    return "no score" if score is None else format_points(score)
-
-
 def override(
     out: Out,
-    student: Annotated[str, typer.Argument(metavar="STUDENT")],
+    student: Annotated[str, typer.Argument(metavar="STUDENT", autocompletion=student_ids)],
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
     score: Annotated[
         float | None, typer.Option("--score", metavar="X", help="Points that are to count.")
@@ -134,20 +136,21 @@ def override(
         str, typer.Option("--reason", metavar="TEXT", help="Shown wherever the score is.")
     ] = "",
     lift: Annotated[bool, typer.Option("--lift", help="Let what the checks gave count again.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what would count; keep nothing.")] = False,
 ) -> int:
     """Set a score by hand, with a reason.
 
     It counts in place of the graders' score in every export and report, whatever is graded later, and no late
     penalty touches it.
     """
-    from course.grading.running.run import open_results
+    from course.grading.running.run import open_results, previewed
 
     if (score is None) != lift:
         raise UsageError(
             "Give either --score and --reason, or --lift.", help="See `course grade override -h`."
         )
     console = current()
-    with open_results(out, writing=True) as results:
+    with previewed(out) if dry_run else open_results(out, writing=True) as results:
         if score is None:
             now = overriding.lift(results, student, exercise, reason)
         else:
@@ -160,6 +163,8 @@ def override(
     else:
         counts = f"{_points(now.score)} of {format_points(now.max_score)} counts"
         console.line((f"{one_line(student)} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
+    if dry_run:
+        console.note("Nothing was changed: without --dry-run it is.")
     return 0
 
 
@@ -176,6 +181,10 @@ def late(
         Path | None, typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days.")
     ] = None,
     clear: Annotated[bool, typer.Option("--clear", help="Put no policy in force.")] = False,
+    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the change.")] = "",
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show whose score would change; change nothing.")
+    ] = False,
 ) -> int:
     """Say what lateness costs, and who is late.
 
@@ -183,7 +192,8 @@ def late(
     change. Without options it shows what is in force.
     """
     from course.cli.grade.replies import GradeLate
-    from course.grading.running.run import open_results
+    from course.grading.results.journal import Recording, recorded
+    from course.grading.running.run import open_results, previewed
 
     if policy is not None and clear:
         raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
@@ -192,13 +202,15 @@ def late(
     people = read_roster(roster) if roster else None
     known = read_times(times) if times else []
     changes = bool(policy or people or known or clear)
-    with open_results(out, writing=changes) as opened:
-        if text is not None or clear:
-            opened.book.set_meta(late_policy=text)
-        if people is not None:
-            opened.book.set_meta(roster=people.dump())
-        if known:
-            opened.book.add_times(known, replace=True)
+    why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
+    with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
+        with recorded(opened.book, "late", why) if changes else nullcontext(Recording()) as told:
+            if text is not None or clear:
+                opened.book.set_meta(late_policy=text)
+            if people is not None:
+                opened.book.set_meta(roster=people.dump())
+            if known:
+                opened.book.add_times(known, replace=True)
         results = Results(opened.book)
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
         unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
@@ -215,11 +227,25 @@ def late(
                 late=tuple(found),
                 time_unknown=unknown_time,
                 unknown_names=tuple(unknown),
+                dry_run=dry_run,
+                moved=tuple(told.moved),
             )
         )
     else:
         _show_late(console, results, found, unknown_time, unknown)
+        _show_moved(console, told.moved, dry_run=dry_run)
     return 0
+
+
+def _show_moved(console: Console, moved: list[Moved], *, dry_run: bool) -> None:
+    for one in moved[:_SHOWN]:
+        scores = f"{_points(one.before)} -> {_points(one.after)}"
+        console.item(f"{one_line(one.student)} {one.exercise}", scores)
+    if len(moved) > _SHOWN:
+        console.line(f"and {len(moved) - _SHOWN} more", indent=2)
+    if moved or dry_run:
+        would = "would change" if dry_run else "changed"
+        console.line((f"{len(moved)} {'score' if len(moved) == 1 else 'scores'} {would}.", "bold"))
 
 
 def _everybody(results: Results) -> set[str]:
@@ -317,6 +343,6 @@ def similar(
     if found.left_out:
         console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
     if found.unreadable:
-        console.note(f"{len(found.unreadable)} could not be read as Python and were not compared.")
+        console.note(f"{len(found.unreadable)} are no Python or longer than 200 kB, and were not compared.")
     console.note(f"Side by side: {target}")
     return 0

@@ -7,6 +7,7 @@ import typer
 from course.cli.grade.changing import late, override, rerun, similar
 from course.cli.grade.export import export
 from course.cli.grade.running import explain, run
+from course.cli.grade.settling import assign, log, salvage
 
 __all__ = ["app"]
 
@@ -26,10 +27,13 @@ def _group() -> None:
 for _command, _example in (
     (run, "run submissions --exercise integrators --out grades -j 2"),
     (explain, "explain grades ada integrators"),
+    (assign, "assign grades ada homework.py --reason 'she named it so'"),
     (rerun, "rerun grades --dry-run"),
     (override, "override grades ada integrators --score 80 --reason 'oral exam'"),
     (late, "late grades --policy late.toml"),
+    (log, "log grades"),
     (similar, "similar grades"),
     (export, "export grades --format canvas --roster class.csv --assignment integrators=4711"),
+    (salvage, "salvage grades --to grades-salvaged"),
 ):
     app.command(_command.__name__, epilog=f"Example: course grade {_example}")(_command)

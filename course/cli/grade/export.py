@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import exercise_ids
+from course.cli.frame.completion import choice_of, exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
 from course.errors import CourseError, UsageError
@@ -37,7 +37,19 @@ def export(
     format: Annotated[  # noqa: A002 - the option's name
         str,
         typer.Option(
-            "--format", metavar="csv|jsonl|junit|gradescope|gradescope-autograder|canvas|moodle|html"
+            "--format",
+            metavar="csv|jsonl|junit|gradescope|gradescope-autograder|canvas|moodle|moodle-worksheet|html",
+            autocompletion=choice_of(
+                "csv",
+                "jsonl",
+                "junit",
+                "gradescope",
+                "gradescope-autograder",
+                "canvas",
+                "moodle",
+                "moodle-worksheet",
+                "html",
+            ),
         ),
     ] = "csv",
     output: Annotated[
@@ -57,9 +69,15 @@ def export(
     missing: Annotated[
         str,
         typer.Option(
-            "--missing", metavar="blank|zero", help="What an enrolled student who handed in nothing gets."
+            "--missing",
+            metavar="blank|zero",
+            autocompletion=choice_of("blank", "zero"),
+            help="What an enrolled student who handed in nothing gets.",
         ),
     ] = "blank",
+    accept_zeros: Annotated[
+        bool, typer.Option("--accept-zeros", help="Write 0 for what could not be graded and nobody settled.")
+    ] = False,
     exercise: Annotated[
         list[str] | None,
         typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
@@ -74,7 +92,8 @@ def export(
     """Write the grades in the form another program reads.
 
     Overrides and the late policy are applied anew each time. Students the roster has not are listed and stop
-    the export, unless --partial leaves them out.
+    the export, unless --partial leaves them out. What could not be graded stops an export to a platform,
+    unless a score was given by hand or --accept-zeros says that it is worth 0.
     """
 
     console = current()
@@ -96,6 +115,7 @@ def export(
             partial,
             tuple(exercise or ()),
             missing,
+            accept_zeros,
         )
     if written is not None:
         _show(console, format, written)
@@ -112,14 +132,16 @@ def _from_gradebook(
     partial: bool,
     exercises: tuple[str, ...],
     missing: str,
+    zeros: bool,
 ) -> Written | None:
     """Write it; None if it was printed."""
-    from course.grading.running.run import open_results
+    from course.grading.running.run import open_results, remember
 
     people = read_roster(roster) if roster else None
     if missing not in {"blank", "zero"}:
         raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
-    options = ExportOptions(exercises, _assignments(assignments), partial, missing)
+    sheet = roster if name == "moodle-worksheet" else None
+    options = ExportOptions(exercises, _assignments(assignments), partial, missing, zeros, sheet)
     with open_results(out) as opened:
         results = Results(opened.book, people) if people else opened
         if console.json and name == "jsonl" and output is None:
@@ -131,7 +153,7 @@ def _from_gradebook(
         try:
             # Its extensions count: what lies beside the gradebook is written anew.
             with open_results(out, writing=True) as opened:
-                opened.book.set_meta(roster=people.dump())
+                remember(opened.book, people)
         except CourseError as error:  # the export itself is complete
             console.warn(f"The roster was not remembered: {error.message}")
     return written

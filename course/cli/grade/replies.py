@@ -5,10 +5,26 @@ from __future__ import annotations
 import msgspec
 
 from course.cli.frame.replies import Envelope
+from course.grading.gradebook.records import Decision, Run
+from course.grading.results.journal import Moved
 from course.grading.running.rerun import Change
 from course.grading.running.run import Trouble
 
-__all__ = ["GradeExport", "GradeLate", "GradeRerun", "GradeSimilar", "GradeSummary", "LateOne", "SimilarPair"]
+__all__ = [
+    "AssignedOne",
+    "FoundFile",
+    "GradeAssign",
+    "GradeExport",
+    "GradeLate",
+    "GradeLog",
+    "GradeRerun",
+    "GradeSalvage",
+    "GradeSimilar",
+    "GradeSummary",
+    "LateOne",
+    "SimilarPair",
+    "UnsettledOne",
+]
 
 
 class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=True):
@@ -29,6 +45,10 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     missing: tuple[str, ...] = ()
     strangers: tuple[str, ...] = ()
     unjudged: tuple[str, ...] = ()
+    graders: str = ""
+    edited: tuple[str, ...] = ()
+    would_change: tuple[Change, ...] = ()
+    unsettled: int = 0
 
 
 class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):
@@ -40,6 +60,61 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
     kept: int
     grader_error: int
     changes: tuple[Change, ...]
+    graders: str = ""
+
+
+class AssignedOne(msgspec.Struct, frozen=True, kw_only=True):
+    """A file that became somebody's submission; null scores count for nothing."""
+
+    student: str
+    exercise: str
+    file: str
+    score_before: float | None
+    score_after: float | None
+    state_before: str
+    state_after: str
+
+
+class FoundFile(msgspec.Struct, frozen=True, kw_only=True):
+    """A file that may be meant for an exercise, and which of its functions it defines."""
+
+    file: str
+    defines: tuple[str, ...]
+    proposed: bool
+
+
+class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
+    """What could not be graded by its name; ``reason`` is the code of the problem."""
+
+    student: str
+    exercise: str
+    reason: str
+    files: tuple[FoundFile, ...]
+
+
+class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=True):
+    """What was assigned, and what is left to settle."""
+
+    dry_run: bool
+    assigned: tuple[AssignedOne, ...]
+    unsettled: tuple[UnsettledOne, ...]
+
+
+class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):
+    """Every run, and every change of a grade."""
+
+    runs: tuple[Run, ...]
+    changes: tuple[Decision, ...]
+
+
+class GradeSalvage(Envelope, tag="course.grade-salvage/1", frozen=True, kw_only=True):
+    """Rows by table, those of them that only a backup had, and what is known to be lost."""
+
+    dry_run: bool
+    rows: dict[str, int]
+    from_backup: dict[str, int]
+    lost: tuple[str, ...]
+    out: str
 
 
 class LateOne(msgspec.Struct, frozen=True, kw_only=True):
@@ -61,6 +136,8 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
     late: tuple[LateOne, ...]
     time_unknown: int
     unknown_names: tuple[str, ...]
+    dry_run: bool = False
+    moved: tuple[Moved, ...] = ()
 
 
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from course import extras
-from course.cli.frame.completion import exercise_ids
+from course.cli.frame.completion import choice_of, exercise_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.grade.changes import show_change
 from course.cli.work.verdicts import show_everything
 from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
@@ -29,7 +30,9 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import CourseRef
     from course.grading.gradebook.book import Result
+    from course.grading.gradebook.records import Decision
     from course.grading.results.effective import Effective
+    from course.grading.running.rerun import Change
     from course.grading.running.run import GradeAll, RunOptions, Summary
 
 __all__ = ["explain", "levels", "run", "score_of"]
@@ -49,12 +52,15 @@ def run(
         float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="CPU seconds per check.")
     ] = 10.0,
     resume: Annotated[bool, typer.Option("--resume", help="Finish the run that is in OUT.")] = False,
-    only: Annotated[list[str] | None, typer.Option("--only", metavar="STUDENT")] = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", metavar="STUDENT", autocompletion=submitted_ids)
+    ] = None,
     isolation: Annotated[
         str,
         typer.Option(
             "--isolation",
             metavar="auto|strict|process",
+            autocompletion=choice_of("auto", "strict", "process"),
             help="auto: the best level, L2 at least. strict: L3. process: L1, no protection of files.",
         ),
     ] = "auto",
@@ -67,6 +73,7 @@ def run(
         typer.Option(
             "--layout",
             metavar="auto|folders|canvas|moodle|gradescope",
+            autocompletion=choice_of("auto", "folders", "canvas", "moodle", "gradescope"),
             help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
         ),
     ] = "auto",
@@ -107,8 +114,38 @@ def run(
         _progress(console, catalog.ref) as report,
     ):
         summary = grade_class(submissions, out, catalog, options, report, grade=grade)
-    _show_summary(console, summary, out, options)
+        changes = _would_change(console, summary, out, catalog, terms, grade)
+    _show_summary(console, summary, out, options, changes)
     return summary.exit_code
+
+
+def _would_change(
+    console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
+) -> tuple[Change, ...]:
+    """Who would get another score from the graders as they are now, which a resumed run does not use."""
+    from course.grading.running.rerun import RerunOptions, rerun
+    from course.grading.running.run import open_results
+
+    if not summary.edited:
+        return ()
+    options = RerunOptions(dry_run=True, level=terms.level, at_least=terms.at_least)
+    with open_results(out) as results, console.working("Grading with the edited graders, to compare"):
+        return rerun(results, catalog, options, grade=grade).changes
+
+
+def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...], out: Path) -> None:
+    if not summary.edited:
+        return
+    names = ", ".join(summary.edited)
+    console.line((f"The graders were edited since these scores were given: {names}.", "bold"))
+    console.line(
+        f"Nobody's score was changed by that. With the graders as they are now, {len(changes)} would:"
+    )
+    for change in changes[:_MOST_TROUBLED]:
+        show_change(console, change)
+    if len(changes) > _MOST_TROUBLED:
+        console.line(f"and {len(changes) - _MOST_TROUBLED} more.", indent=2)
+    console.note(f"`course grade rerun {out}` gives these scores; until then the run's own graders count.")
 
 
 def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
@@ -157,7 +194,7 @@ def _show_people(console: Console, summary: Summary) -> None:
 
 def explain(
     out: Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")],
-    student: Annotated[str, typer.Argument(metavar="STUDENT")],
+    student: Annotated[str, typer.Argument(metavar="STUDENT", autocompletion=student_ids)],
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
@@ -167,6 +204,7 @@ def explain(
     with open_results(out) as results:
         found = next(results.all(student, exercise), None)
         history = results.book.history(student, exercise)
+        decisions = [one for one in results.book.journal(student, exercise) if one.student]
     if found is None:
         raise NotFoundError(
             f"The gradebook has no result of {student!r} for {exercise!r}.",
@@ -177,7 +215,7 @@ def explain(
     if console.json:
         console.emit(grade_line(found, results.course))
     else:
-        _show_result(console, catalog, found, history)
+        _show_result(console, catalog, found, history, decisions)
     return 0
 
 
@@ -236,7 +274,9 @@ class _progress:  # noqa: N801 - used as a function
         self._console.emit_line(grade_line(result, self._course))
 
 
-def _show_summary(console: Console, summary: Summary, out: Path, options: RunOptions) -> None:
+def _show_summary(
+    console: Console, summary: Summary, out: Path, options: RunOptions, changes: tuple[Change, ...]
+) -> None:
     if console.json:
         from course.cli.grade.replies import GradeSummary
 
@@ -259,6 +299,10 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
                 troubled=tuple(summary.troubled),
                 unrecognised=tuple(summary.unrecognised),
                 unjudged=tuple(_unjudged(summary)),
+                graders=summary.graders,
+                edited=tuple(summary.edited),
+                would_change=changes,
+                unsettled=summary.unsettled,
             )
         )
         return
@@ -276,7 +320,10 @@ def _show_summary(console: Console, summary: Summary, out: Path, options: RunOpt
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
     _show_people(console, summary)
+    if summary.unsettled:
+        console.note(f"`course grade assign {out}` lists what there is for {summary.unsettled} of them.")
     _show_unjudged(console, list(_unjudged(summary)))
+    _show_edited(console, summary, changes, out)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))
@@ -300,7 +347,13 @@ def _unjudged(summary: Summary) -> Iterator[str]:
         yield f"{exercise} {check}, {count} of the results: {where}"
 
 
-def _show_result(console: Console, catalog: Catalog, found: Effective, history: list[Result]) -> None:
+def _show_result(
+    console: Console,
+    catalog: Catalog,
+    found: Effective,
+    history: list[Result],
+    decisions: list[Decision],
+) -> None:
     verdict, result = found.verdict, found.result
     passed = "passed" if found.passed else "not passed"
     score = "none" if found.score is None else format_points(found.score)
@@ -324,6 +377,11 @@ def _show_result(console: Console, catalog: Catalog, found: Effective, history: 
         if older.number != result.number:
             was = f"{format_points(older.verdict.score)}, {older.verdict.state}"
             console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
+    for note in verdict.warnings:
+        console.item("note", one_line(note), width=10)
+    for decision in decisions:
+        words = f"{decision.at}, {decision.who}: {one_line(decision.reason)}; before: {decision.before}"
+        console.item(decision.kind, one_line(words), width=10)
     if verdict.error is not None:
         console.item("reason", f"{verdict.error.code}: {one_line(verdict.error.message)}", width=10)
         console.item("advice", verdict.error.help, width=10)

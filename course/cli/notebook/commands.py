@@ -7,25 +7,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import notebook_ids
+from course.cli.frame.completion import choice_of, exercise_ids, notebook_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import cwd, find_workspace, load_catalog
+from course.cli.frame.here import cwd, load_catalog
 from course.cli.notebook.checking import check_file
-from course.cli.notebook.files import put
+from course.cli.notebook.files import place, put
 from course.cli.notebook.replies import Notebook
 from course.errors import CourseError, NotFoundError, UsageError
 from course.extras import require
 from course.notebooks.build import Generated, generate
-from course.notebooks.building.layout import FOLDERS, NBGRADER, WORKSPACE
+from course.notebooks.building.layout import NBGRADER
 from course.notebooks.execute import executed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from course.catalog.load import Catalog
-    from course.cli.frame.here import Here
     from course.cli.notebook.replies import NotebookFile
-    from course.notebooks.building.layout import Layout
 
 __all__ = ["app", "build", "check", "update"]
 
@@ -61,7 +59,13 @@ def build(
         bool, typer.Option("--executed", help="Run each one first, so that it opens with its outputs.")
     ] = False,
     form: Annotated[
-        str, typer.Option("--format", metavar="FORMAT", help="jupyter, or nbgrader for an nbgrader site.")
+        str,
+        typer.Option(
+            "--format",
+            metavar="FORMAT",
+            help="jupyter, or nbgrader for an nbgrader site.",
+            autocompletion=choice_of(*FORMATS),
+        ),
     ] = "jupyter",
 ) -> int:
     """Write notebooks.
@@ -78,7 +82,7 @@ def build(
     if executed:
         require("notebook", "nbclient", "ipykernel", what="--executed")
     catalog = load_catalog()
-    folder, layout = _place(out)
+    folder, layout = place(out)
     notebooks: Iterable[Generated] = generate(catalog, ids or [], layout)
     if executed:
         notebooks = (_executed(console, notebook) for notebook in notebooks)
@@ -94,7 +98,7 @@ def update(ids: Ids = None, out: Out = None) -> int:
     """
 
     console, catalog = current(), load_catalog()
-    folder, layout = _place(out)
+    folder, layout = place(out)
     there = [
         notebook for notebook in generate(catalog, ids or [], layout) if (folder / notebook.path).exists()
     ]
@@ -113,7 +117,10 @@ def check(
     exercise: Annotated[
         str | None,
         typer.Option(
-            "--exercise", metavar="EXERCISE", help="Which exercise, if the notebook does not say it."
+            "--exercise",
+            metavar="EXERCISE",
+            help="Which exercise, if the notebook does not say it.",
+            autocompletion=exercise_ids,
         ),
     ] = None,
     verbose: Annotated[
@@ -153,14 +160,6 @@ def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, execu
         "The score that counts is `course grade run`'s: in nbgrader a student's code can forge its own."
     )
     return code
-
-
-def _place(out: Path | None) -> tuple[Path, Layout]:
-    """The folder that notebooks go into, and where in it each lies."""
-    if out is not None:
-        return cwd() / out.expanduser(), FOLDERS
-    here: Here | None = find_workspace()
-    return (cwd() / "notebooks", FOLDERS) if here is None else (here.workspace.root, WORKSPACE)
 
 
 def _executed(console: Console, notebook: Generated) -> Generated:

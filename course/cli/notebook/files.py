@@ -6,8 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from course.cli.frame.files import write
+from course.cli.frame.here import cwd, find_workspace
 from course.cli.notebook.replies import NotebookFile
 from course.handed_in.cells import read_notebook
+from course.notebooks.building.layout import FOLDERS, WORKSPACE
 from course.notebooks.building.merge import CannotMergeError, is_untouched, merged
 from course.progress.workspace import write_atomically
 
@@ -15,12 +17,24 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.notebooks.build import Generated
+    from course.notebooks.building.layout import Layout
 
-__all__ = ["put"]
+__all__ = ["place", "put"]
 
 
-def put(folder: Path, notebook: Generated) -> NotebookFile:
+def place(out: Path | None) -> tuple[Path, Layout]:
+    """The folder that notebooks go into, and where in it each lies."""
+    if out is not None:
+        return cwd() / out.expanduser(), FOLDERS
+    here = find_workspace()
+    return (cwd() / "notebooks", FOLDERS) if here is None else (here.workspace.root, WORKSPACE)
+
+
+def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFile:
     """Write a notebook, or bring the one that is there up to date.
+
+    Args:
+        update: what is there; False leaves it as it is, whatever it holds.
 
     Raises:
         UsageError: what is there cannot be read, or no copy of it can be kept.
@@ -32,6 +46,8 @@ def put(folder: Path, notebook: Generated) -> NotebookFile:
     if not path.exists():
         write_atomically(path, notebook.data)
         return said(action="written")
+    if not update:
+        return said(action="kept")
     old = read_notebook(path)
     try:
         data = merged(old, notebook.data)

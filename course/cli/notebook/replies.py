@@ -7,15 +7,16 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.cli.frame.replies import Backup, Check, Envelope
 
-__all__ = ["Notebook", "NotebookCheck", "NotebookFile"]
+__all__ = ["Notebook", "NotebookCheck", "NotebookFile", "NotebookOpen"]
 
 
 class NotebookFile(msgspec.Struct, frozen=True, kw_only=True):
     """One notebook and what was done.
 
     ``action`` is "written" (there was none), "current" (nothing newer), "replaced" (nobody had written in
-    it), "merged" (the newer one with the student's work in it) or "beside" (``new`` is the newer one,
-    ``path`` as it was, ``reason`` why).
+    it), "merged" (the newer one with the student's work in it), "beside" (``new`` is the newer one,
+    ``path`` as it was, ``reason`` why) or, from ``course open``, "kept" (there was one, and it was not
+    looked into).
     """
 
     kind: str
@@ -33,6 +34,15 @@ class Notebook(Envelope, tag="course.notebook/1", frozen=True, kw_only=True):
     course: CourseRef
     folder: str
     files: tuple[NotebookFile, ...]
+
+
+class NotebookOpen(Envelope, tag="course.open/1", frozen=True, kw_only=True):
+    """``course open``, printed once ``address`` works; the command goes on until it is ended."""
+
+    course: CourseRef
+    folder: str
+    files: tuple[NotebookFile, ...]
+    address: str
 
 
 class NotebookCheck(Envelope, tag="course.notebook-check/1", frozen=True, kw_only=True):

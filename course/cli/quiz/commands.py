@@ -17,6 +17,7 @@ from course.errors import UsageError
 from course.progress import quiz
 from course.quizzing.answers import read_answers
 from course.quizzing.attempt import check_seed, mark, mark_sentence, needed
+from course.quizzing.desk import finished
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -157,9 +158,7 @@ def _no_seed(path: Path, command: str) -> NoReturn:
 
 def _finish(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed], *, resumed: bool) -> int:
     """Score, record, show."""
-    result = mark(posed, attempt.answers)
-    right = {marked.posed.question: marked.right for marked in result.marked}
-    desk.here.record(quiz.DONE, "", quiz.done_data(attempt.id, right, passed=result.passed))
+    result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
     step = _step(result.missed, due, passed=result.passed)
     screen.show_result(console, result)

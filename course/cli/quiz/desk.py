@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import secrets
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from course.cli.frame.here import Here
 from course.errors import CourseError
-from course.progress import quiz
 from course.progress.quiz import quiz_history
 from course.quizzing.attempt import fresh_seed
 from course.quizzing.bank import Bank
+from course.quizzing.desk import answered, begun, fits
 from course.quizzing.review import schedule
 
 if TYPE_CHECKING:
@@ -76,33 +74,14 @@ def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
     return open_or_new(console, desk, seed)[0].seed
 
 
-def fits(bank: Bank, attempt: Attempt) -> bool:
-    """Whether the questions still are the ones the attempt was begun with."""
-    if attempt.questions != bank.ids:
-        return False
-    posed = {question.question: question for question in bank.pose(attempt.seed)}
-    return all(
-        name in posed and posed[name].choice(option) is not None for name, option in attempt.answers.items()
-    )
-
-
 def start(desk: Desk, seed: int) -> Attempt:
     """Record the beginning of an attempt."""
-    attempt = quiz.Attempt(
-        id=secrets.token_hex(8),
-        seed=seed,
-        version=desk.here.catalog.version,
-        questions=desk.bank.ids,
-        started=datetime.now(UTC),
-    )
-    desk.here.record(quiz.START, "", quiz.start_data(attempt.id, seed, attempt.version, attempt.questions))
-    return attempt
+    return begun(desk.bank, seed, desk.here.catalog.version, desk.here.record)
 
 
 def answer(desk: Desk, attempt: Attempt, question: str, option: str) -> None:
-    """Record one answer at once, so that nothing is lost however the program ends."""
-    attempt.answers[question] = option
-    desk.here.record(quiz.ANSWER, question, quiz.answer_data(attempt.id, option))
+    """Record one answer at once."""
+    answered(attempt, question, option, desk.here.record)
 
 
 def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from course.browser import keep_closed
 from course.cli.frame.arguments import LessonName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import find_workspace, load_catalog
@@ -35,11 +36,11 @@ def lessons() -> int:
     here = find_workspace()
     catalog = here.catalog if here else load_catalog()
     states = lesson_states(here) if here else tuple(lesson_state(item, None) for item in catalog.lessons())
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for state in states:
         read = day(state.read_at)[:10] if state.read_at else "" if here is None else "no"
-        rows.append((state.id, state.title, f"{state.minutes} min", read))
-    console.table(("Id", "Lesson", "Time", "Read"), rows)
+        rows.append((state.id, str(len(rows) + 1), state.title, f"{state.minutes} min", read))
+    console.table(("Id", "No.", "Lesson", "Time", "Read"), rows)
     unread = next((state.id for state in states if state.read_at is None), None)
     step = f"course lesson {unread}" if unread else None
     if step:
@@ -60,6 +61,9 @@ def lesson(
         int | None,
         typer.Option("--code", metavar="N", min=1, help="Print the code of cell N and nothing else."),
     ] = None,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Open no page and no picture; say where each is.")
+    ] = False,
 ) -> int:
     """Read a lesson.
 
@@ -71,9 +75,11 @@ def lesson(
     console = current()
     here = find_workspace()
     catalog = here.catalog if here else load_catalog()
-    chosen = catalog.lesson(name or _next_unread(here, catalog))
+    chosen = catalog.lesson_called(name or _next_unread(here, catalog))
     if code is not None:
         return _print_code(console, chosen, code)
+    if no_browser:
+        keep_closed()
     if not page and figures is None and _fills_the_screen(console):
         return _read_on_screen(console, here, catalog, chosen)
     text = io.StringIO()
@@ -149,7 +155,7 @@ def _fills_the_screen(console: Console) -> bool:
 def _read_on_screen(console: Console, here: Here | None, catalog: Catalog, chosen: Lesson) -> int:
     from course.cli.reading.screen.view import read
 
-    last, trouble = read(catalog, chosen.id, here.workspace.store if here else None)
+    last, trouble = read(catalog, chosen.id, here.workspace if here else None)
     lesson = last.script.lesson
     for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
         console.warn(warning)

@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from course.catalog import blocks as b
-from course.cli.reading.pictures import InlinePicture, protocol_of
+from course.cli.frame.pictures import picture, protocol_of
 from course.cli.reading.words import LABELS, link_words, value_text
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class FancyPrinter:
         self._figures_dir = figures_dir
         self._room = max(20, width - _MARGIN)
         self._prose = min(self._room, _PROSE)
-        self._protocol = protocol_of(console, environ)
+        self._environ = environ
         self.pictures: list[Path] = []
 
     def head(self) -> None:
@@ -188,12 +188,13 @@ class FancyPrinter:
         number = self._figure_ids.index(figure.id) + 1
         caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
         shown: list[RenderableType] = []
-        if self._protocol:
-            from course.figures.registry import png
+        from course.figures.registry import build
 
-            shown.append(InlinePicture(png(figure.id), self._protocol, self._prose))
+        drawn = picture(self._console, self._environ, lambda: build(figure.id), self._prose)
+        if drawn is not None:
+            shown.append(drawn)
         shown.append(caption)
-        if not self._protocol:
+        if not protocol_of(self._console, self._environ):  # half blocks are coarse: words go with them
             shown.append(Text.assemble(("To be seen: ", "bold"), figure.alt, style="dim"))
         shown.append(self._where(figure))
         return Group(*shown)
@@ -207,7 +208,7 @@ class FancyPrinter:
             self.pictures.append(path)
             link = Style(link=path.absolute().as_uri())
             return Text.assemble(("Picture: ", "bold"), (str(path), link))
-        if self._protocol:
+        if protocol_of(self._console, self._environ):
             return Text("")
         command = f"course lesson {self._lesson.id} --figures DIR"
         return Text.assemble(("Picture: ", "bold"), (command, _SPANS["code"]))

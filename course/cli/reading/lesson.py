@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog import blocks as b
-from course.catalog.markdown import read_blocks
+from course.catalog.markdown import read_blocks, read_task
 from course.cli.reading.fancy import FancyPrinter
 from course.cli.reading.plain import PlainPrinter
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from course.catalog.load import Catalog
-    from course.catalog.models import Lesson
+    from course.catalog.models import Exercise, Lesson
 
 __all__ = ["Page", "Reader", "lesson_pages", "render_lesson"]
 
@@ -102,11 +102,10 @@ class Reader:
         self.pages = lesson_pages(lesson)
         everything = [block for page in self.pages for block in b.walk_blocks(page.blocks)]
         numbers = [block.id for block in everything if isinstance(block, b.Figure)]
+        self._printer: FancyPrinter | PlainPrinter
         # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
         if plain or not console.encoding.lower().startswith("utf"):
-            self._printer: FancyPrinter | PlainPrinter = PlainPrinter(
-                catalog, lesson, console, numbers, figures_dir
-            )
+            self._printer = PlainPrinter(catalog, lesson, console, numbers, figures_dir)
         else:
             self._printer = FancyPrinter(
                 catalog, lesson, console, numbers, figures_dir, width or console.width, os.environ
@@ -122,6 +121,10 @@ class Reader:
         if page.first:
             self._printer.head()
         self._printer.blocks(page.blocks)
+
+    def show_task(self, warm_up: Exercise) -> None:
+        """Print the text of a warm-up of the lesson."""
+        self._printer.blocks(read_task(warm_up.readme_path))
 
 
 def _paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import scene_ids
+from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd
 from course.cli.sandbox import files as sandbox_files
@@ -42,7 +42,9 @@ app = typer.Typer(
 _SCENE = typer.Argument(
     metavar="SCENE", help="A scene, or a file of your own that ends in .toml.", autocompletion=scene_ids
 )
-_SET = typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter; as often as needed.")
+_SET = typer.Option(
+    "--set", metavar="KEY=VALUE", help="Set a parameter; as often as needed.", autocompletion=scene_settings
+)
 
 
 @app.callback(epilog="Example: course sandbox play newtons-cradle")
@@ -177,7 +179,15 @@ def replay(
 @app.command(epilog="Example: course sandbox export unequal-masses --format mjcf -o world.xml")
 def export(
     scene: Annotated[str, _SCENE],
-    format_: Annotated[str, typer.Option("--format", help="sdf (Gazebo) or mjcf (MuJoCo).")],
+    format_: Annotated[
+        str,
+        typer.Option(
+            "--format",
+            metavar="sdf|mjcf",
+            help="sdf (Gazebo) or mjcf (MuJoCo).",
+            autocompletion=choice_of("sdf", "mjcf"),
+        ),
+    ],
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; else to the screen.")
     ] = None,

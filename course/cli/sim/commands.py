@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame import files
-from course.cli.frame.completion import simulation_ids
+from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
-from course.cli.sim.files import figure, table
+from course.cli.sim.files import builder, figure, table
 from course.cli.sim.replies import Sim, SimAll, SimEntry, SimList, SimParameter, SimRow, SimSetting
 from course.errors import UsageError
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
@@ -98,7 +98,12 @@ def run(
     ] = False,
     settings: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter; as often as needed."),
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set a parameter; as often as needed.",
+            autocompletion=simulation_settings,
+        ),
     ] = None,
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE", help="Write the figure: .png, .svg or .pdf.")
@@ -156,14 +161,14 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
     with console.working(f"Running {simulation.id}"):
         result = run_simulation(simulation, pairs)
     _show(console, simulation, result)
-    drawn = written = None
+    plotted = written = None
     if plot:
         with console.working("Drawing"):
             picture = figure(result, plot.suffix.lower().removeprefix("."))
-        drawn = _written(console, files.write(plot, picture))
+        plotted = _written(console, files.write(plot, picture))
     if csv:
         written = _written(console, files.write(csv, table(result)))
-    return _reply(simulation, result, drawn, written)
+    return _reply(simulation, result, plotted, written)
 
 
 def _written(console: Console, file: WrittenFile) -> WrittenFile:
@@ -184,23 +189,12 @@ def _show(console: Console, simulation: Simulation, result: Result) -> None:
         console.line((_settings(simulation, result), "dim"))
         if changed:
             console.line(f"Changed: {', '.join(changed)}.")
-        _table(console, [_cells(row) for row in result.rows])
+        console.figure(builder(result))
+        console.table_or_facts(_HEADS, [_cells(row) for row in result.rows])
     console.line((result.finding, "bold"))
 
 
 _HEADS = ("Measured", "Simulated", "Theory", "Error")
-
-
-def _table(console: Console, rows: list[tuple[str, str, str, str]]) -> None:
-    """The rows as a table or, where it is too wide for the window, each number under what it is."""
-    width = sum(max(map(len, column)) + 3 for column in zip(_HEADS, *rows, strict=True))
-    if console.plain or width <= console.width:
-        console.table(_HEADS, rows)
-        return
-    for quantity, *numbers in rows:
-        console.line(quantity)
-        facts = [f"{head.lower()} {text}" for head, text in zip(_HEADS[1:], numbers, strict=True) if text]
-        console.line(", ".join(facts), indent=2)
 
 
 def _settings(simulation: Simulation, result: Result) -> str:

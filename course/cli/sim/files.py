@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from course.figures.registry import Builder
     from course.simulations.base import Result
 
-__all__ = ["figure", "table"]
+__all__ = ["builder", "figure", "table"]
 
 
 def table(result: Result) -> bytes:
@@ -24,6 +25,17 @@ def table(result: Result) -> bytes:
 
 def figure(result: Result, kind: str) -> bytes:
     """The figure of a run as a PNG, SVG or PDF file; the same run gives the same bytes."""
-    from course.figures.simulations import render
+    from course.figures.experiments.basic import render
 
     return render(result, kind)
+
+
+def builder(result: Result) -> Builder:
+    """Draws the figure of a run, for a screen."""
+
+    def make() -> Any:
+        from course.figures.experiments.basic import draw
+
+        return draw(result)
+
+    return make

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.errors import CourseError
@@ -13,13 +14,13 @@ if TYPE_CHECKING:
     from course.cli.frame.here import Here
     from course.scoring.verdict import Verdict
 
-__all__ = ["next_in_course", "next_step"]
+__all__ = ["after_warm_up", "next_in_course", "next_step"]
 
 
 def next_step(here: Here, exercise: Exercise, verdict: Verdict, source: bytes) -> str:
     """After a check: hand in, take a hint if one is due, or go on working."""
     if verdict.all_pass:
-        return "course submit"
+        return after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
     stub = fingerprint(here.stub(exercise))
     if fingerprint(source) == stub:
         return _before_writing(here, exercise)
@@ -30,15 +31,36 @@ def next_step(here: Here, exercise: Exercise, verdict: Verdict, source: bytes) -
     return f"course hint {exercise.id}" if due else f"course watch {exercise.id}"
 
 
+def after_warm_up(here: Here, warm_up: Exercise) -> str:
+    """Once a warm-up is done: what it has to show, the next one of its lesson, or the lesson itself."""
+    if (Path(warm_up.folder) / "report.py").is_file():
+        return f"course report {warm_up.id}"
+    try:
+        done = {e.subject for e in here.workspace.store.events("check") if e.data.get("all_pass")}
+        read = any(event.subject == warm_up.lesson for event in here.workspace.store.events("lesson"))
+    except CourseError:
+        done, read = set(), False
+    left = [one.id for one in here.catalog.warm_ups(warm_up.lesson) if one.id not in {*done, warm_up.id}]
+    if left:
+        return f"course warmup {left[0]}"
+    return next_in_course(here) if read else f"course lesson {warm_up.lesson}"
+
+
 def next_in_course(here: Here) -> str:
     """From anywhere: the first lesson unread or exercise unfinished, in the order of the syllabus."""
     catalog = here.catalog
     read = {event.subject for event in here.workspace.store.events("lesson")}
     started = set(here.workspace.started())
     done: set[str] = set()
+    # Warm-ups are offered where the student is now; moving on leaves the rest of them behind.
+    furthest = next((name for name in reversed(catalog.lesson_ids()) if name in read), "")
     for lesson in catalog.lessons():
         if lesson.id not in read and not set(lesson.exercises) & started:
             return f"course lesson {lesson.id}"
+        if lesson.id in read and not set(lesson.exercises) & started and lesson.id == furthest:
+            step = _warm_up_step(here, lesson.id, started)
+            if step:
+                return step
         for name in lesson.exercises:
             done.add(name)
             step = _exercise_step(here, name, started)
@@ -51,6 +73,14 @@ def next_in_course(here: Here) -> str:
     if not started:
         return "course lessons"
     return "course submit" if _quiz_passed(here) else "course quiz take"
+
+
+def _warm_up_step(here: Here, lesson: str, started: set[str]) -> str:
+    """The first warm-up of a lesson that is not done; empty if there is none."""
+    for warm_up in here.catalog.warm_ups(lesson):
+        if not any(run.all_pass and not run.only for run in here.history(warm_up).runs):
+            return f"course {'check' if warm_up.id in started else 'warmup'} {warm_up.id}"
+    return ""
 
 
 def _quiz_passed(here: Here) -> bool:
@@ -74,6 +104,8 @@ def _exercise_step(here: Here, name: str, started: set[str]) -> str:
 
 def _before_writing(here: Here, exercise: Exercise) -> str:
     """Nothing is written yet: the lesson, if it was not read, or the file."""
+    if exercise.is_warm_up:  # done while its lesson is read
+        return f"course watch {exercise.id}"
     try:
         read = any(event.subject == exercise.lesson for event in here.workspace.store.events("lesson"))
     except CourseError:

@@ -54,7 +54,7 @@ def diff(exercise: ExerciseName = None) -> int:
     console.emit(
         Diff(
             exercise=work.exercise.id,
-            path=str(here.workspace.path(work.exercise.id, work.name)),
+            path=str(here.workspace.path(work.exercise.place, work.name)),
             changed=bool(rows),
             added=added,
             removed=removed,
@@ -75,7 +75,7 @@ def reset(
 
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
-    path = here.workspace.path(chosen.id, chosen.module)
+    path = here.workspace.path(chosen.place, chosen.module)
     stub = chosen.stub_path.read_bytes()
     shown = here.workspace.shown(path)
     step = f"course check {chosen.id}"
@@ -94,7 +94,7 @@ def reset(
         console.line(f"Your version is kept at {here.workspace.shown(copy)}.")
         backups.append(Backup(path=str(path), backup=str(copy)))
     write_atomically(path, stub)
-    here.workspace.remember(chosen.id, chosen.module, stub)
+    here.workspace.remember(chosen.place, chosen.module, stub)
     here.record("reset", chosen.id, {"backups": [item.backup for item in backups]})
     console.line(f"{shown} is the stub again.")
     for warning in here.warnings:
@@ -143,7 +143,7 @@ def _agreed(console: Console, shown: str) -> bool:
 
 
 def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
-    for exercise in here.started():
+    for exercise in (*here.started(), *here.warm_ups_started()):
         for name in (*HANDED_OUT, exercise.module):
             source = Path(exercise.folder) / name
             if source.is_file():
@@ -153,23 +153,23 @@ def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
     """Bring one file up to date, or say what that would mean."""
     workspace = here.workspace
-    path = workspace.path(exercise.id, name)
-    given = workspace.given(exercise.id, name)
+    path = workspace.path(exercise.place, name)
+    given = workspace.given(exercise.place, name)
     if not path.is_file():
         return Change(path=str(path), action="missing")
     mine = path.read_bytes()
     if same_text(mine, new):
         if not dry_run and given != new:
-            workspace.remember(exercise.id, name, new)
+            workspace.remember(exercise.place, name, new)
         return Change(path=str(path), action="current")
     if given is not None and same_text(given, new):
         return Change(path=str(path), action="current")  # edited by the student, and nothing newer to offer
-    if not workspace.is_edited(exercise.id, name, mine):
+    if not workspace.is_edited(exercise.place, name, mine):
         backup = None
         if not dry_run:
             backup = str(workspace.backup(path, "update"))
             write_atomically(path, new)
-            workspace.remember(exercise.id, name, new)
+            workspace.remember(exercise.place, name, new)
         return Change(path=str(path), action="replace", backup=backup)
     beside = path.with_name(f"{name}.new")
     backup = None
@@ -177,7 +177,7 @@ def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_r
         if beside.is_file() and beside.read_bytes() != new:
             backup = str(workspace.backup(beside, "update"))
         write_atomically(beside, new)
-        workspace.remember(exercise.id, name, new)
+        workspace.remember(exercise.place, name, new)
     return Change(path=str(path), action="beside", new=str(beside), backup=backup)
 
 

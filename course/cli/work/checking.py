@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.completion import check_ids, choice_of
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Check, CheckAll, ErrorBody, ErrorReply, NextStep
 from course.cli.work.advice import next_step
+from course.cli.work.annotations import FORMATS, annotate, annotate_error, known_format
 from course.cli.work.chosen import asked_for, chosen_work, worked_on
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
@@ -40,10 +42,21 @@ FAILED = 1
 def check(
     exercise: ExerciseName = None,
     everything: Annotated[bool, typer.Option("--all", help="Check every exercise you have started.")] = False,
-    only: Annotated[str | None, typer.Option(metavar="CHECK", help="Run one check, by its id.")] = None,
+    only: Annotated[
+        str | None, typer.Option(metavar="CHECK", help="Run one check, by its id.", autocompletion=check_ids)
+    ] = None,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Show tracebacks and what your code printed.")
     ] = False,
+    form: Annotated[
+        str,
+        typer.Option(
+            "--format",
+            metavar="text|github|lines",
+            help="github: annotations for a workflow. lines: file:line: error: what, for an editor.",
+            autocompletion=choice_of(*FORMATS),
+        ),
+    ] = "text",
 ) -> int:
     """Run the public checks.
 
@@ -51,14 +64,15 @@ def check(
     could be checked. Reads your notebook where you worked in that instead of the .py.
     """
 
+    form = known_format(form)
     console, here = current(), Here.load()
     if everything:
         if exercise is not None or only is not None:
             raise UsageError("--all takes neither an exercise nor --only.", help="Leave one of them out.")
-        return _check_all(console, here, verbose=verbose)
+        return _check_all(console, here, verbose=verbose, form=form)
     chosen = chosen_work(here, *asked_for(here, exercise))
-    reply = _check_one(console, here, chosen, only=only, verbose=verbose)
-    if reply.next is not None:
+    reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
+    if reply.next is not None and form == "text":
         console.note(f"Next: {reply.next.command}")
     for warning in here.warnings:
         console.warn(warning)
@@ -91,7 +105,7 @@ def grade_once(session: GradingSession, submission: Submission, only: str | None
     """
     if only is not None:
         _must_exist(only, [check.id for check in session.checks], session.exercise)
-    return session.grade(submission, only=only)
+    return session.grade(submission, only=[only] if only else ())
 
 
 def unlike_verdict(verdict: Verdict) -> CourseError | None:
@@ -155,10 +169,12 @@ def _check_one(
     only: str | None = None,
     one_of_many: bool = False,
     verbose: bool = False,
+    form: str = "text",
 ) -> Check:
     """Check, record, show; raises what keeps it from being checked."""
     exercise, source = work.exercise, work.source
-    say_which(console, here, work)
+    if form == "text":
+        say_which(console, here, work)
     with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
         begin = time.perf_counter()
         with open_session(exercise, here.catalog) as session:
@@ -167,14 +183,27 @@ def _check_one(
     record_verdict(here, exercise, source, verdict, seconds, only=only, one_of_many=one_of_many)
     problem = unlike_verdict(verdict)
     if problem is not None:
+        if form != "text":
+            annotate_error(console, here, work, problem, form)
         raise problem
-    show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None)
+    if form == "text":
+        # A warm-up is small, and one thing at a time is enough of it.
+        brief = exercise.is_warm_up and not verbose
+        show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
+    else:
+        annotate(console, here, work, verdict, form)
     step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""
     return reply_to(here.course, verdict, step or f"course check {exercise.id}")
 
 
-def _check_all(console: Console, here: Here, *, verbose: bool) -> int:
-    started = worked_on(here)
+def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:
+    known = worked_on(here)
+    # A repository need not hold the record of what was started; the files are there all the same.
+    started = [
+        one
+        for one in here.catalog.exercises()
+        if one in known or here.workspace.path(one.place, one.module).is_file()
+    ]
     if not started:
         raise NotFoundError(
             "No exercise has been started here.",
@@ -183,10 +212,11 @@ def _check_all(console: Console, here: Here, *, verbose: bool) -> int:
         )
     results: list[Check | ErrorReply] = []
     for exercise in started:
-        console.heading(exercise.id)
+        if form == "text":
+            console.heading(exercise.id)
         try:
             work = chosen_work(here, exercise)
-            results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose))
+            results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose, form=form))
         except CourseError as error:
             console.error(error.message, error.help)
             body = ErrorBody(code=error.code, message=error.message, help=error.help)

@@ -56,7 +56,7 @@ class Work:
     @property
     def path(self) -> str:
         """Where it lies in the workspace, and in the archive that is handed in."""
-        return f"{self.exercise.id}/{self.name}"
+        return f"{self.exercise.place}/{self.name}"
 
     @property
     def submission(self) -> Submission:
@@ -78,9 +78,9 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
     if wanted is None or Path(wanted).suffix not in (".py", NOTEBOOK):
         return here.exercise(wanted), None
     path = (cwd() / Path(wanted).expanduser()).resolve()
-    for exercise in here.catalog.exercises():
+    for exercise in (*here.catalog.exercises(), *here.catalog.warm_ups()):
         for name in (exercise.module, _notebook_name(exercise)):
-            if path == here.workspace.path(exercise.id, name).resolve():
+            if path == here.workspace.path(exercise.place, name).resolve():
                 return exercise, name
     raise NotFoundError(
         f"{wanted} is not where a file of an exercise lies in this workspace.",
@@ -95,12 +95,12 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Wor
     Raises:
         UngradableError: there is none, or it cannot be read, or holds nothing that could be graded.
     """
-    notebook_there = here.workspace.path(exercise.id, _notebook_name(exercise)).exists()
+    notebook_there = here.workspace.path(exercise.place, _notebook_name(exercise)).exists()
     if named == _notebook_name(exercise):
         return _notebook(here, exercise)
     if named is not None or not notebook_there:
         return _module(here, exercise)
-    if not here.workspace.path(exercise.id, exercise.module).exists():
+    if not here.workspace.path(exercise.place, exercise.module).exists():
         return _notebook(here, exercise)
     module = _module(here, exercise)
     if not _is_edited(here, module):
@@ -119,11 +119,11 @@ def worked_on(here: Here) -> tuple[Exercise, ...]:
     )
 
 
-def work_of(here: Here) -> tuple[list[Work], list[FileReply]]:
-    """What goes in, and what does not and why."""
+def work_of(here: Here, *, warm_ups: bool = False) -> tuple[list[Work], list[FileReply]]:
+    """What goes in, and what does not and why; warm-ups only if they are asked for."""
     chosen: list[Work] = []
     left_out: list[FileReply] = []
-    for exercise in here.catalog.exercises():
+    for exercise in (*here.catalog.exercises(), *(here.warm_ups_started() if warm_ups else ())):
         module = _handed_in_module(here, exercise)
         notebook, why_not = _handed_in_notebook(here, exercise)
         if isinstance(module, Work):
@@ -142,7 +142,7 @@ _STUB, _MISSING = "still the stub", "not there"
 
 
 def _reply(exercise: Exercise, name: str, why: str) -> Iterator[FileReply]:
-    yield FileReply(path=f"{exercise.id}/{name}", action=why)
+    yield FileReply(path=f"{exercise.place}/{name}", action=why)
 
 
 def _notebook_name(exercise: Exercise) -> str:
@@ -169,7 +169,7 @@ def _notebook(here: Here, exercise: Exercise) -> Work:
     from course.notebooks.building.exercises import exercise_notebook
 
     name = _notebook_name(exercise)
-    path = here.workspace.path(exercise.id, name)
+    path = here.workspace.path(exercise.place, name)
     if not path.exists():
         raise UngradableError(
             f"There is no file {here.workspace.shown(path)}.",
@@ -191,7 +191,7 @@ def _notebook(here: Here, exercise: Exercise) -> Work:
 def _is_edited(here: Here, work: Work) -> bool:
     """Whether somebody wrote in a file since it was handed out."""
     if work.notebook is None:
-        return here.workspace.is_edited(work.exercise.id, work.name, work.data)
+        return here.workspace.is_edited(work.exercise.place, work.name, work.data)
 
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
 
@@ -218,7 +218,7 @@ def _beside_notebook(here: Here, module: Work) -> Work:
 
 def _handed_in_module(here: Here, exercise: Exercise) -> Work | str:
     """The module as it is handed in, or why it is not."""
-    if not here.workspace.path(exercise.id, exercise.module).exists():
+    if not here.workspace.path(exercise.place, exercise.module).exists():
         return _MISSING
     module = _module(here, exercise)
     return module if _is_edited(here, module) else _STUB
@@ -228,7 +228,7 @@ def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[Work | None, st
     """The notebook as it is handed in; or None and why not, "" where there is none."""
     from dataclasses import replace
 
-    if not here.workspace.path(exercise.id, _notebook_name(exercise)).exists():
+    if not here.workspace.path(exercise.place, _notebook_name(exercise)).exists():
         return None, ""
     try:
         notebook = _notebook(here, exercise)

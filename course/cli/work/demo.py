@@ -1,14 +1,15 @@
-"""``course demo``: what checking looks like, for someone who has installed the course a minute ago.
+"""``course demo``: a mistake found, explained and mended, for a person who installed the course a minute ago.
 
-An untouched stub first, then a small finished example, both through the very session that grades a class.
-Everything happens in a temporary folder.
+A worked example is checked with its mistake and without it, through the session that grades a class, and
+both motions are drawn. Nothing is written anywhere.
 """
 
 from __future__ import annotations
 
-import tempfile
+import difflib
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from course.catalog.load import read_toml
 from course.catalog.models import Exercise
@@ -20,48 +21,99 @@ from course.cli.work.verdicts import show_verdict
 from course.errors import InternalError
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from course.catalog.load import Catalog
+    from course.figures.drawing.described import Plot
+    from course.scoring.session import GradingSession
     from course.scoring.verdict import Verdict
 
-__all__ = ["WORKED", "demo", "worked_example"]
+__all__ = ["MISTAKEN", "WORKED", "demo", "worked_example"]
 
-#: The finished example, a folder beside the lessons; it is no exercise.
-WORKED = "worked/free-fall"
+#: The worked example, a folder beside the lessons; it is no exercise.
+WORKED = "worked/spring"
+#: The same module with one line wrong.
+MISTAKEN = "mistaken.py"
+
+#: What is drawn: stretch in m, rate in rad/s, step in s, number of steps. 10 s, about three periods.
+STRETCH, RATE, STEP, STEPS = 0.1, 2.0, 0.05, 200
+#: Two panels stand side by side from this width on, in columns.
+_WIDE = 70
+_PANEL_ROWS = 17
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """A module, what its checks said, and the motion it computed: positions (m) and velocities (m/s)."""
+
+    source: str
+    verdict: Verdict
+    x: np.ndarray[Any, Any]
+    v: np.ndarray[Any, Any]
+
+    @property
+    def energy(self) -> tuple[float, float]:
+        """The least and the most energy, in units of the energy at the start."""
+        energy = self.v**2 + (RATE * self.x) ** 2
+        return float(energy.min() / energy[0]), float(energy.max() / energy[0])
 
 
 def demo() -> int:
-    """See what checking looks like, without a workspace.
+    """See a mistake found and mended, without a workspace.
 
-    Checks the first exercise as it is handed out, with nothing written yet, and then a worked example.
-    Leaves nothing behind.
+    An integrator that says Euler and does something else is checked, mended and checked again, as your own
+    code will be. Leaves nothing behind.
     """
 
+    from course.cli.work.checking import open_session
+
     console, catalog = current(), load_catalog()
-    if not catalog.exercises():
-        raise InternalError("This course has no exercise to show.", code="demo_failed")
-    exercise, example = catalog.exercises()[0], worked_example(catalog)
-    stub = _checked(console, catalog, exercise, f"1. {exercise.title}: the file as it is handed out")
-    console.note(
-        f"Every function waits for you: `course start {exercise.id}` puts this file into a workspace."
-    )
-    console.blank()
-    worked = _checked(console, catalog, example, f"2. {example.title}: a worked example, finished")
-    console.note(f"Read it at {example.folder}")
-    console.blank()
-    if stub.all_pass or not worked.all_pass:
+    example = worked_example(catalog)
+    sources = [
+        (Path(example.folder) / name).read_text(encoding="utf-8") for name in (MISTAKEN, example.module)
+    ]
+    change = _change(*sources)
+    with open_session(example, catalog) as session:
+        console.heading("1. This function calls itself explicit Euler")
+        console.block(_function(sources[0]), "python", indent=2)
+        console.blank()
+        before = _motion(console, session, sources[0])
+        show_verdict(console, example, before.verdict)
+        console.blank()
+        console.heading("2. The one line, mended")
+        console.block("\n".join(change), "diff", indent=2)
+        console.blank()
+        after = _motion(console, session, sources[1])
+        show_verdict(console, example, after.verdict)
+    if before.verdict.all_pass or not after.verdict.all_pass:
         raise InternalError(
-            "The demonstration went wrong: the stub must fail its checks and the example pass them.",
+            "The demonstration went wrong: the mistake must fail its checks and the mended file pass them.",
             help="Run `course doctor`; if it finds nothing, please report this.",
             code="demo_failed",
         )
+    console.blank()
+    console.heading("3. What the mistake hid")
+    _draw(console, before, after)
+    console.line(_said(before, after))
+    console.note(f"Read the example and its checks: {example.folder}")
     console.note(("Next: course init my-course", "bold"))
     course = catalog.ref
-    console.emit(Demo(stub=reply_to(course, stub), worked=reply_to(course, worked)))
+    console.emit(
+        Demo(
+            before=reply_to(course, before.verdict),
+            after=reply_to(course, after.verdict),
+            change=change,
+            steps=STEPS,
+            step_size=STEP,
+            energy_before=before.energy,
+            energy_after=after.energy,
+        )
+    )
     return 0
 
 
 def worked_example(catalog: Catalog) -> Exercise:
-    """The finished example, in the form of an exercise, so that the same session can check it."""
+    """The worked example, in the form of an exercise, so that the same session can check it."""
     import msgspec
 
     folder = catalog.content.lessons / WORKED
@@ -71,19 +123,69 @@ def worked_example(catalog: Catalog) -> Exercise:
     return msgspec.structs.replace(read_toml(folder / "exercise.toml", Exercise), folder=str(folder))
 
 
-def _checked(console: Console, catalog: Catalog, exercise: Exercise, title: str) -> Verdict:
-    """Check the module in the exercise's own folder, from a copy, and show the verdict."""
-    from course.cli.work.checking import grade_once, open_session, unlike_verdict
+def _motion(console: Console, session: GradingSession, source: str) -> _Motion:
+    """Check a module and let it compute the motion that is drawn."""
+    import numpy as np
+
+    from course.cli.work.checking import grade_once, unlike_verdict
     from course.scoring.session import Submission
 
-    console.heading(title)
-    with tempfile.TemporaryDirectory(prefix="course-demo-") as folder:
-        copy = Path(folder) / exercise.module
-        copy.write_bytes(exercise.stub_path.read_bytes())
-        with console.working("Checking"), open_session(exercise, catalog) as session:
-            verdict = grade_once(session, Submission({exercise.module: copy.read_bytes()}))
-    problem = unlike_verdict(verdict)
-    if problem is not None:
-        raise InternalError(problem.message, help=problem.help, code=problem.code)
-    show_verdict(console, exercise, verdict)
-    return verdict
+    submission = Submission({session.exercise.module: source.encode()})
+    with console.working("Checking"):
+        verdict = grade_once(session, submission)
+        problem = unlike_verdict(verdict)
+        if problem is not None:
+            raise InternalError(problem.message, help=problem.help, code=problem.code)
+        task = session.exercise.task[0].id
+        x, v = session.using(submission, lambda live: live.call(task, STRETCH, RATE, STEP, STEPS))
+    return _Motion(source, verdict, np.array(x), np.array(v))
+
+
+def _function(source: str) -> str:
+    """A module without its own docstring: the function."""
+    return source[source.index("def ") :].rstrip()
+
+
+def _change(before: str, after: str) -> tuple[str, ...]:
+    """The lines that differ, as a diff without its heads, indented as little as they can be."""
+    lines = difflib.ndiff(before.splitlines(), after.splitlines())
+    changed = [line for line in lines if line[:2] in {"- ", "+ "}]
+    margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
+    return tuple(line[:2] + line[2 + margin :] for line in changed)
+
+
+def _said(before: _Motion, after: _Motion) -> str:
+    """What the picture shows, with its numbers."""
+    low, high = before.energy
+    return (
+        f"Over {STEP * STEPS:g} s of the same spring, the mistaken function keeps the energy between "
+        f"{low:.2f} and {high:.2f} times its start; the mended one lets it grow to {after.energy[1]:.2f} "
+        "times, as explicit Euler does. A comparison of methods made with the first would have praised Euler "
+        "for what another method did."
+    )
+
+
+def _draw(console: Console, before: _Motion, after: _Motion) -> None:
+    """Both motions, where the terminal can show a picture."""
+    if not console.draws:
+        return
+    from course.cli.frame.half_blocks import half_blocks
+    from course.figures.terminal import terminal_plot
+
+    wide = console.width >= _WIDE
+    columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
+    with console.working("Drawing"):
+        drawn = terminal_plot(_plot(before, after, wide=wide), columns, rows)
+    labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
+    for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
+        console.rich().print(line)
+
+
+def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
+    from course.figures.drawing.described import Panel, Plot, Series
+
+    panels = tuple(
+        Panel("position / m", "velocity / (m/s)", (Series("", motion.x, motion.v),), title=title)
+        for title, motion in (("before", before), ("after", after))
+    )
+    return Plot("", panels, columns=2 if wide else 1)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
 
-__all__ = ["doctor", "packages"]
+__all__ = ["doctor", "packages", "protection", "terminal"]
 
 #: What a student needs none of.
 _NOT_FOR_USERS = {"dev", "all"}
@@ -48,9 +48,9 @@ def doctor(
     found = tuple(packages())
     fixes = _missing(found)
     workspace, repaired, trouble = _workspace(repair=repair)
-    level, causes, advice = _protection()
+    level, causes, advice = protection()
     kind = "checkout (instructor's)" if catalog.content.is_checkout else "wheel (student's)"
-    shape = _terminal(console)
+    shape = terminal(console)
     complete = not any(item.group == "" and not item.ok for item in found) and not trouble
     _show_basics(console, catalog, kind)
     _show_packages(console, found)
@@ -62,6 +62,13 @@ def doctor(
     for line in (repaired, trouble):
         if line:
             console.line(line)
+    unserved = tuple(
+        f"Optional ({one.group}): {one.unserved}."
+        for one in requirements()
+        if one.unserved and one.group not in _NOT_FOR_USERS
+    )
+    for sentence in unserved:
+        console.line(sentence)
     for fix in fixes:
         console.line(f"{fix.problem} Install it with: {fix.command}")
     console.line(("Everything the course needs is here." if complete else "Something is missing.", "bold"))
@@ -82,6 +89,7 @@ def doctor(
             workspace=workspace,
             repaired=repaired,
             fixes=fixes,
+            unserved=unserved,
         )
     )
     return code
@@ -139,7 +147,7 @@ def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
     return tuple(fixes)
 
 
-def _protection() -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+def protection() -> tuple[str, tuple[str, ...], tuple[str, ...]]:
     """The level this machine reaches, why no higher one, and what would raise it."""
     try:
         from course.isolation.probe import probe
@@ -179,7 +187,7 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
     return root, repaired, None
 
 
-def _terminal(console: Console) -> dict[str, str]:
+def terminal(console: Console) -> dict[str, str]:
     encoding = getattr(sys.stdout, "encoding", None) or "unknown"
     return {
         "output": "to a terminal" if sys.stdout.isatty() else "to a file or a pipe",

@@ -13,9 +13,11 @@ import typer
 
 from course.cli.frame import replies as schemas
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame.completion import task_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Solution
+from course.cli.work.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError
 from course.progress.history import fingerprint
@@ -34,7 +36,10 @@ PACKS = "*.coursepack"
 def hint(
     exercise: ExerciseName = None,
     task: Annotated[
-        str | None, typer.Option(metavar="FUNCTION", help="About this function, not the first that fails.")
+        str | None,
+        typer.Option(
+            metavar="FUNCTION", help="About this function, not the first that fails.", autocompletion=task_ids
+        ),
     ] = None,
 ) -> int:
     """Show the next hint.
@@ -92,7 +97,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         return _no_hint(exercise, "ungradable", message, again)
     if task is None:
         which = f"Every public check of {wanted} passes" if wanted else "Every public check passes"
-        step = again if wanted else "course submit"
+        done = after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
+        step = again if wanted else done
         return _no_hint(exercise, "passing", f"{which}: there is nothing to hint at.", step)
     hints = here.catalog.hints(exercise).of(task)
     shown = history.hints_for(task)
@@ -223,11 +229,10 @@ def _released(here: Here, exercise: Exercise) -> tuple[str, Mapping[str, str]]:
             continue
         if exercise.id in pack.solutions and pack.course_id == here.catalog.course_id:
             return str(path), _texts(pack.solutions[exercise.id])
-    folder = here.catalog.content.solutions
-    if folder is not None and (folder / exercise.id / exercise.module).is_file():
-        names = (exercise.module, "README.md")
-        found = [folder / exercise.id / name for name in names]
-        return str(folder / exercise.id), _texts({p.name: p.read_bytes() for p in found if p.is_file()})
+    folder = here.catalog.content.solution_folder(exercise.id)
+    if folder is not None and (folder / exercise.module).is_file():
+        found = [folder / name for name in (exercise.module, "README.md")]
+        return str(folder), _texts({p.name: p.read_bytes() for p in found if p.is_file()})
     if problem is not None:
         raise problem
     raise NotFoundError(

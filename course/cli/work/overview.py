@@ -2,29 +2,52 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from typing import TYPE_CHECKING
 
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
-from course.cli.frame.replies import ExerciseState, LessonState, NextStep, Progress, QuizState, Status
+from course.cli.frame.replies import (
+    ExerciseState,
+    LessonState,
+    NextStep,
+    Progress,
+    QuizState,
+    Status,
+    WarmUpState,
+)
 from course.cli.work.advice import next_in_course
+from course.cli.work.learning import Learning, day, show_learning
+from course.cli.work.objectives import objective_states, show_objectives
 from course.errors import CourseError
+from course.progress.history import history_of
 from course.progress.quiz import quiz_history
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from course.catalog.models import Exercise, Lesson
     from course.progress.history import History
+    from course.progress.store import Event
 
-__all__ = ["dashboard", "day", "exercise_state", "lesson_states", "progress"]
+__all__ = [
+    "WORDS",
+    "dashboard",
+    "day",
+    "exercise_state",
+    "lesson_states",
+    "progress",
+    "score_of",
+    "warm_up_state",
+    "warm_up_states",
+]
 
 #: States of an exercise, as a person reads them.
 WORDS = {
     "new": "not started",
     "started": "started, not checked yet",
     "broken": "could not be run at the last check",
-    "failing": "in work",
+    "failing": "in progress",
     "passed": "passed",
     "complete": "every public check passes",
 }
@@ -39,7 +62,8 @@ def dashboard() -> int:
 def progress() -> int:
     """Show everything done so far.
 
-    Lessons read, exercises checked, with dates and scores.
+    Lessons read, exercises checked, with dates and scores; what you predicted and how well, which mistakes
+    you made and mended, and what to read again.
     """
 
     console, here = current(), Here.load()
@@ -54,11 +78,20 @@ def progress() -> int:
     console.heading("Exercises", f"{done} of {len(exercises)} passed")
     for exercise in exercises:
         console.line(f"{exercise.title} ({exercise.id}): {_progress_line(exercise)}", indent=2)
+    warm_ups = warm_up_states(here)
+    if warm_ups:
+        console.heading("Warm-ups", _done_of(warm_ups))
+        for lesson in lessons:
+            ours = [state for state in warm_ups if state.lesson == lesson.id]
+            if any(state.state != "new" for state in ours):
+                console.line(f"{lesson.title} ({lesson.id}): {_done_of(ours)}", indent=2)
     quiz = quiz_state(here)
     if quiz is not None:
         console.heading("Quiz", _quiz_line(quiz))
     often = _count(len(sent), "time")
     console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
+    learning = Learning(here.catalog, here.workspace.store.events())
+    show_learning(console, learning)
     step = next_in_course(here)
     console.note(f"Next: {step}")
     console.emit(
@@ -70,9 +103,50 @@ def progress() -> int:
             submissions=sent,
             next=NextStep(step),
             quiz=quiz,
+            warm_ups=warm_ups,
+            predictions=learning.predictions,
+            mistakes=learning.mistakes,
+            revisit=learning.revisit,
         )
     )
     return 0
+
+
+def warm_up_states(here: Here) -> tuple[WarmUpState, ...]:
+    """Every warm-up and how far the student is; raises what reading the record raises."""
+    warm_ups = here.catalog.warm_ups()
+    events = here.workspace.store.events() if warm_ups else ()
+    started = set(here.workspace.started())
+    return tuple(
+        warm_up_state(one, [event for event in events if event.subject == one.id], one.id in started)
+        for one in warm_ups
+    )
+
+
+def warm_up_state(warm_up: Exercise, events: Sequence[Event] = (), started: bool = False) -> WarmUpState:
+    """One warm-up for a list.
+
+    Args:
+        events: what is recorded about it.
+        started: its file was put into the workspace.
+    """
+    history = history_of(events)
+    done = next((run for run in history.runs if run.all_pass and not run.only), None)
+    return WarmUpState(
+        id=warm_up.id,
+        title=warm_up.title,
+        summary=warm_up.summary,
+        lesson=warm_up.lesson,
+        minutes=warm_up.minutes,
+        state="done" if done else "started" if started or history.runs else "new",
+        checks_run=len(history.runs),
+        hints_shown=len(history.hints),
+        done_at=done.at.isoformat() if done else None,
+    )
+
+
+def _done_of(states: Sequence[WarmUpState]) -> str:
+    return f"{sum(state.state == 'done' for state in states)} of {len(states)} done"
 
 
 def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
@@ -84,6 +158,7 @@ def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
         title=exercise.title,
         summary=exercise.summary,
         lesson=exercise.lesson,
+        number=exercise.number or None,
         state=_state(here, exercise, history),
         score=graded.score if graded else None,
         max_score=graded.max_score if graded else None,
@@ -126,11 +201,6 @@ def lesson_state(lesson: Lesson, read_at: str | None) -> LessonState:
         exercises=lesson.exercises,
         read_at=read_at,
     )
-
-
-def day(moment: str) -> str:
-    """The local date and time of an ISO moment, to the minute."""
-    return datetime.fromisoformat(moment).astimezone().strftime("%Y-%m-%d %H:%M")
 
 
 def _state(here: Here, exercise: Exercise, history: History) -> str:
@@ -177,19 +247,25 @@ def _inside(console: Console, here: Here) -> int:
         states = tuple(exercise_state(here, exercise) for exercise in catalog.exercises())
         read = sum(lesson.read_at is not None for lesson in lesson_states(here))
         quiz = quiz_state(here)
+        warm_ups = warm_up_states(here)
+        objectives = objective_states(here, states, warm_ups)
         step = next_in_course(here)
     except CourseError as error:
         # The dashboard is where someone in trouble looks first; it must not be one more error.
         here.warnings.append(f"{error.message} {error.help}")
-        states, read, quiz, step = (), 0, None, "course doctor"
+        states, read, quiz, warm_ups, objectives, step = (), 0, None, (), (), "course doctor"
     total = len(catalog.lesson_ids())
     console.heading(catalog.title)
     console.line(f"Workspace: {here.workspace.root}")
     console.line(f"Lessons read: {read} of {total}")
-    if states:
+    if warm_ups:
+        console.line(f"Warm-ups: {_done_of(warm_ups)}")
+    if objectives:
+        show_objectives(console, objectives, {state.id: _evidence(state) for state in states})
+    elif states:
         console.table(
             ("Exercise", "State", "Score"),
-            [(state.id, WORDS[state.state], _score(state)) for state in states],
+            [(state.id, WORDS[state.state], score_of(state)) for state in states],
         )
     if quiz is not None:
         console.line(f"Quiz: {_quiz_line(quiz)}")
@@ -198,7 +274,10 @@ def _inside(console: Console, here: Here) -> int:
             f"The course is at version {catalog.version}, this workspace at {here.workspace.version}: "
             "course update --dry-run shows what is new."
         )
+    if objectives:
+        console.note("To play with: course sandbox")
     console.note((f"Next: {step}", "bold"))
+    console.note("`course go` runs it, and goes on from there.")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(
@@ -211,6 +290,7 @@ def _inside(console: Console, here: Here) -> int:
             exercises=states,
             next=NextStep(step),
             quiz=quiz,
+            objectives=objectives,
             warnings=tuple(here.warnings),
         )
     )
@@ -220,7 +300,7 @@ def _inside(console: Console, here: Here) -> int:
 def _progress_line(exercise: ExerciseState) -> str:
     parts = [WORDS[exercise.state]]
     if exercise.score is not None and exercise.max_score is not None:
-        parts.append(f"score {_score(exercise)}")
+        parts.append(f"score {score_of(exercise)}")
         if exercise.best_score is not None and exercise.best_score > exercise.score:
             parts.append(f"best {format_points(exercise.best_score)}")
     if exercise.checks_run:
@@ -236,6 +316,11 @@ def _progress_line(exercise: ExerciseState) -> str:
     return ", ".join(parts)
 
 
+def _evidence(state: ExerciseState) -> str:
+    name = f"exercise {state.number}, {state.id}" if state.number else f"exercise {state.id}"
+    return f"{name}: {WORDS[state.state]} {score_of(state)}".rstrip()
+
+
 def _quiz_line(quiz: QuizState) -> str:
     if quiz.best is None:
         return "not taken yet"
@@ -243,7 +328,8 @@ def _quiz_line(quiz: QuizState) -> str:
     return ", ".join([*parts, _count(quiz.attempts, "attempt")])
 
 
-def _score(state: ExerciseState) -> str:
+def score_of(state: ExerciseState) -> str:
+    """Points of the last check; empty before one."""
     if state.score is None or state.max_score is None:
         return ""
     return f"{format_points(state.score)}/{format_points(state.max_score)}"

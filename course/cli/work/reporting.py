@@ -21,7 +21,7 @@ from course.cli.work.chosen import asked_for, chosen_work
 from course.errors import UsageError
 
 if TYPE_CHECKING:
-    from course.figures.described import Plot
+    from course.figures.drawing.described import Plot
     from course.scoring.report import Report, Section
 
 __all__ = ["ReportReply", "SectionReply", "report"]
@@ -72,7 +72,7 @@ def report(
     say_which(console, here, work)
     with console.working(f"Running {work.name}"):
         made = report_of(chosen, here.catalog, work.submission)
-    folder = _folder(here, chosen.id, out)
+    folder = _folder(here, chosen.place, out)
     console.heading(made.title, chosen.id)
     sections = tuple(
         _shown(console, section, folder / f"{number}-{_slug(section.title)}.png")
@@ -94,8 +94,8 @@ def report(
     return 0
 
 
-def _folder(here: Here, exercise: str, out: Path | None) -> Path:
-    folder = here.workspace.path(exercise, "report") if out is None else cwd() / out.expanduser()
+def _folder(here: Here, place: str, out: Path | None) -> Path:
+    folder = here.workspace.path(place, "report") if out is None else cwd() / out.expanduser()
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -122,7 +122,7 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
         for item in paragraph.strip().split("\n"):
             console.line(item.strip(), indent=2)
     if section.rows:
-        _table(console, section)
+        console.table_or_facts(section.columns, section.rows)
     figure = None
     if section.plot is not None:
         figure = _drawn(console, section.plot, path)
@@ -136,23 +136,12 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
     )
 
 
-def _table(console: Console, section: Section) -> None:
-    """The rows as a table or, where it is too wide for the window, each fact under its row's name."""
-    width = sum(max(map(len, column)) + 3 for column in zip(section.columns, *section.rows, strict=True))
-    if console.plain or width <= console.width:
-        console.table(section.columns, section.rows)
-        return
-    for first, *rest in section.rows:
-        console.line(first)
-        facts = [f"{head} {cell}" for head, cell in zip(section.columns[1:], rest, strict=True) if cell]
-        console.line(", ".join(facts), indent=2)
-
-
 def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
-    from course.figures.plots import render
+    from course.figures.drawing.plots import draw, render
 
     with console.working("Drawing"):
         picture = render(plot)
+    console.figure(lambda: draw(plot))
     if plot.description:
         console.line(("Figure: " + plot.description, "dim"))
     # A figure that says the same as before is not a new one to keep a copy of.

@@ -9,16 +9,18 @@ import typer
 
 from course.catalog.models import CourseRef
 from course.cli.frame.arguments import OneExercise  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import current
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd, load_catalog
 from course.cli.frame.replies import FileReply, Init, NextStep, Start
+from course.cli.work.surroundings import chosen_kinds, complete_kinds, usable, write_surroundings
 from course.errors import CourseError, NotFoundError, UsageError
 from course.progress.workspace import MARKER, Workspace
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
 
-__all__ = ["HANDED_OUT", "init", "start"]
+__all__ = ["HANDED_OUT", "init", "put", "start"]
 
 #: Files of an exercise that a student gets besides the stub, where the exercise has them.
 HANDED_OUT = ("README.md", "boxes.py")
@@ -28,13 +30,33 @@ def init(
     folder: Annotated[
         Path | None, typer.Argument(metavar="DIR", help="Where; the current folder if left out.")
     ] = None,
+    surroundings: Annotated[
+        str | None,
+        typer.Option(
+            "--with",
+            metavar="WHAT",
+            help="Also write github, devcontainer, vscode: a workflow, a container, tasks; join by commas.",
+            autocompletion=complete_kinds,
+        ),
+    ] = None,
+    requirement: Annotated[
+        str | None,
+        typer.Option(
+            "--requirement",
+            metavar="REQUIREMENT",
+            help="For --with: where pip gets the course from; the wheel in wheels/ if left out.",
+        ),
+    ] = None,
 ) -> int:
     """Make a workspace.
 
-    Creates the folder if need be, and course.toml in it. Nothing that is there already is changed.
+    Creates the folder if need be, and course.toml in it. Nothing that is there already is changed; of a file
+    that --with replaces a copy is kept.
     """
 
     console, catalog = current(), load_catalog()
+    kinds = chosen_kinds(surroundings) if surroundings is not None else ()
+    requirement = usable(requirement)
     here = cwd()
     root = (here / (folder or Path()).expanduser()).resolve()
     created = not (root / MARKER).is_file()
@@ -44,7 +66,14 @@ def init(
         console.line(f"Made a workspace for {catalog.title} in {root}.")
     else:
         workspace = Workspace.read(root)
-        console.line(f"{root} is a workspace already; nothing was changed.")
+        console.line(f"{root} is a workspace already" + ("." if kinds else "; nothing was changed."))
+    written = write_surroundings(root, kinds, requirement)
+    for file in written:
+        if file.backup:
+            console.line(f"There was another {file.path}; it is kept at {file.backup.backup}.")
+        console.line(f"Wrote {file.path}")
+    if "github" in kinds and not (root / ".git").exists():
+        console.note("GitHub reads workflows in the top folder of a repository only.")
     first = catalog.lesson_ids()[0] if catalog.lesson_ids() else ""
     step = f"course lesson {first}".strip()
     if root != here:
@@ -56,6 +85,7 @@ def init(
             created=created,
             course=CourseRef(id=workspace.course_id, version=workspace.version),
             next=NextStep(step),
+            files=tuple(written),
         )
     )
     return 0
@@ -69,25 +99,31 @@ def start(exercise: OneExercise) -> int:
 
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
+    files = put(console, here, chosen)
+    step = f"course watch {chosen.id}"
+    console.note(f"Read {chosen.place}/README.md, write your code in {chosen.place}/{chosen.module}.")
+    console.note(f"Then check it on every save: {step}")
+    console.note(f"Or once, now and then: course check {chosen.id}")
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))
+    return 0
+
+
+def put(console: Console, here: Here, chosen: Exercise) -> tuple[FileReply, ...]:
+    """Put the files of an exercise into the workspace where they are not there yet, and say so."""
     files = []
     for name in (*HANDED_OUT, chosen.module):
         source = Path(chosen.folder) / name
         if not source.is_file():
             continue
-        target = here.workspace.path(chosen.id, name)
-        new = here.workspace.give(chosen.id, name, source.read_bytes())
+        target = here.workspace.path(chosen.place, name)
+        new = here.workspace.give(chosen.place, name, source.read_bytes())
         files.append(FileReply(path=str(target), action="created" if new else "kept"))
         verb = "created" if new else "is there already and was left as it is"
         console.line(f"{here.workspace.shown(target)} {verb}.")
     here.record("start", chosen.id, {"version": here.catalog.version})
-    step = f"course watch {chosen.id}"
-    console.note(f"Read {chosen.id}/README.md, write your code in {chosen.id}/{chosen.module}.")
-    console.note(f"Then check it on every save: {step}")
-    console.note(f"Or once, now and then: course check {chosen.id}")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Start(exercise=chosen.id, files=tuple(files), next=NextStep(step)))
-    return 0
+    return tuple(files)
 
 
 def _refuse_odd_places(root: Path, catalog: Catalog) -> None:

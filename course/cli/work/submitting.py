@@ -43,6 +43,9 @@ def submit(
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Where; in the workspace if left out."),
     ] = None,
+    warm_ups: Annotated[
+        bool, typer.Option("--warm-ups", help="The warm-ups you worked on go in, too; they do not count.")
+    ] = False,
 ) -> int:
     """Write the file to hand in.
 
@@ -52,7 +55,7 @@ def submit(
 
     console, here = current(), Here.load()
     target = _target(here, output)
-    works, left_out = work_of(here)
+    works, left_out = work_of(here, warm_ups=warm_ups)
     files = tuple(_describe(here, work) for work in works)
     quiz = _quiz_records(here)
     _show(console, here, files, left_out, quiz)

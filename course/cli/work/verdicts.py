@@ -43,7 +43,7 @@ def show_verdict(
         focus: with ``brief``, the function to show instead.
     """
     if not console.quiet:
-        page = _Page(console, verbose=verbose, brief=brief, focus=focus)
+        page = _Page(console, verbose=verbose, brief=brief, focus=focus, scored=not exercise.is_warm_up)
         unwritten: list[tuple[Task, list[CheckResult]]] = []
         for task in exercise.task:
             checks = [check for check in verdict.checks if check.task == task.id]
@@ -77,6 +77,10 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
     """What it comes to, in one or two sentences."""
     total = len(verdict.checks)
     passing = sum(check.status == "pass" for check in verdict.checks)
+    if exercise.is_warm_up:
+        which = "The one check passes" if total == 1 else f"All {total} checks pass"
+        some = f"{passing} of {total} checks {'passes' if passing == 1 else 'pass'}."
+        return [f"{which}: this warm-up is done." if verdict.all_pass else some]
     score = f"score {format_points(verdict.score)}/{format_points(verdict.max_score)}"
     hidden = exercise.hidden_checks
     later = ""
@@ -102,9 +106,17 @@ class _Page:
     """One verdict being shown; remembers what it has said, so as not to say it seven times."""
 
     def __init__(
-        self, console: Console, *, verbose: bool, brief: bool, hidden: bool = False, focus: str = ""
+        self,
+        console: Console,
+        *,
+        verbose: bool,
+        brief: bool,
+        hidden: bool = False,
+        focus: str = "",
+        scored: bool = True,
     ) -> None:
         self._console = console
+        self._scored = scored
         self._hidden = hidden
         self._verbose = verbose
         self._brief = brief
@@ -115,7 +127,7 @@ class _Page:
 
     def task(self, title: str, checks: Sequence[CheckResult]) -> None:
         """A heading with the points, and the task's checks."""
-        self._console.heading(title, _points(checks))
+        self._console.heading(title, self._worth(checks))
         if not self._detailed and any(check.status != "pass" for check in checks):
             self._detailed = checks[0].task
         if _all_alike(checks) and not self._hidden:
@@ -128,13 +140,17 @@ class _Page:
     def unwritten(self, tasks: Sequence[tuple[Task, Sequence[CheckResult]]]) -> None:
         """The functions that still are as the stub has them: what is true of all is said once."""
         every = [check for _, checks in tasks for check in checks]
-        self._console.heading("Not written yet", _points(every))
+        self._console.heading("Not written yet", self._worth(every))
         for task, _ in tasks:
             self._console.item(
                 "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
             )
         self._text(next(check.help for check in every if check.diagnosis == _UNWRITTEN))
         self._gap()
+
+    def _worth(self, checks: Sequence[CheckResult]) -> str:
+        """The points of some checks; a warm-up has none."""
+        return _points(checks) if self._scored else ""
 
     def _gap(self) -> None:
         if self._console.fancy:
@@ -157,7 +173,8 @@ class _Page:
     def close(self) -> None:
         """Say once how to see what was kept back."""
         if self._left_out:
-            self._console.note(("Details of one function at a time; `course check` shows all.", "dim"))
+            command = "`course check`" if self._scored else "--verbose"
+            self._console.note((f"Details of one function at a time; {command} shows all.", "dim"))
         if self._kept_back:
             self._console.note(("--verbose shows tracebacks and what your code printed.", "dim"))
 

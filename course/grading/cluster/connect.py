@@ -20,7 +20,9 @@ from typing import TYPE_CHECKING, Any, Self
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.extras import require
 from course.grading.cluster.coordinator import Lost, grade_on
+from course.grading.cluster.reach import check_scheduler
 from course.grading.cluster.worker import grade_batch
+from course.grading.running.snapshot import in_use
 from course.isolation.launch import private_folder, remove_tree
 from course.scoring.version import grader_version
 
@@ -46,7 +48,7 @@ class Cluster:
     Args:
         catalog: the course that the coordinator has.
         connect: gives a client, and says by the stack what must be closed.
-        remote: whether others may use the same scheduler.
+        remote: address of a scheduler that others may use too; empty for one of our own.
 
     Raises:
         MissingCapabilityError: Dask is not installed.
@@ -57,7 +59,7 @@ class Cluster:
         catalog: Catalog,
         connect: Callable[[contextlib.ExitStack], Any],
         *,
-        remote: bool,
+        remote: str = "",
     ) -> None:
         require("cluster")
         self._catalog = catalog
@@ -85,26 +87,33 @@ class Cluster:
                 help="Leave it out, or grade on one machine.",
                 code="unprotected_cluster",
             )
+        if self._remote:
+            check_scheduler(self._remote)
         workers = DaskWorkers(self._connect(self._stack))
+
+        graders = in_use(terms.graders)
 
         @cache
         def version(exercise_id: str) -> str:
+            if graders is not None:
+                return graders.version(exercise_id)
             return grader_version(self._catalog.exercise(exercise_id), self._catalog)
 
         def version_of(exercise: Exercise) -> str:
             return version(exercise.id)
 
-        yield from grade_on(workers, entries, terms, version_of)
+        packed = graders.snapshot.packed if graders else b""
+        yield from grade_on(workers, entries, terms, version_of, graders=packed)
 
 
 def local_cluster(workers: int, catalog: Catalog) -> Cluster:
     """A cluster of ``workers`` processes on this machine, for one run."""
-    return Cluster(catalog, lambda stack: start_cluster(stack, workers), remote=False)
+    return Cluster(catalog, lambda stack: start_cluster(stack, workers))
 
 
 def remote_cluster(address: str, catalog: Catalog) -> Cluster:
     """The cluster whose scheduler is at ``address``, or is described by the scheduler file of that name."""
-    return Cluster(catalog, lambda stack: _reach(stack, address), remote=True)
+    return Cluster(catalog, lambda stack: _reach(stack, address), remote=address)
 
 
 def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:
@@ -156,8 +165,6 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
     file = Path(address)
     where = {"scheduler_file": address} if file.suffix == ".json" else {"address": address}
     try:
-        if file.suffix == ".json" and not file.is_file():
-            raise FileNotFoundError(2, "no such file", address)
         client = Client(**where, timeout=_ANSWER_S, set_as_default=False)
     except (OSError, TimeoutError) as error:
         raise MissingCapabilityError(
@@ -165,7 +172,7 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
             help="Is it running, can this machine reach it, and has this command the same TLS settings?",
             code="no_scheduler",
         ) from None
-    except ValueError as error:
+    except (ValueError, TypeError) as error:
         raise UsageError(
             f"--scheduler {address} is no address: {error}.", help="It looks like tls://name:8786."
         ) from None

@@ -74,19 +74,21 @@ def grade_on(
     terms: Terms,
     version: Callable[[Exercise], str],
     *,
+    graders: bytes = b"",
     patience_s: float = _PATIENCE_S,
 ) -> Iterator[Graded]:
     """Verdicts on all entries that have a submission or a problem, in the order they arrive.
 
     Args:
         workers: who grades.
-        version: the version of an exercise's graders here, which workers must have too.
+        version: the version of an exercise's graders here, which those that judge must have too.
+        graders: the snapshot that ``terms`` names, packed: a worker that lacks it is sent it.
         patience_s: wall seconds to wait for a worker when there is none.
 
     Raises:
         CourseError: the workers cannot grade (version, protection level, content), or there are none left.
     """
-    yield from _Coordinator(workers, entries, terms, version, patience_s).run()
+    yield from _Coordinator(workers, entries, terms, version, graders, patience_s).run()
 
 
 @dataclass(eq=False)
@@ -104,16 +106,19 @@ class _Coordinator:
         entries: Iterable[Entry],
         terms: Terms,
         version: Callable[[Exercise], str],
+        graders: bytes,
         patience_s: float,
     ) -> None:
         self._workers = workers
         self._entries = iter(entries)
         self._terms = terms
         self._version = version
+        self._graders = graders
         self._patience_s = patience_s
         self._numbers = itertools.count()
         self._waiting: deque[_Work] = deque()
         self._again: deque[_Work] = deque()
+        self._wanting: deque[list[_Work]] = deque()
         self._suspects: deque[_Work] = deque()
         self._failure: CourseError | None = None
         self._flying: dict[int, list[_Work]] = {}
@@ -132,17 +137,22 @@ class _Coordinator:
                 raise self._failure
             if self._flying:
                 self._take_in()
-            elif not (self._waiting or self._again or self._suspects or self._done):
+            elif not (self._wanting or self._waiting or self._again or self._suspects or self._done):
                 return
 
     # -- out ------------------------------------------------------------------------------------------
 
     def _fill(self) -> None:
         self._count_places()
-        while len(self._flying) < _AHEAD * self._places and (batch := self._next()):
+        while len(self._flying) < _AHEAD * self._places:
+            # Whichever worker takes it next may lack the graders as well: this time they go along.
+            graders = self._graders if self._wanting else b""
+            batch = self._wanting.popleft() if self._wanting else self._next()
+            if not batch:
+                return
             number = next(self._numbers)
             self._flying[number] = batch
-            message = Batch(FORMAT, self._terms, tuple(work.job for work in batch))
+            message = Batch(FORMAT, self._terms, tuple(work.job for work in batch), graders)
             self._workers.send(encode(message), lambda outcome, n=number: self._arrived.put((n, outcome)))  # type: ignore[misc]
 
     def _next(self) -> list[_Work]:
@@ -213,6 +223,9 @@ class _Coordinator:
                 help="Install the same checkout of the course on every machine, and restart the workers.",
                 code="version_mismatch",
             )
+        if reply.wanting and self._graders:
+            self._wanting.append(batch)
+            return
         if reply.seconds > 0:
             self._size = max(1, min(_MOST, int(_BATCH_S * len(batch) / reply.seconds)))
         for work, answer in zip(batch, reply.answers, strict=False):
@@ -226,7 +239,7 @@ class _Coordinator:
             elif answer.verdict is None:
                 self._blame(work, killed_its_grader())
             else:
-                self._done.append(Graded(work.entry, answer.verdict))
+                self._done.append(Graded(work.entry, answer.verdict, answer.version))
         if len(reply.answers) < len(batch):
             raise InternalError(f"The worker on {reply.host} left submissions out.")
 

@@ -19,7 +19,7 @@ __all__ = ["FORMAT", "Answers", "Batch", "decode_answers", "decode_batch", "enco
 T = TypeVar("T", "Batch", "Answers")
 
 #: Grows when a message changes its meaning.
-FORMAT = 3
+FORMAT = 4
 
 
 class Batch(msgspec.Struct, frozen=True):
@@ -27,11 +27,13 @@ class Batch(msgspec.Struct, frozen=True):
 
     Attributes:
         format: the sender's ``FORMAT``.
+        graders: the snapshot that ``terms`` names, packed; empty until the worker asked for it.
     """
 
     format: int
     terms: Terms
     jobs: tuple[Job, ...]
+    graders: bytes = b""
 
 
 class Answers(msgspec.Struct, frozen=True):
@@ -42,12 +44,14 @@ class Answers(msgspec.Struct, frozen=True):
         answers: one for each job, in order, but none after one that is an error. An answer with neither
             verdict nor error is of a submission that no grader survived.
         seconds: wall time the worker spent on the batch.
+        wanting: the worker has no such snapshot, and none of the answers.
     """
 
     format: int
     host: str
     answers: tuple[Answer, ...]
     seconds: float
+    wanting: bool = False
 
 
 def encode(message: Batch | Answers) -> bytes:

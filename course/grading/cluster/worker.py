@@ -9,12 +9,14 @@ Importing this module is all a worker needs; it imports nothing of Dask.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import os
 import socket
 import sys
 import threading
 import time
+from collections import deque
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -24,6 +26,7 @@ from course.grading.cluster.messages import FORMAT, Answers, decode_batch, encod
 from course.grading.pipes import read_frame, write_frame
 from course.grading.running.batch import MAX_TRIES, answer_to, hang_s, start_grader
 from course.grading.running.grader import Answer, Config
+from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.submission import Submission
 from course.scoring.verdict import Problem
 
@@ -41,6 +44,9 @@ IDLE_S = 60.0
 
 _idle: list[_WarmGrader] = []
 _lock = threading.Lock()
+#: Of runs that may be going on at once; some 3 MB each.
+_MOST_SNAPSHOTS = 4
+_snapshots: deque[contextlib.ExitStack] = deque()
 
 
 def grade_batch(payload: bytes) -> bytes:
@@ -51,8 +57,44 @@ def grade_batch(payload: bytes) -> bytes:
     if batch is None:
         said = "The worker speaks another version of the protocol than the coordinator"
         return encode(Answers(FORMAT, host, (version_mismatch(said),), 0.0))
+    try:
+        here = _unpacked(batch)
+    except CourseError as error:
+        problem = Problem(error.code, error.message, error.help)
+        refused = Answer(error=problem, exit_code=error.exit_code)
+        return encode(Answers(FORMAT, host, (refused,), 0.0))
+    if not here:
+        return encode(Answers(FORMAT, host, (), 0.0, wanting=True))
     answers = tuple(_answers(batch))
     return encode(Answers(FORMAT, host, answers, time.monotonic() - started))
+
+
+def _unpacked(batch: Batch) -> bool:
+    """Whether the snapshot that is to judge is here; the latest few are kept.
+
+    Raises:
+        IntegrityError: it did not come over whole.
+    """
+    sha256 = batch.terms.graders
+    with _lock:
+        if not sha256 or in_use(sha256) is not None:
+            return True
+        if not batch.graders:
+            return False
+        kept = contextlib.ExitStack()
+        kept.enter_context(frozen(Snapshot.of(batch.graders, sha256)))
+        _snapshots.append(kept)
+        if len(_snapshots) > _MOST_SNAPSHOTS:
+            _snapshots.popleft().close()
+        return True
+
+
+def _forget() -> None:
+    while _snapshots:
+        _snapshots.pop().close()
+
+
+atexit.register(_forget)
 
 
 def version_mismatch(what: str) -> Answer:

@@ -1,6 +1,7 @@
 """A zip for Gradescope's "Configure Autograder": our graders, run in their container on every submission.
 
-It holds hidden graders, so it is the instructor's alone. The same inputs give the same bytes.
+It holds hidden graders and model solutions, so it is the instructor's alone. The same inputs give the same
+bytes.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ __all__ = ["write_autograder"]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 #: What grading imports; the rest of the course's requirements is for students.
-_NEEDED = ("msgspec", "numpy", "pytest")
+_NEEDED = ("msgspec", "numpy", "pymunk", "pytest")
 #: Parts of the package that grading does not use, and the content of a wheel.
 _LEFT_OUT = {"cli", "authoring", "notebooks", "sandbox", "content", "lessons", "__pycache__"}
 
@@ -81,14 +82,15 @@ def write_autograder(
     """Write the zip.
 
     Args:
-        seed: of the hidden inputs; every submission meets the same.
+        seed: of the hidden inputs, with what is handed in: the same files meet the same ones.
         timeout: seconds of CPU time per check.
         asked: the exercises were named, so that one that is not handed in is reported.
 
     Raises:
-        MissingCapabilityError: this installation has no hidden graders, or the file cannot be written.
+        MissingCapabilityError: this installation has no hidden graders or no model solutions, or the file
+            cannot be written.
     """
-    if catalog.content.graders is None:
+    if catalog.content.graders is None or catalog.content.solutions is None:
         raise MissingCapabilityError(
             "This installation has no hidden graders: it is a student's.",
             help="Export from a checkout of the course.",
@@ -112,7 +114,7 @@ def write_autograder(
             _put(packed, name, source.read_bytes())
     write_bytes(path, buffer.getvalue())
     notes = [
-        "The zip holds hidden graders: upload it, and give it to nobody.",
+        "The zip holds hidden graders and model solutions: upload it, and give it to nobody.",
         "The container's protection level is in the output that only you see; below L2 a hostile submission "
         "could read the graders.",
     ]
@@ -127,11 +129,15 @@ def _files(catalog: Catalog, exercises: Sequence[Exercise]) -> Iterator[tuple[st
             yield f"course/{path.relative_to(package).as_posix()}", path
     content = catalog.content
     assert content.graders is not None
+    assert content.solutions is not None
     yield "content/lessons/syllabus.toml", content.syllabus
     for exercise in exercises:
         for kind, folder in (("exercises", content.exercises), ("graders", content.graders)):
-            for path in _tree(folder / exercise.id):
+            for path in _tree(folder / exercise.place):
                 yield f"content/{kind}/{path.relative_to(folder).as_posix()}", path
+        # Hidden checks take right answers from the modules beside the model solution.
+        for path in sorted((content.solutions / exercise.place).glob("*.py")):
+            yield f"content/solutions/{path.relative_to(content.solutions).as_posix()}", path
 
 
 def _tree(folder: Path) -> list[Path]:

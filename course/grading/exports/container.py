@@ -7,6 +7,7 @@ a results file is written: a fault of ours says so and gives no score, so that n
 
 from __future__ import annotations
 
+import hashlib
 import json
 import sys
 import traceback
@@ -53,15 +54,21 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
 
     Args:
         config: exercises (ids), required (whether each must be there), seed, timeout (s), at_least.
+
+    Hidden inputs follow from the seed and what was handed in. The total is shown at once and a student may
+    hand in as often as they like: with the same inputs each time, files that differ in one comparison would
+    read them out.
     """
     catalog = Catalog()
     exercises = [catalog.exercise(name) for name in config["exercises"]]
     student = Student("submission", Place(folder))
-    terms = Terms(at_least=config["at_least"], timeout=config["timeout"], seed=config["seed"])
     found: list[Effective] = []
     for entry in read_student(student, exercises, required=bool(config["required"])):
         if entry.submission is None and entry.problem is None:
             continue
+        drawn = hashlib.sha256(f"{config['seed']} {entry.sha256}".encode()).digest()
+        seed = int.from_bytes(drawn[:8]) >> 1
+        terms = Terms(at_least=config["at_least"], timeout=config["timeout"], seed=seed)
         if entry.submission is None:
             assert entry.problem is not None
             verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "ungradable", entry.problem)
@@ -74,7 +81,7 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
                 verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "grader_error", problem)
         _log(verdict)
         version = grader_version(entry.exercise, catalog)
-        key = Key("submission", entry.exercise.id, entry.sha256, version, config["seed"])
+        key = Key("submission", entry.exercise.id, entry.sha256, version, seed)
         score = None if verdict.state == "grader_error" else verdict.score
         found.append(Effective(Result(key, verdict), score, verdict.max_score, verdict.passed))
     if any(effective.score is None for effective in found):

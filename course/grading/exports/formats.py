@@ -11,6 +11,7 @@ from course.grading.exports.junit import write_junit
 from course.grading.exports.lines import write_csv, write_jsonl
 from course.grading.exports.platforms import write_canvas, write_moodle
 from course.grading.exports.selection import ExportOptions, Written, is_part, select
+from course.grading.exports.worksheet import write_worksheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,6 +49,7 @@ FORMATS: dict[str, tuple[str, Writer]] = {
     "gradescope": ("gradescope", write_gradescope),
     "canvas": ("canvas.csv", write_canvas),
     "moodle": ("moodle.csv", write_moodle),
+    "moodle-worksheet": ("moodle-worksheet.csv", write_worksheet),
     "html": ("report.html", write_html),
 }
 

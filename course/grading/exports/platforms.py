@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from course.errors import UsageError
 from course.grading.exports.cells import csv_bytes, is_safe, number, write_bytes
-from course.grading.exports.selection import ExportOptions, Selection, Written, select
+from course.grading.exports.selection import ExportOptions, Selection, Written, check_zeros, select
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +29,8 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
 
     Raises:
         UsageError: an assignment's id or the roster is missing.
-        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
+        MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
+            cannot be written.
     """
     selection = select(results, options, usable=_has_canvas_id)
     missing = [name for name in selection.exercises if name not in options.assignments]
@@ -47,6 +48,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
                 help="It is the number at the end of the assignment's address in Canvas.",
                 code="needs_assignment",
             )
+    check_zeros(selection, options)
     titles = [f"{results.title(name)} ({options.assignments[name]})" for name in selection.exercises]
     headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
@@ -70,9 +72,11 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
 
     Raises:
         UsageError: the roster is missing.
-        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
+        MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
+            cannot be written.
     """
     selection = select(results, options, usable=_has_moodle_key)
+    check_zeros(selection, options)
     headings = ["moodle_key", "name", *(results.title(name) for name in selection.exercises)]
     rows = []
     for student, scores in _table(selection).items():

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective, Results
     from course.grading.results.roster import Person
 
-__all__ = ["ExportOptions", "Selection", "Written", "is_part", "select"]
+__all__ = ["ExportOptions", "Selection", "Written", "check_zeros", "is_part", "select"]
 
 _SHOWN = 10
 
@@ -28,12 +28,16 @@ class ExportOptions:
         assignments: exercise id -> id of the assignment on the platform.
         partial: leave out students the roster has not, instead of stopping.
         missing: what stands for what an enrolled student did not hand in: "blank" or "zero".
+        zeros: what could not be graded may be written as 0, though nobody has looked at it.
+        worksheet: the file of Moodle's that is to be filled in.
     """
 
     exercises: tuple[str, ...] = ()
     assignments: dict[str, str] = field(default_factory=dict)
     partial: bool = False
     missing: str = "blank"
+    zeros: bool = False
+    worksheet: Path | None = None
 
 
 @dataclass
@@ -128,6 +132,34 @@ def select(
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     return Selection(results, exercises, people, written, options.missing == "zero")
+
+
+def check_zeros(selection: Selection, options: ExportOptions) -> None:
+    """Of scores that become somebody's grades none may be a zero that nobody has looked at.
+
+    Raises:
+        MissingCapabilityError: something could not be graded, and neither a score by hand nor ``zeros`` says
+            that it is worth 0.
+    """
+    if options.zeros:
+        return
+    left_out = set(selection.written.unmatched)
+    unseen = [
+        f"{item.student!r} {item.exercise} ({item.verdict.error.code if item.verdict.error else 'no reason'})"
+        for item in selection.results.all()
+        if item.exercise in selection.exercises
+        and item.student not in left_out
+        and item.verdict.state == "ungradable"
+        and item.override is None
+    ]
+    if unseen:
+        listed = ", ".join(unseen[:_SHOWN]) + (f" and {len(unseen) - _SHOWN} more" if unseen[_SHOWN:] else "")
+        raise MissingCapabilityError(
+            f"{len(unseen)} could not be graded and would get 0: {listed}. Nothing was written.",
+            help="`course grade assign OUT` lists what there is for them; give a score with `course grade"
+            " override`, or add --accept-zeros.",
+            code="unseen_zeros",
+        )
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:

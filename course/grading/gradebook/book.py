@@ -10,7 +10,9 @@ the graders', a late policy) lies beside the results and never changes them;
 from __future__ import annotations
 
 import contextlib
+import getpass
 import hashlib
+import os
 import sqlite3
 import time
 import zlib
@@ -28,10 +30,20 @@ from course.grading.gradebook.file import (
     explained,
     open_file,
     release,
+    row_into,
     seal,
     unseal,
 )
-from course.grading.gradebook.records import FromDownload, GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import (
+    Decision,
+    FromDownload,
+    GradedExercise,
+    Key,
+    Override,
+    Result,
+    Run,
+    SubmittedAt,
+)
 from course.scoring.verdict import Verdict, finite
 
 if TYPE_CHECKING:
@@ -117,15 +129,21 @@ class Gradebook:
                 if value is None:
                     self._db.execute("DELETE FROM meta WHERE key = ?", (name,))
                 else:
-                    self._db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (name, value))
+                    self._db.execute(row_into("meta", "INSERT OR REPLACE"), (name, value))
 
     def begin_run(self, kind: str, options: Mapping[str, Any]) -> int:
         """Note that a grading ("run") or regrading ("rerun") begins; its results are kept apart."""
         with self._transaction():
             self._run += 1
-            text = msgspec.json.encode(options).decode()
-            self._db.execute("INSERT INTO runs VALUES (?, ?, ?, ?)", (self._run, kind, _now(), text))
+            text = msgspec.json.encode({**options, "who": whoami()}).decode()
+            self._db.execute(row_into("runs"), (self._run, kind, _now(), text))
         return self._run
+
+    def runs(self) -> list[Run]:
+        """Every grading and regrading, oldest first."""
+        with explained(self.path):
+            rows = self._db.execute("SELECT number, kind, started_at, options FROM runs ORDER BY number")
+            return [Run(number, kind, at, msgspec.json.decode(options)) for number, kind, at, options in rows]
 
     def run_options(self) -> dict[str, Any]:
         """The options of the latest run; empty if none was noted."""
@@ -137,14 +155,16 @@ class Gradebook:
         """Note what is graded; what was graded earlier and is not named stays."""
         with self._transaction():
             self._db.executemany(
-                "INSERT OR REPLACE INTO exercises VALUES (?, ?, ?, ?, ?)",
+                row_into("exercises", "INSERT OR REPLACE"),
                 [msgspec.structs.astuple(exercise) for exercise in exercises],
             )
 
     def exercises(self) -> tuple[GradedExercise, ...]:
         """What was graded, in the order of the course."""
         with explained(self.path):
-            rows = self._db.execute("SELECT * FROM exercises ORDER BY position, id").fetchall()
+            rows = self._db.execute(
+                "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
+            ).fetchall()
         return tuple(GradedExercise(*row) for row in rows)
 
     # -- students -------------------------------------------------------------------------------------
@@ -153,7 +173,7 @@ class Gradebook:
         """Note who students are to the system they were downloaded from."""
         with self._transaction():
             self._db.executemany(
-                "INSERT OR REPLACE INTO students VALUES (?, ?)",
+                row_into("students", "INSERT OR REPLACE"),
                 [(name, msgspec.json.encode(who).decode()) for name, who in students.items()],
             )
 
@@ -166,16 +186,17 @@ class Gradebook:
     def add_times(self, times: Iterable[SubmittedAt], *, replace: bool = False) -> None:
         """Note when things were handed in. Of one witness's times for one content the earliest stays."""
         earliest = "excluded.at" if replace else "min(ifnull(at, excluded.at), ifnull(excluded.at, at))"
+        digest = f"row_digest('times', student, exercise, submission_sha256, source, {earliest})"
         with self._transaction():
             self._db.executemany(
-                "INSERT INTO times VALUES (?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET at = " + earliest,
+                f"{row_into('times')} ON CONFLICT DO UPDATE SET at = {earliest}, row_sha256 = {digest}",
                 [msgspec.structs.astuple(time_) for time_ in times],
             )
 
     def times(self) -> Iterator[SubmittedAt]:
         """All that is known about when things were handed in."""
         with explained(self.path):
-            for row in self._db.execute("SELECT * FROM times"):
+            for row in self._db.execute("SELECT student, exercise, submission_sha256, source, at FROM times"):
                 yield SubmittedAt(*row)
 
     # -- results --------------------------------------------------------------------------------------
@@ -185,27 +206,28 @@ class Gradebook:
         body = msgspec.json.encode(finite(msgspec.to_builtins(result.verdict)))
         row = (self._run, *asdict(result.key).values(), result.graded_at or _now(), body, _sha256(body))
         with self._transaction():
-            self._db.execute(
-                "INSERT OR REPLACE INTO results (run, student, exercise, submission_sha256, grader_version,"
-                " seed, graded_at, verdict, verdict_sha256) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                row,
-            )
+            self._db.execute(row_into("results", "INSERT OR REPLACE"), (self._next("results"), *row))
             if files is not None:
                 packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
                 self._db.execute(
-                    "INSERT OR IGNORE INTO submissions VALUES (?, ?)", (result.key.submission_sha256, packed)
+                    row_into("submissions", "INSERT OR IGNORE"), (result.key.submission_sha256, packed)
                 )
+
+    def _next(self, table: str) -> int:
+        newest = self._db.execute(f"SELECT ifnull(max(number), 0) FROM {table}").fetchone()
+        return int(newest[0]) + 1
 
     def has(self, key: Key) -> bool:
         """Whether this very submission was graded by this very grader, other than by a fault of ours."""
         return self._find(key) is not None
 
     def confirm(self, key: Key) -> bool:
-        """Like ``has``; and if so, make that result the newest of its student and exercise again.
+        """Whether this very submission was graded; if so, make that the newest result of its student again.
 
-        A student who hands in an earlier version again is to get its score, and not the later one's.
+        A student who hands in an earlier version again is to get its score, and not the later one's. Other
+        graders than the key's do as well: nobody is graded anew by the way.
         """
-        number = self._find(key)
+        number = self._find(key, by_any=True)
         if number is None:
             return False
         with explained(self.path):
@@ -216,17 +238,20 @@ class Gradebook:
         if newest != number:
             with self._transaction():
                 self._db.execute(
-                    "UPDATE results SET number = (SELECT max(number) + 1 FROM results) WHERE number = ?",
-                    (number,),
+                    "UPDATE results SET number = ?1, row_sha256 = row_digest('results', ?1, run, student,"
+                    " exercise, submission_sha256, grader_version, seed, graded_at, verdict, verdict_sha256)"
+                    " WHERE number = ?2",
+                    (self._next("results"), number),
                 )
         return True
 
-    def _find(self, key: Key) -> int | None:
+    def _find(self, key: Key, *, by_any: bool = False) -> int | None:
         with explained(self.path):
             row = self._db.execute(
-                "SELECT number, verdict FROM results WHERE student = ? AND exercise = ?"
-                " AND submission_sha256 = ? AND grader_version = ? AND seed = ? ORDER BY number DESC LIMIT 1",
-                tuple(asdict(key).values()),
+                "SELECT number, verdict FROM results WHERE student = ?1 AND exercise = ?2"
+                " AND submission_sha256 = ?3 AND (?6 OR grader_version = ?4) AND seed = ?5"
+                " ORDER BY number DESC LIMIT 1",
+                (*asdict(key).values(), by_any),
             ).fetchone()
         if row is None or msgspec.json.decode(row[1], type=_State).state == "grader_error":
             return None
@@ -285,16 +310,21 @@ class Gradebook:
 
     # -- what an instructor decided -------------------------------------------------------------------
 
-    def add_override(self, override: Override) -> None:
-        """Keep a decision; earlier ones stay beside it."""
+    def add_override(self, override: Override, before: str = "") -> None:
+        """Keep a decision, here and in the journal; earlier ones stay beside it.
+
+        Args:
+            before: what counted, for the journal.
+        """
         at = override.at or _now()
         row = (override.student, override.exercise, override.score, override.reason, at)
         with self._transaction():
-            self._db.execute(
-                "INSERT INTO overrides (student, exercise, score, reason, at, sha256)"
-                " VALUES (?, ?, ?, ?, ?, ?)",
-                (*row, _sha256(repr(row))),
-            )
+            number = self._next("overrides")
+            self._db.execute(row_into("overrides"), (number, *row, _sha256(repr(row))))
+            after = msgspec.json.encode({"number": number, "score": override.score}).decode()
+            kind = "lift" if override.score is None else "override"
+            about = (override.student, override.exercise, override.reason, before, after)
+            self._db.execute(row_into("journal"), (self._next("journal"), at, whoami(), kind, *about))
 
     def overrides(self) -> list[Override]:
         """Every decision, oldest first, lifted ones included.
@@ -310,6 +340,57 @@ class Gradebook:
                     raise _failed_checksum(f"The override for {row[0]!r} and {row[1]}", self.path)
                 found.append(Override(*row))
         return found
+
+    def note(self, decision: Decision) -> None:
+        """Write down who changed a grade, when, why, and what it was before."""
+        with self._transaction():
+            number = self._next("journal")
+            at, who = decision.at or _now(), decision.who or whoami()
+            row = msgspec.structs.astuple(msgspec.structs.replace(decision, at=at, who=who))
+            self._db.execute(row_into("journal"), (number, *row))
+
+    def journal(self, student: str | None = None, exercise: str | None = None) -> list[Decision]:
+        """Every change of a grade, oldest first; those about a class are about each of its students."""
+        with explained(self.path):
+            rows = self._db.execute(
+                "SELECT at, who, kind, student, exercise, reason, before, after FROM journal"
+                " WHERE student IN ('', ifnull(?1, student)) AND exercise IN ('', ifnull(?2, exercise))"
+                " ORDER BY number",
+                (student, exercise),
+            ).fetchall()
+        return [Decision(*row) for row in rows]
+
+    # -- graders, and what was found ------------------------------------------------------------------
+
+    def keep_snapshot(self, sha256: str, packed: bytes) -> None:
+        """Keep the graders of a run; the same ones are kept once."""
+        with explained(self.path):
+            query = "SELECT 1 FROM snapshots WHERE sha256 = ?"
+            known = self._db.execute(query, (sha256,)).fetchone()
+        if known is None:
+            with self._transaction():
+                self._db.execute(row_into("snapshots"), (sha256, packed))
+
+    def snapshot(self, sha256: str) -> bytes | None:
+        """The graders of that digest as they were packed; None if they are not here."""
+        with explained(self.path):
+            query = "SELECT packed FROM snapshots WHERE sha256 = ?"
+            row = self._db.execute(query, (sha256,)).fetchone()
+        return None if row is None else bytes(row[0])
+
+    def set_found(self, student: str, exercise: str, listed: str | None) -> None:
+        """Note what a student has that may be meant for an exercise; None: it is settled."""
+        with self._transaction():
+            if listed is None:
+                self._db.execute("DELETE FROM found WHERE student = ? AND exercise = ?", (student, exercise))
+            else:
+                self._db.execute(row_into("found", "INSERT OR REPLACE"), (student, exercise, listed))
+
+    def found(self) -> dict[tuple[str, str], str]:
+        """What is noted so, by student and exercise."""
+        with explained(self.path):
+            rows = self._db.execute("SELECT student, exercise, listed FROM found ORDER BY 1, 2").fetchall()
+        return {(student, exercise): listed for student, exercise, listed in rows}
 
     # -- writing --------------------------------------------------------------------------------------
 
@@ -370,6 +451,14 @@ def _failed_checksum(what: str, path: Path) -> IntegrityError:
 def _sha256(body: bytes | str) -> str:
     # Whoever edits the file by hand may leave text where bytes were: that is damage too, not a crash.
     return hashlib.sha256(body.encode() if isinstance(body, str) else body).hexdigest()
+
+
+def whoami() -> str:
+    """The name of the account that this runs under; its number where it has none."""
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):
+        return str(os.getuid()) if hasattr(os, "getuid") else "unknown"
 
 
 def _now() -> str:

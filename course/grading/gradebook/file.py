@@ -8,6 +8,10 @@ that can be copied.
 
 Closing also seals it: a digest over every row is kept in it and compared whenever it is opened. The first
 write breaks the seal, so a file whose writer was killed has none, and is taken as it is.
+
+Every row ends with a digest of itself, table and all. It needs nothing around it to be recognised, which is
+how ``salvage`` tells the rows of a damaged file that are whole; what is deleted is overwritten, so that no
+row comes back that was taken out on purpose.
 """
 
 from __future__ import annotations
@@ -28,22 +32,29 @@ if TYPE_CHECKING:
 __all__ = [
     "FORMAT_VERSION",
     "SEAL",
+    "TABLES",
     "begin_writing",
     "create",
     "explained",
     "open_file",
     "release",
+    "row_digest",
+    "row_into",
     "seal",
     "unseal",
 ]
 
-#: 2 had no seal, and is read as it is.
-FORMAT_VERSION = 3
+#: 2 had no seal, 3 no digests of rows, snapshots or journal; both are read as they are.
+FORMAT_VERSION = 4
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
-_DAMAGED = "Restore it from a backup, or grade into a new folder; nothing in this one was mended or removed."
+_DAMAGED = (
+    "`course grade salvage` gets what is whole out of it and its backups into a new folder; nothing in this"
+    " one was mended or removed."
+)
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
+#: What formats 1 to 3 had. Every table got a last column since: the digest of its row.
 _TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE runs (
@@ -79,6 +90,43 @@ CREATE TABLE results (
     UNIQUE (student, exercise, submission_sha256, grader_version, seed, run)
 );
 """
+#: Since format 4: the graders of each run as one zip; what was found that is nobody's submission yet; and
+#: who changed a grade, when, why, and what it was before.
+_SINCE_4 = """
+CREATE TABLE snapshots (sha256 TEXT PRIMARY KEY, packed BLOB NOT NULL, row_sha256 TEXT) WITHOUT ROWID;
+CREATE TABLE found (
+    student TEXT NOT NULL, exercise TEXT NOT NULL, listed TEXT NOT NULL, row_sha256 TEXT,
+    PRIMARY KEY (student, exercise)
+) WITHOUT ROWID;
+CREATE TABLE journal (
+    number INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, kind TEXT NOT NULL,
+    student TEXT NOT NULL, exercise TEXT NOT NULL, reason TEXT NOT NULL, before TEXT NOT NULL,
+    after TEXT NOT NULL, row_sha256 TEXT
+);
+"""
+#: The columns of every table but the last, which is the digest of these.
+TABLES = {
+    "meta": ("key", "value"),
+    "runs": ("number", "kind", "started_at", "options"),
+    "exercises": ("id", "title", "max_points", "pass_share", "position"),
+    "students": ("student", "identity"),
+    "submissions": ("sha256", "files"),
+    "times": ("student", "exercise", "submission_sha256", "source", "at"),
+    "overrides": ("number", "student", "exercise", "score", "reason", "at", "sha256"),
+    "results": (
+        "number", "run", "student", "exercise", "submission_sha256", "grader_version", "seed", "graded_at",
+        "verdict", "verdict_sha256",
+    ),
+    "snapshots": ("sha256", "packed"),
+    "found": ("student", "exercise", "listed"),
+    "journal": ("number", "at", "who", "kind", "student", "exercise", "reason", "before", "after"),
+}  # fmt: skip
+_OLD = ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results")
+_TO_4 = "".join(
+    f"ALTER TABLE {name} ADD COLUMN row_sha256 TEXT;"
+    f"UPDATE {name} SET row_sha256 = row_digest('{name}', {', '.join(TABLES[name])});"
+    for name in _OLD
+)
 _SEALED = (
     f"SELECT * FROM meta WHERE key != '{SEAL}' ORDER BY key",
     "SELECT * FROM runs ORDER BY number",
@@ -90,6 +138,11 @@ _SEALED = (
     "SELECT number, run, student, exercise, submission_sha256, grader_version, seed, graded_at,"
     " verdict_sha256 FROM results ORDER BY number",
 )
+_SEALED_SINCE_4 = (
+    "SELECT sha256 FROM snapshots ORDER BY sha256",
+    "SELECT * FROM found ORDER BY student, exercise",
+    "SELECT * FROM journal ORDER BY number",
+)
 #: Format 1 had results alone, and in them a lateness that was never filled in.
 _FROM_1 = f"""
 ALTER TABLE results RENAME TO results_1;
@@ -100,6 +153,28 @@ INSERT INTO results SELECT number, 1, student, exercise, submission_sha256, grad
     verdict, verdict_sha256 FROM results_1;
 DROP TABLE results_1;
 """
+
+
+def row_digest(table: str, *cells: object) -> str:
+    """The last cell of a row: a digest of the table's name and the cells before it."""
+    digest = hashlib.sha256(table.encode())
+    for cell in cells:
+        if isinstance(cell, bytes):
+            kind, body = b"b", cell
+        elif isinstance(cell, str):
+            kind, body = b"s", cell.encode("utf-8", "surrogatepass")
+        else:
+            # SQLite keeps 10.0 as 10 in the file and gives 10.0 back.
+            whole = isinstance(cell, float) and cell.is_integer()
+            kind, body = b"n", repr(int(cell) if whole else cell).encode()  # type: ignore[call-overload]
+        digest.update(kind + str(len(body)).encode() + b":" + body)
+    return digest.hexdigest()[:32]
+
+
+def row_into(table: str, how: str = "INSERT") -> str:
+    """A statement that puts one row into a table, its digest included."""
+    cells = ", ".join(f"?{number}" for number in range(1, len(TABLES[table]) + 1))
+    return f"{how} INTO {table} VALUES ({cells}, row_digest('{table}', {cells}))"
 
 
 @contextlib.contextmanager
@@ -155,9 +230,10 @@ def create(path: Path) -> None:
     draft = _draft(path)
     try:
         with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:
+            _know_digests(db)
             db.executescript(
-                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} PRAGMA user_version = {FORMAT_VERSION};"
-                f"PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
+                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} {_TO_4} {_SINCE_4}"
+                f"PRAGMA user_version = {FORMAT_VERSION}; PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
             )
         _publish(draft, path)
     finally:
@@ -223,9 +299,10 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
     if writing or log.exists():
         # Before the first look at a file in write-ahead mode: held alone it needs no shared memory.
         db.execute("PRAGMA locking_mode = EXCLUSIVE")
+    _know_digests(db)
     version = _checked_format(db, path)
     if version == 1:
-        db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;")
+        db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = 3; COMMIT;")
     if writing:
         # The lock is the operating system's, so it ends with the process however that ends.
         db.execute("BEGIN EXCLUSIVE")
@@ -235,25 +312,39 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("PRAGMA locking_mode = NORMAL")
         db.execute("SELECT count(*) FROM meta").fetchone()
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
-    if kept is not None and kept[0] != _digest(db):
+    sealed = _SEALED if version < 4 else (*_SEALED, *_SEALED_SINCE_4)
+    if kept is not None and kept[0] != _digest(db, sealed):
         raise IntegrityError(f"{path} is damaged: it is not what was written.", help=_DAMAGED)
+    if version < 4 and writing:
+        db.executescript(
+            f"BEGIN EXCLUSIVE; {_TO_4} {_SINCE_4} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"
+        )
+        if kept is not None:
+            seal(db)
+    elif version < 4:  # left as it is; what it lacks is empty
+        db.executescript(_SINCE_4.replace("CREATE TABLE", "CREATE TEMP TABLE"))
+
+
+def _know_digests(db: sqlite3.Connection) -> None:
+    db.create_function("row_digest", -1, row_digest, deterministic=True)
+    db.execute("PRAGMA secure_delete = ON")
 
 
 def seal(db: sqlite3.Connection) -> None:
     """Note what is in it now."""
-    db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (SEAL, _digest(db)))
+    sealed = _digest(db, (*_SEALED, *_SEALED_SINCE_4))
+    db.execute(row_into("meta", "INSERT OR REPLACE"), (SEAL, sealed))
 
 
 def unseal(db: sqlite3.Connection) -> None:
     """Within a transaction that is about to change it."""
     db.execute("DELETE FROM meta WHERE key = ?", (SEAL,))
-    db.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
 
 
-def _digest(db: sqlite3.Connection) -> str:
+def _digest(db: sqlite3.Connection, queries: tuple[str, ...]) -> str:
     """Over all rows; what is large in them has a digest of its own, and that is among them."""
     digest = hashlib.sha256()
-    for query in _SEALED:
+    for query in queries:
         digest.update(f"{query}\n".encode())
         for row in db.execute(query):
             digest.update(f"{row!r}\n".encode("utf-8", "surrogatepass"))

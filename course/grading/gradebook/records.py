@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 if TYPE_CHECKING:
     from course.scoring.verdict import Verdict
 
-__all__ = ["FromDownload", "GradedExercise", "Key", "Override", "Result", "SubmittedAt"]
+__all__ = [
+    "Decision", "FromDownload", "GradedExercise", "Key", "Override", "Result", "Run", "SubmittedAt",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, order=True)
@@ -91,3 +93,33 @@ class Override(msgspec.Struct, frozen=True):
     score: float | None
     reason: str
     at: str = ""
+
+
+class Decision(msgspec.Struct, frozen=True):
+    """A change of grades, by whom and why.
+
+    Attributes:
+        at: UTC, ISO 8601; empty for now.
+        who: the name of the account; empty for the one this runs under.
+        kind: "override", "lift", "assign", "late", "roster" or "salvage".
+        student, exercise: whom it is about; empty for a whole class.
+        before, after: in words or JSON, what counted and what counts.
+    """
+
+    at: str
+    who: str
+    kind: str
+    student: str
+    exercise: str
+    reason: str
+    before: str
+    after: str
+
+
+class Run(msgspec.Struct, frozen=True):
+    """A grading ("run"), a regrading ("rerun") or files assigned by hand ("assign"), with its options."""
+
+    number: int
+    kind: str
+    started_at: str
+    options: dict[str, Any]

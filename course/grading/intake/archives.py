@@ -1,6 +1,7 @@
 """Zip archives as students hand them in, read as data: nothing is unpacked to disk, nothing is believed.
 
-Links, devices, bombs and paths that lead elsewhere are refused with a reason that reaches the report.
+Links, devices, bombs and paths that lead elsewhere are refused with a reason that reaches the report. A
+folder around everything, and the backslashes of Windows, are taken as what they are meant to be, and said.
 """
 
 from __future__ import annotations
@@ -12,22 +13,25 @@ import json
 import stat
 import zipfile
 import zlib
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from course.grading.intake.downloads import IGNORED
+from course.grading.intake.names import is_meant
 from course.printable import one_line
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from course.catalog.models import Exercise
 
-__all__ = ["MAX_FILE", "RefusedError", "manifest_of", "module_in"]
+__all__ = ["MAX_FILE", "Held", "RefusedError", "manifest_of", "member_of", "module_in", "outline_of"]
 
 T = TypeVar("T")
+Members = dict[str, zipfile.ZipInfo]
 
 MAX_FILE = 1 << 20
 MAX_FILES = 20
@@ -55,45 +59,114 @@ def manifest_of(path: Path) -> dict[str, Any]:
     return _opened(path, functools.partial(_manifest, path))
 
 
-def module_in(path: Path, exercise: Exercise) -> tuple[str, bytes] | None:
-    """What a zip holds for an exercise, its module or a notebook: name and content; None if there is neither.
+@dataclass(frozen=True)
+class Held:
+    """What an archive holds for an exercise.
+
+    Attributes:
+        name: as the archive has it.
+        notes: what was taken for granted, a sentence each.
+        copies: the members that are the same file, this one included.
+    """
+
+    name: str
+    content: bytes
+    notes: tuple[str, ...] = ()
+    copies: tuple[str, ...] = ()
+
+
+def module_in(path: Path, exercise: Exercise) -> Held | None:
+    """What a zip holds for an exercise, its module or a notebook; None if there is neither.
 
     Raises:
         RefusedError: the archive is one that must not be opened further, or is damaged, or holds several.
     """
 
-    def read(archive: zipfile.ZipFile, members: dict[str, zipfile.ZipInfo]) -> tuple[Any, Any, bytes]:
+    def read(archive: zipfile.ZipFile, members: Members) -> Held | None:
         manifest = _manifest(path, archive, members)
-        wanted = _wanted(path, members, exercise)
-        return manifest, wanted, _unpacked(path, archive, wanted) if wanted else b""
+        wanted = _wanted(members, exercise)
+        if not wanted:
+            return None
+        contents = {name: _unpacked(path, archive, members[name]) for name in wanted}
+        if len(set(contents.values())) > 1:
+            message = f"{path.name} holds several files for {exercise.id}: {' and '.join(wanted)}."
+            raise RefusedError("ambiguous_files", message, "Keep the one that counts.")
+        name, content = next(iter(contents.items()))
+        listed = manifest.get("files", {})
+        expected = listed.get(name, listed.get(members[name].filename))
+        if manifest and expected != hashlib.sha256(content).hexdigest():
+            raise RefusedError(
+                "checksum_mismatch",
+                f"{name} in {path.name} is not the file that `course submit` put there.",
+                "Make the archive again with `course submit` and upload it unchanged.",
+            )
+        raw = members[name].filename
+        notes = tuple(_notes(path, name, raw, wanted, exercise))
+        return Held(raw, content, notes, tuple(members[other].filename for other in wanted))
 
-    manifest, wanted, content = _opened(path, read)
-    if wanted is None:
-        return None
-    expected = manifest.get("files", {}).get(wanted.filename)
-    if manifest and expected != hashlib.sha256(content).hexdigest():
-        raise RefusedError(
-            "checksum_mismatch",
-            f"{wanted.filename} in {path.name} is not the file that `course submit` put there.",
-            "Make the archive again with `course submit` and upload it unchanged.",
-        )
-    return wanted.filename, content
-
-
-def _wanted(path: Path, members: dict[str, zipfile.ZipInfo], exercise: Exercise) -> zipfile.ZipInfo | None:
-    """The one member for an exercise; None if there is none."""
-    found = []
-    for name in (exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name):
-        member = members.get(f"{exercise.id}/{name}") or members.get(name)
-        found += [member] if member else []
-    if len(found) > 1:
-        names = " and ".join(member.filename for member in found)
-        message = f"{path.name} holds several files for {exercise.id}: {names}."
-        raise RefusedError("ambiguous_files", message, "Keep the one that counts.")
-    return found[0] if found else None
+    return _opened(path, read)
 
 
-def _opened(path: Path, read: Callable[[zipfile.ZipFile, dict[str, zipfile.ZipInfo]], T]) -> T:
+def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
+    """What was taken for granted about a member."""
+    around = raw.replace("\\", "/").removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
+    if around:
+        yield f"Everything in {path.name} lies in the folder {around}, which was passed over."
+    if "\\" in raw:
+        yield f"{path.name} has backslashes in its paths; they were taken for folders."
+    base = PurePosixPath(name).name
+    if base not in {exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name}:
+        yield f"{base} was taken for {exercise.module}."
+    if len(wanted) > 1:
+        yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."
+
+
+def _wanted(members: Members, exercise: Exercise) -> list[str]:
+    """The members for an exercise, those with its very name first."""
+    names = (exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name)
+    found = [
+        name
+        for name in members
+        if PurePosixPath(name).parent.as_posix() in {".", exercise.place}
+        and any(is_meant(PurePosixPath(name).name, wanted) for wanted in names)
+    ]
+    return sorted(found, key=lambda name: (PurePosixPath(name).name not in names, "/" not in name, name))
+
+
+def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
+    """Names and contents of the modules and notebooks in a zip, but those to skip.
+
+    Raises:
+        RefusedError: it must not be opened further, or is damaged.
+    """
+
+    def read(archive: zipfile.ZipFile, members: Members) -> list[tuple[str, bytes]]:
+        return [
+            (info.filename, _unpacked(path, archive, info))
+            for info in members.values()
+            if info.filename not in skip and info.filename.casefold().endswith((".py", ".ipynb"))
+        ]
+
+    return _opened(path, read)
+
+
+def member_of(path: Path, name: str) -> bytes:
+    """The content of one member, by the name the zip has for it, or that name with plain slashes.
+
+    Raises:
+        RefusedError: there is none, or the archive must not be opened further.
+    """
+
+    def read(archive: zipfile.ZipFile, members: Members) -> bytes:
+        for plain, info in members.items():
+            if name in {info.filename, info.filename.replace("\\", "/"), plain}:
+                return _unpacked(path, archive, info)
+        raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
+
+    return _opened(path, read)
+
+
+def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
     """What ``read`` makes of an archive whose members were all found harmless.
 
     Raises:
@@ -118,18 +191,18 @@ def _refused(path: Path, why: str) -> RefusedError:
     )
 
 
-def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> dict[str, zipfile.ZipInfo]:
-    """The members by name, after every one of them was found harmless."""
+def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
+    """The members by name, from inside the folders that all of them lie in; every one was found harmless."""
     files = [info for info in infos if not info.is_dir() and not _is_clutter(info.filename)]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
     if sum(info.file_size for info in files) > MAX_UNPACKED:
         raise _refused(path, "it unpacks to more than 5 MB")
-    members: dict[str, zipfile.ZipInfo] = {}
+    members: Members = {}
     for info in files:
-        name = PurePosixPath(info.filename)
+        name = PurePosixPath(info.filename.replace("\\", "/"))
         kind = stat.S_IFMT(info.external_attr >> 16)
-        if name.is_absolute() or ".." in name.parts or "\\" in info.filename or ":" in info.filename:
+        if name.is_absolute() or ".." in name.parts or ":" in info.filename:
             raise _refused(path, "a file in it has a path that leads outside")
         if kind not in (0, stat.S_IFREG):
             raise _refused(path, "it holds a link or a device")
@@ -137,15 +210,25 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> dict[str, zipf
             raise _refused(path, "it is encrypted")
         if name.suffix.lower() in _ARCHIVES:
             raise _refused(path, "it holds another archive")
-        if info.filename in members:
+        if name.as_posix() in members:
             raise _refused(path, "it holds two files of one name")
-        members[info.filename] = info
+        members[name.as_posix()] = info
+    return _without_top(members)
+
+
+def _without_top(members: Members) -> Members:
+    """The members as they are called from inside the folders that hold everything."""
+    while members and all("/" in name for name in members):
+        tops = {name.partition("/")[0] for name in members}
+        if len(tops) > 1:
+            break
+        members = {name.partition("/")[2]: info for name, info in members.items()}
     return members
 
 
 def _is_clutter(name: str) -> bool:
     """What operating systems add to a zip by themselves."""
-    return any(part in IGNORED for part in PurePosixPath(name).parts)
+    return any(part in IGNORED for part in PurePosixPath(name.replace("\\", "/")).parts)
 
 
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
@@ -157,7 +240,7 @@ def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> by
     return content
 
 
-def _manifest(path: Path, archive: zipfile.ZipFile, members: dict[str, zipfile.ZipInfo]) -> dict[str, Any]:
+def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[str, Any]:
     """What ``course submit`` wrote beside the files; empty for an archive made by hand."""
     info = members.get("submission.json")
     if info is None:

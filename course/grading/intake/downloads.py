@@ -12,6 +12,7 @@ are not is refused with the odd ones listed; a name that does not say whose it i
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import os
 import re
@@ -21,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.book import FromDownload
+from course.grading.intake.names import is_meant
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -69,26 +71,37 @@ class Place:
     root: Path
     files: tuple[tuple[str, Path], ...] | None = None
 
-    def find(self, *relative: str) -> list[Path]:
-        """What lies at any of these paths; nothing is opened."""
+    def find(self, wanted: str, inside: str) -> list[Path]:
+        """Files that are meant by a name, at the top or in a folder of theirs; nothing is opened.
+
+        Those of the very name come first.
+        """
         if self.files is None:
-            return [path for name in relative if os.path.lexists(path := self.root / name)]
-        return [path for name, path in self.files if any(_is_named(name, wanted) for wanted in relative)]
+            found = [*_entries(self.root), *_entries(self.root / inside)]
+        else:
+            found = [(name, path) for name, path in self.files if "/" not in name]
+        mine = [(name != wanted, path) for name, path in found if is_meant(name, wanted)]
+        return [path for _, path in sorted(mine, key=lambda item: item[0])]
 
     def archives(self) -> list[Path]:
         """The zip files, by name."""
         found = self.root.iterdir() if self.files is None else (path for _, path in self.files)
         return sorted(path for path in found if path.suffix.lower() == ".zip")
 
+    def given(self, path: Path) -> str:
+        """The name that the student gave a file."""
+        return next((name for name, mine in self.files or () if mine == path), path.name)
+
     def shown(self, path: Path) -> str:
         """A path in words, from here."""
         return os.fsencode(path.relative_to(self.root)).decode("utf-8", "backslashreplace")
 
 
-def _is_named(name: str, wanted: str) -> bool:
-    """Whether a file is the wanted one; Canvas adds ``-1``, ``-2`` to what is handed in again."""
-    stem, dot, suffix = wanted.rpartition(".")
-    return name == wanted or bool(re.fullmatch(re.escape(stem) + r"-[0-9]+" + re.escape(dot + suffix), name))
+def _entries(folder: Path) -> list[tuple[str, Path]]:
+    """Names in a folder, with their paths; none if there is no such folder."""
+    with contextlib.suppress(OSError):
+        return [(name, folder / name) for name in sorted(os.listdir(folder))]  # noqa: PTH208 - names alone
+    return []
 
 
 @dataclass(frozen=True)
@@ -100,6 +113,7 @@ class Student:
         identity: who that is to the platform; None for plain folders.
         submitted_at: seconds since 1970, UTC, where the platform says so.
         flagged_late: the platform says it was late, and not by how much.
+        typed: files that stand for what was typed into the platform.
     """
 
     name: str
@@ -107,6 +121,7 @@ class Student:
     identity: FromDownload | None = None
     submitted_at: float | None = None
     flagged_late: bool = False
+    typed: tuple[str, ...] = ()
 
 
 @dataclass
@@ -216,6 +231,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
     owned: dict[str, Path] = {}
     shared: dict[str, list[tuple[str, Path]]] = {}
     people: dict[str, FromDownload] = {}
+    typed: dict[str, list[str]] = {}
     for raw in names:
         match = _MOODLE.fullmatch(raw)
         if match is None:
@@ -224,6 +240,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
         student = _text(f"{match['name']}_{match['key']}")
         people[student] = FromDownload("moodle", match["key"], _text(match["name"]))
         if match["plugin"] != "file":
+            typed.setdefault(student, []).append(_text(raw))
             continue  # text typed into the platform, comments: no files of the student's
         if (folder / raw).is_dir() or not match["file"]:
             owned[student] = folder / raw
@@ -234,7 +251,8 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
             found.unrecognised.append(f"{student}: both a folder and files of their own")
             continue
         place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
-        found.students.append(Student(student, place, identity))
+        words = tuple(typed.get(student, ()))
+        found.students.append(Student(student, place, identity, typed=words))
     return found
 
 
@@ -242,6 +260,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
     found = ClassList("canvas")
     files: dict[str, list[tuple[str, Path]]] = {}
     spelled: dict[str, set[str]] = {}
+    typed: dict[str, list[str]] = {}
     late: set[str] = set()
     for raw in names:
         match = _CANVAS.fullmatch(raw)
@@ -250,7 +269,9 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
             continue
         key = match["key"] or match["anon_key"]
         mine = files.setdefault(key, [])
-        if not match["typed"]:  # text or an address typed into Canvas is no file of the student's
+        if match["typed"]:  # text or an address typed into Canvas is no file of the student's
+            typed.setdefault(key, []).append(_text(raw))
+        else:
             mine.append((match["file"], folder / raw))
         spelled.setdefault(key, set()).add(_text(match["name"] or match["anon"] or ""))
         if match["late"] or match["anon_late"]:
@@ -265,7 +286,10 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
         name = next(iter(spelled[key]))
         identity = FromDownload("canvas", key, name)
         place = Place(folder, tuple(items))
-        found.students.append(Student(f"{name}_{key}", place, identity, flagged_late=key in late))
+        words = tuple(typed.get(key, ()))
+        found.students.append(
+            Student(f"{name}_{key}", place, identity, flagged_late=key in late, typed=words)
+        )
     return found
 
 

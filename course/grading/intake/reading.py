@@ -7,29 +7,42 @@ answer; nothing of them is ever run. A file that exceeds one costs itself: it is
 
 from __future__ import annotations
 
+import ast
 import atexit
 import contextlib
+import hashlib
 import json
 import os
 import subprocess
 import sys
 import threading
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from time import process_time
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from course.errors import InternalError, UngradableError
-from course.grading.intake.archives import RefusedError, manifest_of, module_in
-from course.grading.pipes import read_frame, write_frame
+from course.grading.intake.archives import (
+    Held,
+    RefusedError,
+    manifest_of,
+    member_of,
+    module_in,
+    outline_of,
+)
+from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
+from course.grading.quiz import checked_record
+from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import notebook_source
 from course.printable import one_line
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from course.catalog.models import Exercise
 
 __all__ = ["Reader", "reader"]
@@ -46,8 +59,8 @@ class _Ask(msgspec.Struct, frozen=True):
     """One file to read, and what is looked for in it.
 
     Attributes:
-        kind: "notebook", "archive" or "quiz".
-        path: of an archive.
+        kind: "notebook", "archive", "quiz", "outline" or "member".
+        path: of an archive, or of what is to be outlined.
         content: of a notebook.
         name: what to call it in messages.
     """
@@ -57,8 +70,14 @@ class _Ask(msgspec.Struct, frozen=True):
     path: bytes = b""
     content: bytes = b""
     exercise: str = ""
+    place: str = ""
     module: str = ""
     tasks: tuple[str, ...] = ()
+    skip: tuple[str, ...] = ()
+
+
+#: A file by its name in its archive, the digest of its content, and the names of the functions in it.
+Outline = tuple[str, str, tuple[str, ...]]
 
 
 class _Told(msgspec.Struct, frozen=True):
@@ -68,6 +87,9 @@ class _Told(msgspec.Struct, frozen=True):
     name: str | None = None
     content: bytes = b""
     record: bytes = b""
+    notes: tuple[str, ...] = ()
+    copies: tuple[str, ...] = ()
+    outlines: tuple[Outline, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -93,8 +115,8 @@ class Reader:
         told = self._ask(_Ask("notebook", one_line(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
-    def module_in(self, path: Path, exercise: Exercise) -> tuple[str, bytes] | None:
-        """What an archive holds for an exercise: name and content; None if nothing.
+    def module_in(self, path: Path, exercise: Exercise) -> Held | None:
+        """What an archive holds for an exercise; None if nothing.
 
         Raises:
             RefusedError: it must not be opened, or is damaged.
@@ -102,10 +124,33 @@ class Reader:
         told = self._ask(
             _Ask("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
         )
-        return None if told.name is None else (told.name, told.content)
+        return None if told.name is None else Held(told.name, told.content, told.notes, told.copies)
+
+    def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
+        """Which functions a module or a notebook defines, or each of an archive.
+
+        Args:
+            skip: members of the archive that are not looked at.
+            functions: the names that are asked about.
+
+        Raises:
+            RefusedError: it cannot be read.
+        """
+        where = os.fsencode(path.absolute())
+        ask = _Ask("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
+        return self._ask(ask).outlines
+
+    def member(self, path: Path, name: str) -> bytes:
+        """The content of one file of an archive.
+
+        Raises:
+            RefusedError: there is none, or the archive must not be opened.
+        """
+        ask = _Ask("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
+        return self._ask(ask).content
 
     def quiz_in(self, path: Path) -> Any:
-        """The quiz attempts in an archive, as JSON gave them; None if it holds none.
+        """The quiz attempts in an archive, a word where they have another form, None if it holds none.
 
         Raises:
             RefusedError: it must not be opened, or is damaged.
@@ -182,7 +227,7 @@ atexit.register(reader.close)
 
 def _wanted(exercise: Exercise) -> dict[str, Any]:
     tasks = tuple(task.id for task in exercise.task)
-    return {"exercise": exercise.id, "module": exercise.module, "tasks": tasks}
+    return {"exercise": exercise.id, "place": exercise.place, "module": exercise.module, "tasks": tasks}
 
 
 # -- the process ------------------------------------------------------------------------------------------
@@ -192,22 +237,19 @@ def main() -> None:
     """Serve until standard input ends."""
     cpu_s, memory = int(sys.argv[1]), int(sys.argv[2])
     source, sink = sys.stdin.buffer, sys.stdout.buffer
-    with contextlib.suppress(ImportError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limit_memory(memory)
     write_frame(sink, None)
     while (frame := read_frame(source)) is not None:
-        with contextlib.suppress(ImportError):
-            _, hard = resource.getrlimit(resource.RLIMIT_CPU)
-            resource.setrlimit(resource.RLIMIT_CPU, (int(process_time()) + cpu_s + 1, hard))
+        limit_cpu(cpu_s)
+        ask = msgspec.msgpack.decode(frame, type=_Ask)
         try:
-            told = _answer(msgspec.msgpack.decode(frame, type=_Ask))
+            told = _answer(ask)
         except RefusedError as refused:
             told = _Told(problem=refused.problem)
         except UngradableError as error:
             told = _Told(problem=Problem(error.code, error.message, error.help))
+        except OSError as error:
+            told = _Told(problem=Problem("unreadable", f"{ask.name} cannot be read: {error.strerror}.", ""))
         except MemoryError:
             os._exit(1)  # whoever asked takes it from there
         write_frame(sink, told)
@@ -216,16 +258,61 @@ def main() -> None:
 def _answer(ask: _Ask) -> _Told:
     # What it is looked for by, of an exercise; the course's content is not needed to read a file.
     exercise: Any = SimpleNamespace(
-        id=ask.exercise, module=ask.module, task=[SimpleNamespace(id=name) for name in ask.tasks]
+        id=ask.exercise,
+        place=ask.place,
+        module=ask.module,
+        task=[SimpleNamespace(id=name) for name in ask.tasks],
     )
     if ask.kind == "notebook":
         module = notebook_source(ask.content, exercise, ask.name)
         return _Told(name=ask.name, content=module.source, record=module.record())
     path = Path(os.fsdecode(ask.path))
+    if ask.kind == "outline":
+        return _Told(outlines=tuple(_outlines(path, ask.skip, ask.tasks)))
+    if ask.kind == "member":
+        return _Told(content=member_of(path, ask.skip[0]))
     if ask.kind == "quiz":
-        return _Told(content=json.dumps(manifest_of(path).get("quiz")).encode())
+        return _Told(content=json.dumps(checked_record(manifest_of(path).get("quiz"))).encode())
     found = module_in(path, exercise)
-    return _Told() if found is None else _Told(name=found[0], content=found[1])
+    if found is None:
+        return _Told()
+    return _Told(name=found.name, content=found.content, notes=found.notes, copies=found.copies)
+
+
+def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
+    if path.suffix.casefold() == ".zip":
+        files = outline_of(path, skip)
+    else:
+        with path.open("rb") as handle:
+            content = handle.read(MAX_NOTEBOOK + 1)
+        files = [("", content)] if len(content) <= MAX_NOTEBOOK else []
+    for name, content in files:
+        yield name, hashlib.sha256(content).hexdigest(), _defined(name or path.name, content, functions)
+
+
+def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[str, ...]:
+    """Which of these functions a file's top level defines; none if it is no Python."""
+    if not any(function.encode() in content for function in functions):
+        return ()  # parsing takes a hundred times as long as looking
+    try:
+        if name.casefold().endswith(".ipynb"):
+            cells = json.loads(content).get("cells", ())
+            code = [cell for cell in cells if cell.get("cell_type") == "code"]
+            trees = [_parsed("".join(cell.get("source", ()))) for cell in code]
+        else:
+            trees = [_parsed(content)]
+    except (ValueError, AttributeError, TypeError, RecursionError):
+        return ()
+    found = [node for tree in trees if tree for node in tree.body]
+    names = {node.name for node in found if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)}
+    return tuple(function for function in functions if function in names)
+
+
+def _parsed(source: str | bytes) -> ast.Module | None:
+    with contextlib.suppress(SyntaxError, ValueError), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of a stranger's escapes
+        return ast.parse(source)
+    return None
 
 
 if __name__ == "__main__":

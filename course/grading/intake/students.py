@@ -4,7 +4,8 @@
     <student>/<exercise-id>/<module>.py
     <student>/<anything>.zip        as ``course submit`` writes it
 
-or ``<module>.ipynb`` in place of ``<module>.py``: the module that a notebook stands for is graded.
+or ``<module>.ipynb`` in place of ``<module>.py``: the module that a notebook stands for is graded. Spellings
+that are taken for these names are in ``names``; what is left over is looked at by ``triage``.
 
 ``course.grading.intake.downloads`` says who the students are and where their files lie. Only files an
 exercise declares are read; nothing here executes, unpacks to disk or follows anything. What has to be parsed
@@ -23,11 +24,13 @@ from typing import TYPE_CHECKING, Any
 
 from course.errors import UngradableError
 from course.grading.gradebook.book import SubmittedAt
-from course.grading.intake.archives import MAX_FILE, RefusedError
+from course.grading.intake.archives import MAX_FILE, Held, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.reading import reader
+from course.grading.intake.triage import Candidate, Found, found_for, said_of, survey
 from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
+from course.printable import one_line
 from course.scoring.session import Submission
 from course.scoring.verdict import Problem
 
@@ -36,7 +39,15 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
 
-__all__ = ["MAX_FILE", "Entry", "read_class", "read_quiz", "read_student", "witnesses"]
+__all__ = [
+    "MAX_FILE",
+    "Entry",
+    "read_class",
+    "read_quiz",
+    "read_student",
+    "submission_from",
+    "witnesses",
+]
 
 
 @dataclass(frozen=True)
@@ -48,6 +59,9 @@ class Entry:
         submission: what is to be graded; None if there is nothing.
         problem: why there is nothing; None together with ``submission`` None means it was not handed in.
         times: who says when it was handed in.
+        notes: what was taken for granted, or left lying beside it, a sentence each.
+        found: what may be meant for the exercise, where there is a problem.
+        only: ids of the checks to run; empty runs all.
     """
 
     student: str
@@ -55,6 +69,9 @@ class Entry:
     submission: Submission | None = None
     problem: Problem | None = None
     times: tuple[SubmittedAt, ...] = field(default=(), compare=False)
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    found: Found | None = field(default=None, compare=False)
+    only: tuple[str, ...] = ()
 
     @property
     def sha256(self) -> str:
@@ -92,18 +109,52 @@ def read_student(student: Student, exercises: Sequence[Exercise], *, required: b
         for exercise in exercises:
             yield Entry(name, exercise, problem=Problem("unreadable", message, _PERMISSIONS))
         return
+    taken: list[tuple[Exercise, _Taken | RefusedError | None]] = []
     for exercise in exercises:
         try:
-            found = _find(place, archives, exercise)
+            taken.append((exercise, _find(place, archives, exercise)))
         except RefusedError as refused:
-            yield Entry(name, exercise, problem=refused.problem)
+            taken.append((exercise, refused))
+    used = {at for _, item in taken if isinstance(item, _Taken) for at in item.used}
+    left = survey(place, used, exercises)
+    for exercise, item in taken:
+        if isinstance(item, _Taken):
+            times = witnesses(student, exercise.id, item.submission.sha256, item.path)
+            notes = (*item.notes, *_beside(exercise, item, left))
+            yield Entry(name, exercise, item.submission, times=times, notes=notes)
         else:
-            if found is not None:
-                submission, path = found
-                times = witnesses(student, exercise.id, submission.sha256, path)
-                yield Entry(name, exercise, submission, times=times)
-            else:
-                yield Entry(name, exercise, problem=_no_file(exercise) if required else None)
+            yield _without(student, exercise, item, left, required=required)
+
+
+def _beside(exercise: Exercise, taken: _Taken, left: list[Candidate]) -> list[str]:
+    """What lies beside a submission and has functions of the same exercise: never passed over in silence."""
+    others = [
+        one
+        for one in found_for(exercise, left, asked=False)
+        if one.defines and one.sha256 not in taken.contents
+    ]
+    return [f"Also there, and not graded: {said_of(others)}."] if others else []
+
+
+def _without(
+    student: Student,
+    exercise: Exercise,
+    refused: RefusedError | None,
+    left: list[Candidate],
+    *,
+    required: bool,
+) -> Entry:
+    """The entry of what could not be taken, with what there is in its place."""
+    problem = refused.problem if refused else None
+    found: tuple[Candidate, ...] = ()
+    if problem is None or problem.code in _FOR_TRIAGE:
+        found = found_for(exercise, left, asked=required or problem is not None)
+    if problem is None and (required or found):
+        problem = _no_file(exercise, found, student.typed)
+    if problem is None or not found:
+        return Entry(student.name, exercise, problem=problem)
+    times = tuple((time.source, time.at) for time in witnesses(student, exercise.id, "", None))
+    return Entry(student.name, exercise, problem=problem, found=Found(problem.code, found, times))
 
 
 def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -> tuple[SubmittedAt, ...]:
@@ -125,43 +176,105 @@ def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -
 _PERMISSIONS = "Check the permissions of the file and of the folders above it."
 
 
-def _no_file(exercise: Exercise) -> Problem:
+#: Problems that a file under another name, or a choice between files, would settle.
+_FOR_TRIAGE = {"no_file", "ambiguous_files"}
+
+
+def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str, ...]) -> Problem:
+    message = f"There is no {exercise.module} for {exercise.id}."
+    if found:
+        message += f" There is {said_of(found)}."
+    if typed:
+        message += f" What was typed into the platform is no file: {', '.join(map(one_line, typed))}."
     return Problem(
         "no_file",
-        f"There is no {exercise.module} for {exercise.id}.",
+        message,
         f"Put it at {exercise.module} or {exercise.id}/{exercise.module} in the student's folder, or hand in "
         "the zip that `course submit` writes.",
     )
 
 
-def _find(place: Place, archives: list[Path], exercise: Exercise) -> tuple[Submission, Path] | None:
-    """The one candidate for an exercise and the file it came in, None if there is none.
+@dataclass(frozen=True)
+class _Taken:
+    """What was found for an exercise by its name.
+
+    Attributes:
+        path: the file it came in.
+        used: paths, and members of archives, that hold it.
+        contents: digests of the files as they lie there.
+    """
+
+    submission: Submission
+    path: Path
+    used: tuple[tuple[str, str], ...]
+    contents: frozenset[str]
+    notes: tuple[str, ...] = ()
+
+
+def _find(place: Place, archives: list[Path], exercise: Exercise) -> _Taken | None:
+    """The one candidate for an exercise, None if there is none; copies of one file are one.
 
     Raises:
         RefusedError: there are several, or the one cannot be read.
     """
-    plain = place.find(exercise.module, f"{exercise.id}/{exercise.module}")
     notebook = Path(exercise.module).with_suffix(".ipynb").name
-    notebooks = place.find(notebook, f"{exercise.id}/{notebook}")
-    packed: list[tuple[Path, str, bytes]] = []
+    plain = place.find(exercise.module, exercise.place)
+    notebooks = place.find(notebook, exercise.place)
+    packed: list[tuple[Path, Held]] = []
     for archive in archives:
         held = reader.module_in(archive, exercise)
         if held is not None:
-            packed.append((archive, *held))
+            packed.append((archive, held))
     files = [*plain, *notebooks]
-    candidates = [*files, *(archive for archive, *_ in packed)]
+    candidates = [*files, *(archive for archive, _ in packed)]
+    if not candidates:
+        return None
+    names = ", ".join(place.shown(path) for path in candidates)
+    several = RefusedError(
+        "ambiguous_files", f"There are several files for {exercise.id}: {names}.", "Keep the one that counts."
+    )
+    try:
+        contents = [_content(place, path, notebook=path in notebooks) for path in files]
+    except RefusedError as refused:
+        raise (several if len(candidates) > 1 else refused) from None
+    contents += [held.content for _, held in packed]
+    if len(set(contents)) > 1:
+        raise several
+    used = [(str(path), "") for path in files]
+    used += [(str(path), member) for path, held in packed for member in held.copies]
+    notes = [note for _, held in packed[: 1 if not files else 0] for note in held.notes]
+    path = candidates[0]
+    called = path.name if files else packed[0][1].name
+    if files and (given := place.given(path)) not in {exercise.module, notebook}:
+        notes.append(f"{one_line(given)} was taken for {exercise.module}.")
     if len(candidates) > 1:
-        names = ", ".join(place.shown(path) for path in candidates)
-        message = f"There are several files for {exercise.id}: {names}."
-        raise RefusedError("ambiguous_files", message, "Keep the one that counts.")
-    if files:
-        path = files[0]
-        for part in path.relative_to(place.root).parents:
-            if part.name and (place.root / part).is_symlink():
-                raise RefusedError("symlink", f"{part} is a link.", "Hand in the folder itself.")
-        limit = MAX_NOTEBOOK if notebooks else MAX_FILE
-        return _submission(exercise, path.name, _read_regular(path, place.shown(path), limit)), path
-    return (_submission(exercise, *packed[0][1:]), packed[0][0]) if packed else None
+        notes.append(f"These are the same file: {one_line(names)}.")
+    digests = frozenset({hashlib.sha256(contents[0]).hexdigest()})
+    return _Taken(_submission(exercise, called, contents[0]), path, tuple(used), digests, tuple(notes))
+
+
+def _content(place: Place, path: Path, *, notebook: bool) -> bytes:
+    for part in path.relative_to(place.root).parents:
+        if part.name and (place.root / part).is_symlink():
+            raise RefusedError("symlink", f"{part} is a link.", "Hand in the folder itself.")
+    return _read_regular(path, place.shown(path), MAX_NOTEBOOK if notebook else MAX_FILE)
+
+
+def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
+    """A file that somebody named as a submission, whatever it is called.
+
+    Args:
+        member: name in the archive at ``path``; empty for the file itself.
+
+    Raises:
+        RefusedError: it cannot be read, or graded.
+    """
+    notebook = (member or path.name).casefold().endswith(".ipynb")
+    if member:
+        content = reader.member(path, member)
+    else:
+        content = _read_regular(path, path.name, MAX_NOTEBOOK if notebook else MAX_FILE)
+    return _submission(exercise, "named.ipynb" if notebook else "named.py", content)
 
 
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
@@ -173,7 +286,7 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
     shown = name.rpartition("/")[2]
     if not content.strip():
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")
-    if not name.endswith(".ipynb"):
+    if not name.casefold().endswith(".ipynb"):
         return Submission({exercise.module: content})
     source, record = reader.notebook(content, exercise, shown)
     if len(source) > MAX_FILE:

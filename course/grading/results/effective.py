@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 from course.catalog.models import CourseRef
@@ -144,8 +145,8 @@ class Results:
             return []
         known = self._known()
         found, _ = self.roster.match(known, self.downloads)
-        there = {person.student for person in found.values()}
-        return [one.student for one in self.roster.people if one.student not in there | known]
+        there = known | {person.student for person in found.values()}
+        return [one.student for one in self.roster.people if one.student not in there]
 
     def _known(self) -> set[str]:
         return {*self.book.student_ids(), *(name for name, _ in self._overrides)}
@@ -160,9 +161,7 @@ class Results:
 
     def all(self, student: str | None = None, exercise: str | None = None) -> Iterator[Effective]:
         """Every student and exercise, ordered by both; students whom no grading is about come at the end."""
-        enrolled = self._enrolled()
-        # What nobody at all handed in was not asked for: it is nobody's to miss.
-        asked = frozenset(self.book.exercise_ids() if enrolled else ())
+        enrolled, asked = self._enrolled, self._asked
         done: set[tuple[str, str]] = set()
         for name, group in itertools.groupby(self.book.results(student, exercise), lambda r: r.key.student):
             for result in group:
@@ -170,15 +169,24 @@ class Results:
                 yield self.of(result)
             if name in enrolled:
                 yield from self._without_grading(name, exercise, done, asked)
-        others = sorted({name for name, _ in self._overrides} | enrolled)
-        for name in others if student is None else [student]:
+        others = [student] if student is not None else sorted({it for it, _ in self._overrides} | enrolled)
+        for name in others:
             yield from self._without_grading(name, exercise, done, asked if name in enrolled else frozenset())
 
+    @cached_property
     def _enrolled(self) -> set[str]:
-        """Who has a row of the roster, absent or not; nobody without a roster."""
+        """Who has a row of the roster, absent or not; nobody without a roster.
+
+        Found once: one student's results are asked for as often as there are students.
+        """
         if self.roster is None:
             return set()
         return {*self.absent(), *self.roster.match(self._known(), self.downloads)[0]}
+
+    @cached_property
+    def _asked(self) -> frozenset[str]:
+        """What can be missing: what nobody at all handed in was not asked for."""
+        return frozenset(self.book.exercise_ids() if self._enrolled else ())
 
     def _without_grading(
         self, student: str, exercise: str | None, done: set[tuple[str, str]], asked: frozenset[str]

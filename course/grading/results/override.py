@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.book import Override
+from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
     from course.grading.results.effective import Effective, Results
@@ -41,7 +42,8 @@ def override(results: Results, student: str, exercise: str, score: float, reason
             help="Add --reason: it is shown wherever the score is.",
             code="no_reason",
         )
-    results.book.add_override(Override(student, exercise, float(score), reason))
+    before = _told(next(results.all(student, exercise), None))
+    results.book.add_override(Override(student, exercise, float(score), reason), before)
     return _now_counts(results, student, exercise)
 
 
@@ -59,8 +61,16 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
             help="`course grade explain` shows what counts.",
             code="no_override",
         )
-    results.book.add_override(Override(student, exercise, None, reason.strip()))
+    results.book.add_override(Override(student, exercise, None, reason.strip()), _told(found))
     return next(type(results)(results.book).all(student, exercise), None)
+
+
+def _told(counts: Effective | None) -> str:
+    """What counted, for the journal."""
+    if counts is None or counts.score is None:
+        return "no score"
+    by = f"by hand: {counts.override.reason}" if counts.override else counts.verdict.state
+    return f"{format_points(counts.score)}, {by}"
 
 
 def _now_counts(results: Results, student: str, exercise: str) -> Effective:

@@ -5,7 +5,8 @@ A roster is a CSV file with a heading row, one of four kinds, told by its headin
     our own             student (the name of the folder a student's work is graded from), and as far as they
                         are needed name, email, canvas_id, sis_user_id, section, moodle_key, extension_days
     Canvas' gradebook   Student, ID, SIS User ID, SIS Login ID, Section, then its assignments
-    Moodle's worksheet  Identifier, Full name, Email address, ... as "Download grading worksheet" gives it
+    Moodle's worksheet  Identifier, Full name, Email address, ... as "Download grading worksheet" gives it;
+                        names and addresses are not in it where Moodle grades anonymously
     Gradescope's        First Name and Last Name, or Name; SID, Email, and Role if there is one
 
 A student is found by ``student``, or, for a class downloaded from a platform, by that platform's own number.
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     from course.grading.gradebook.book import FromDownload
 
-__all__ = ["COLUMNS", "Person", "Roster", "read_roster"]
+__all__ = ["COLUMNS", "Person", "Roster", "moodle_key", "read_roster", "read_text"]
 
 COLUMNS = (
     "student", "name", "email", "canvas_id", "sis_user_id", "section", "moodle_key", "extension_days",
@@ -146,16 +147,7 @@ def read_roster(path: Path) -> Roster:
     Raises:
         UsageError: it cannot be read or is no roster; the message names the row.
     """
-    try:
-        raw = path.read_bytes()
-        if len(raw) > _MAX_BYTES:
-            raise _wrong(path, "it is larger than 20 MB")
-        text = raw.decode("utf-8-sig")
-    except OSError as error:
-        raise _wrong(path, f"it cannot be read ({error.strerror})") from None
-    except UnicodeError:
-        raise _wrong(path, "it is not UTF-8; save it as 'CSV UTF-8'") from None
-    reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
+    reader = csv.DictReader(io.StringIO(read_text(path), newline=""), strict=True)
     try:
         headings = [str(name).strip() for name in reader.fieldnames or ()]
         reader.fieldnames = headings
@@ -168,6 +160,23 @@ def read_roster(path: Path) -> Roster:
     return Roster(people)
 
 
+def read_text(path: Path) -> str:
+    """The text of such a file.
+
+    Raises:
+        UsageError: it cannot be read, or is too large or no text.
+    """
+    try:
+        raw = path.read_bytes()
+        if len(raw) > _MAX_BYTES:
+            raise _wrong(path, "it is larger than 20 MB")
+        return raw.decode("utf-8-sig")
+    except OSError as error:
+        raise _wrong(path, f"it cannot be read ({error.strerror})") from None
+    except UnicodeError:
+        raise _wrong(path, "it is not UTF-8; save it as 'CSV UTF-8'") from None
+
+
 #: What makes of a row a person, or None of a row that is about nobody.
 Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
 
@@ -175,7 +184,7 @@ Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
 def _kind(path: Path, headings: list[str]) -> Kind:
     """Which kind of roster has these headings."""
     found = set(headings)
-    if {"Identifier", "Full name"} <= found:
+    if {"Identifier", "Full name"} <= found or {"Identifier", "Grade"} <= found:
         return _from_moodle
     if {"Student", "ID"} <= found:
         return _from_canvas
@@ -242,13 +251,18 @@ def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
 def _from_moodle(path: Path, line: int, row: dict[str, str]) -> Person:
     """A row of Moodle's grading worksheet; its files are called by name and the participant's number."""
     cells = {name: text.strip() for name, text in row.items()}
-    key = re.search(r"([0-9]+)$", cells["Identifier"])
+    key = moodle_key(cells["Identifier"])
     if key is None:
         raise _wrong(path, f"line {line}: Identifier {cells['Identifier']!r} ends in no number")
-    name = cells["Full name"].replace("_", "")
-    return Person(
-        student=f"{name}_{key[1]}", name=name, email=cells.get("Email address", ""), moodle_key=key[1]
-    )
+    # Graded anonymously, a download calls its folders as the worksheet calls its rows.
+    name = cells.get("Full name", "").replace("_", "") or cells["Identifier"].removesuffix(key).strip()
+    return Person(student=f"{name}_{key}", name=name, email=cells.get("Email address", ""), moodle_key=key)
+
+
+def moodle_key(identifier: str) -> str | None:
+    """The participant's number in an identifier of Moodle's; None if it has none."""
+    found = re.search(r"([0-9]+)$", identifier.strip())
+    return found[1] if found else None
 
 
 def _from_gradescope(path: Path, line: int, row: dict[str, str]) -> Person | None:

@@ -19,9 +19,11 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.errors import CourseError, InternalError
 from course.grading.pipes import read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
+from course.grading.running.snapshot import in_use
 from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private
 from course.scoring.remote import BUDGET_S
@@ -52,10 +54,15 @@ _TICK_S = 0.5
 
 @dataclass(frozen=True)
 class Graded:
-    """One entry and the verdict on it."""
+    """One entry and the verdict on it.
+
+    Attributes:
+        version: of the graders that judged it, as they said; empty where none did.
+    """
 
     entry: Entry
     verdict: Verdict
+    version: str = ""
 
 
 @dataclass
@@ -98,8 +105,14 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
     # -P: the folder the command is run in, which may be a student's, never becomes importable.
     command = [sys.executable, "-P", "-m", "course.grading.running.grader"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    # The graders run the course that this process runs, however it came to be importable here.
+    # The graders run the course that this process runs, however it came to be importable here, or a snapshot.
     package = str(Path(__file__).resolve().parents[3])
+    if config.terms.graders:
+        graders = in_use(config.terms.graders)
+        if graders is None:
+            raise InternalError("The snapshot that is to judge is not unpacked here.")
+        package = str(graders.folder)
+        environment[ENVIRONMENT_VARIABLE] = str(graders.catalog.content.root)
     environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
@@ -119,6 +132,7 @@ class _Coordinator:
     def __init__(self, entries: Iterable[Entry], terms: Terms, graders: int) -> None:
         self._entries = iter(entries)
         self._terms = terms
+        self._frozen = in_use(terms.graders)
         self._places = graders
         self._again: deque[_Work] = deque()
         self._done: deque[Graded] = deque()
@@ -166,7 +180,9 @@ class _Coordinator:
             return self._again.popleft()
         for entry in self._entries:
             if entry.submission is not None:
-                return _Work(entry, Job(entry.exercise.id, dict(entry.submission.files)))
+                exercise = entry.exercise.id
+                version = self._frozen.version(exercise) if self._frozen else ""
+                return _Work(entry, Job(exercise, dict(entry.submission.files), version, only=entry.only))
             if entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
         return None
@@ -212,7 +228,7 @@ class _Coordinator:
             raise as_error(answer.error, answer.exit_code)
         else:
             assert answer.verdict is not None
-            self._done.append(Graded(work.entry, answer.verdict))
+            self._done.append(Graded(work.entry, answer.verdict, answer.version))
         self._feed(grader.number)
 
     def _start_again(self, grader: _Grader, work: _Work | None) -> None:

@@ -42,12 +42,14 @@ class Job(msgspec.Struct, frozen=True):
 
     Attributes:
         version: the ``grader_version`` it must be graded by; empty takes whatever is here.
+        only: checks to run, with what they require; empty runs all.
         number: drawn for each job, so that nobody knows it who was not told.
     """
 
     exercise: str
     files: dict[str, bytes]
     version: str = ""
+    only: tuple[str, ...] = ()
     number: int = msgspec.field(default_factory=lambda: secrets.randbits(63))
 
 
@@ -57,6 +59,7 @@ class Answer(msgspec.Struct, frozen=True):
     Attributes:
         number: of the job it answers.
         sha256: digest of what was graded, as the grader itself found it.
+        version: of the graders that judged, as the grader computed it of itself.
     """
 
     verdict: Verdict | None = None
@@ -64,10 +67,12 @@ class Answer(msgspec.Struct, frozen=True):
     exit_code: int = 0
     number: int = 0
     sha256: str = ""
+    version: str = ""
 
     def is_about(self, job: Job) -> bool:
-        """Whether it is the answer to this job and to no other."""
-        return self.number == job.number and self.sha256 == Submission(job.files).sha256
+        """Whether it is the answer to this job and to no other, by the graders it was meant for."""
+        same = self.number == job.number and self.sha256 == Submission(job.files).sha256
+        return same and (self.verdict is None or job.version in {"", self.version})
 
 
 def main() -> None:
@@ -103,40 +108,39 @@ class _Grader:
     def answer(self, job: Job) -> Answer:
         about: dict[str, Any] = {"number": job.number, "sha256": Submission(job.files).sha256}
         try:
-            self._check_version(job)
+            version = self._checked_version(job)
             submission = opened(job.files, self._catalog.exercise(job.exercise))
-            verdict = self._session(job.exercise).grade(submission)
+            verdict = self._session(job.exercise).grade(submission, only=job.only)
             if verdict.error is not None and verdict.error.code == "isolation_failed":
                 # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
                 self._sessions.pop(job.exercise).close()
-                verdict = self._session(job.exercise).grade(submission)
-            return Answer(verdict=verdict, **about)
+                verdict = self._session(job.exercise).grade(submission, only=job.only)
+            return Answer(verdict=verdict, version=version, **about)
         except CourseError as error:
             problem = Problem(error.code, error.message, error.help)
             return Answer(error=problem, exit_code=error.exit_code, **about)
 
-    def _check_version(self, job: Job) -> None:
-        """Refuse work of a coordinator that has other graders.
+    def _checked_version(self, job: Job) -> str:
+        """The version of the graders here, which must be the one that is asked for.
 
         Raises:
-            MissingCapabilityError: its scores would not be comparable.
+            MissingCapabilityError: they are others, and scores would not be comparable.
         """
         from course.scoring.version import grader_version
 
-        if not job.version:
-            return
         if job.exercise not in self._versions:
-            known = job.exercise in self._catalog.exercise_ids()
+            known = job.exercise in (*self._catalog.exercise_ids(), *self._catalog.warm_up_ids())
             self._versions[job.exercise] = (
                 grader_version(self._catalog.exercise(job.exercise), self._catalog) if known else "none"
             )
         mine = self._versions[job.exercise]
-        if mine != job.version:
+        if job.version not in {"", mine}:
             raise MissingCapabilityError(
                 f"The graders of {job.exercise} are version {mine} here, {job.version} where the run began.",
                 help="Install the same checkout of the course on every machine, and restart the workers.",
                 code="version_mismatch",
             )
+        return mine
 
     def _session(self, exercise: str) -> GradingSession:
         from course.scoring.session import GradingSession

@@ -1,4 +1,4 @@
-"""Grading again what a gradebook holds, with the graders as they are now.
+"""Grading again what a gradebook holds, with the graders as they are now, or as they were for an earlier run.
 
 The submissions come out of the gradebook, so nothing else is needed, and hidden inputs are drawn with the
 same seed. Regraded is what another version of the graders scored, and what a fault of ours left unscored.
@@ -7,23 +7,23 @@ Old results stay beside the new; an override goes on counting in place of both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from course.catalog.questions import read_questions
-from course.errors import IntegrityError, MissingCapabilityError
+from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
 from course.grading.gradebook.book import Key, Result
 from course.grading.intake.students import Entry
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.running.batch import grade_all
 from course.grading.running.run import QUIZ_RECORD, graded_exercises
+from course.grading.running.snapshot import Snapshot, frozen
 from course.quizzing.bank import Bank
 from course.scoring.session import Submission
 from course.scoring.terms import Terms
-from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -31,9 +31,13 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.grading.results.effective import Effective, Results
     from course.grading.running.run import GradeAll
+    from course.grading.running.snapshot import Frozen
     from course.scoring.verdict import Verdict
 
 __all__ = ["Change", "CheckChange", "Regraded", "RerunOptions", "rerun"]
+
+#: Of a snapshot's digest, to name it by.
+_LEAST_DIGITS = 6
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,9 @@ class RerunOptions:
         everything: regrade also what these very graders scored.
         level, at_least: as in ``Terms``; the seed is the first run's.
         timeout: seconds of CPU time per check; None takes the first run's.
+        against: the graders to use, as the number of a run or the beginning of a snapshot's digest; empty
+            takes those of the course as it is now.
+        reason: why, for the record.
     """
 
     dry_run: bool = False
@@ -52,6 +59,8 @@ class RerunOptions:
     level: str | None = None
     at_least: str = "L2"
     timeout: float | None = None
+    against: str = ""
+    reason: str = ""
 
 
 class CheckChange(msgspec.Struct, frozen=True):
@@ -86,6 +95,7 @@ class Regraded(msgspec.Struct, frozen=True):
         up_to_date: results these very graders gave, which were left alone.
         kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused).
         faults: submissions a fault of ours kept from being graded.
+        graders: digest of the snapshot that judged.
     """
 
     regraded: int
@@ -93,6 +103,7 @@ class Regraded(msgspec.Struct, frozen=True):
     kept: int
     faults: int
     changes: tuple[Change, ...]
+    graders: str = ""
 
 
 @dataclass
@@ -120,35 +131,62 @@ def rerun(
 
     Raises:
         MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
+        NotFoundError: the gradebook has no such graders.
         IntegrityError: a submission in the gradebook is damaged.
     """
-    if catalog.content.graders is None:
-        raise MissingCapabilityError(
-            "This installation has no hidden graders: it is a student's.",
-            help="Grade from a checkout of the course.",
-            code="needs_checkout",
-        )
-    task = _Rerun(results, catalog, options)
+    snapshot, recorded = _graders(results, catalog, options.against)
     changes = []
-    for before, after in task.pairs(grade):
-        task.counts.regraded += 1
-        task.counts.faults += after.verdict.state == "grader_error"
-        change = _change(before, after)
-        if change is not None:
-            changes.append(change)
-        report(task.counts.regraded)
+    with frozen(snapshot) as graders:
+        task = _Rerun(results, graders, recorded, options)
+        for before, after in task.pairs(grade):
+            task.counts.regraded += 1
+            task.counts.faults += after.verdict.state == "grader_error"
+            change = _change(before, after)
+            if change is not None:
+                changes.append(change)
+            report(task.counts.regraded)
     counts = task.counts
-    return Regraded(counts.regraded, counts.up_to_date, counts.kept, counts.faults, tuple(changes))
+    return Regraded(
+        counts.regraded, counts.up_to_date, counts.kept, counts.faults, tuple(changes), snapshot.sha256
+    )
+
+
+def _graders(results: Results, catalog: Catalog, against: str) -> tuple[Snapshot, dict[str, Any]]:
+    """Who is to judge, and the options of the run they judged before."""
+    book = results.book
+    if not against:
+        if catalog.content.graders is None:
+            raise MissingCapabilityError(
+                "This installation has no hidden graders: it is a student's.",
+                help="Grade from a checkout of the course.",
+                code="needs_checkout",
+            )
+        return Snapshot.take(catalog.content), book.run_options()
+    runs = [run for run in book.runs() if run.options.get("snapshot")]
+    wanted = [run for run in runs if str(run.number) == against]
+    if not wanted and len(against) >= _LEAST_DIGITS:  # fewer could be the number of a run that is not there
+        wanted = [run for run in runs if run.options["snapshot"].startswith(against)]
+    packed = book.snapshot(wanted[-1].options["snapshot"]) if wanted else None
+    if packed is None:
+        raise NotFoundError(
+            f"The gradebook has no graders of a run or a snapshot {against!r}.",
+            help="`course grade log` lists the runs and their snapshots.",
+            code="snapshot_not_found",
+        )
+    return Snapshot.of(packed, wanted[-1].options["snapshot"]), wanted[-1].options
 
 
 class _Rerun:
-    def __init__(self, results: Results, catalog: Catalog, options: RerunOptions) -> None:
+    def __init__(
+        self, results: Results, graders: Frozen, recorded: dict[str, Any], options: RerunOptions
+    ) -> None:
         self._results = results
-        self._catalog = catalog
+        self._graders = graders
+        self._recorded = recorded
         self._options = options
-        self._exercises = {exercise.id: exercise for exercise in catalog.exercises()}
-        self._versions = {name: grader_version(item, catalog) for name, item in self._exercises.items()}
-        self._bank = Bank(read_questions(catalog.content.quiz))
+        self._exercises = {exercise.id: exercise for exercise in graders.catalog.exercises()}
+        self._versions = {name: graders.version(name) for name in self._exercises}
+        self._bank = Bank(read_questions(graders.catalog.content.quiz))
         self._versions[QUIZ] = quiz_version(self._bank)
         self._before: dict[tuple[str, str], Effective] = {}
         self._begun = False
@@ -157,14 +195,17 @@ class _Rerun:
     def pairs(self, grade: GradeAll) -> Iterator[tuple[Effective, Effective]]:
         """What counted and what counts now, for each regraded submission."""
         options, results = self._options, self._results
-        recorded = results.book.run_options()
-        timeout = options.timeout or float(recorded.get("timeout", 10.0))
-        terms = Terms(options.level, options.at_least, timeout, results.seed)
+        timeout = options.timeout or float(self._recorded.get("timeout", 10.0))
+        graders = self._graders.snapshot.sha256
+        terms = Terms(options.level, options.at_least, timeout, results.seed, graders)
         # Read before anything is written: what is newest changes while results come in.
         waiting = [(item.result.key, item.verdict.state) for item in results.all() if item.result.number]
         for graded in grade(self._entries(waiting), terms):
             entry = graded.entry
-            yield self._taken(self._key(entry.student, entry.exercise.id, entry.sha256), graded.verdict)
+            key = self._key(entry.student, entry.exercise.id, entry.sha256)
+            if graded.version:
+                key = replace(key, grader_version=graded.version)
+            yield self._taken(key, graded.verdict)
         for key, state in waiting:
             if key.exercise == QUIZ and self._is_due(key, state):
                 yield from self._quiz(key)
@@ -222,9 +263,11 @@ class _Rerun:
         """From the first new result on: a regrading that finds nothing to do leaves no trace."""
         self._begun = True
         options, book = self._options, self._results.book
+        snapshot = self._graders.snapshot
         facts = {**book.run_options(), "level": options.level, "at_least": options.at_least}
-        book.begin_run("rerun", facts)
-        book.set_meta(version=self._catalog.version)
+        book.keep_snapshot(snapshot.sha256, snapshot.packed)
+        book.begin_run("rerun", {**facts, "snapshot": snapshot.sha256, "reason": options.reason})
+        book.set_meta(version=self._graders.catalog.version)
         noted = {item.id for item in self._results.exercises()}
         bank = self._bank if QUIZ in noted and self._bank.ids else None
         graded = [item for name, item in self._exercises.items() if name in noted]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import secrets
+import shutil
 import time
 from collections import Counter
 from dataclasses import dataclass, field
@@ -12,16 +13,20 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.catalog.questions import read_questions
-from course.errors import CourseError, MissingCapabilityError, UngradableError, UsageError
+from course.errors import ContentError, MissingCapabilityError, UngradableError, UsageError
 from course.grading.exports.html_report.write import write_pages
 from course.grading.exports.lines import write_csv, write_jsonl
+from course.grading.gradebook.backup import back_up
 from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Result, SubmittedAt
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, read_quiz, read_student, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Results
+from course.grading.results.journal import recorded
 from course.grading.running.batch import grade_all
+from course.grading.running.snapshot import Snapshot, frozen
+from course.isolation.launch import private_folder, remove_tree
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
 from course.scoring.failures import OURS
@@ -38,11 +43,24 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective
     from course.grading.results.roster import Roster
     from course.grading.running.batch import Graded
+    from course.grading.running.snapshot import Frozen
 
     #: What turns entries into verdicts: processes on this machine, or anything else that does the same.
     GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
-__all__ = ["QUIZ_RECORD", "RunOptions", "Summary", "Trouble", "export_all", "grade_class", "open_results"]
+__all__ = [
+    "QUIZ_RECORD",
+    "RunOptions",
+    "Summary",
+    "Trouble",
+    "edited_since",
+    "export_all",
+    "grade_class",
+    "graded_exercises",
+    "open_results",
+    "previewed",
+    "remember",
+]
 
 #: What a quiz record is called among the submissions in a gradebook.
 QUIZ_RECORD = "quiz.json"
@@ -95,6 +113,9 @@ class Summary:
         strangers: who handed in something and has no row of their own in the roster.
         unrecognised: what in the class folder belongs to nobody, one sentence each.
         unjudged: how often a check broke on what a submission returned: (exercise, check, where).
+        graders: digest of the snapshot that judged.
+        unsettled: how many have files that may be meant for what could not be graded.
+        edited: what was scored by other graders than there are now: a run that is resumed keeps its own.
         elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
     """
@@ -109,6 +130,9 @@ class Summary:
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
     unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    graders: str = ""
+    unsettled: int = 0
+    edited: list[str] = field(default_factory=list)
     seed: int = 0
     elapsed_s: float = 0.0
     write_s: float = 0.0
@@ -170,11 +194,15 @@ def grade_class(
             help="Grade from a checkout of the course.",
             code="needs_checkout",
         )
-    exercises = _exercises(catalog, options.exercises)
+    _exercises(catalog, options.exercises)
     members = _members(folder, options)
     started = time.monotonic()
-    with _taken_back(out) as taken, _open(out, folder, options) as book:
-        run = _Run(members.students, exercises, catalog, options, book)
+    with (
+        _taken_back(out) as taken,
+        _open(out, folder, options) as book,
+        frozen(_begun_with(book, options) or Snapshot.take(catalog.content)) as graders,
+    ):
+        run = _Run(members.students, graders, folder, options, book)
         for result, files in run.results(grade):
             book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
@@ -184,10 +212,32 @@ def grade_class(
         summary.unrecognised = members.unrecognised
         results = Results(book)
         summary.count(results)
+        summary.unsettled = len(book.found())
+        if options.resume:
+            summary.edited = edited_since(results, catalog)
         export_all(out, results)
         summary.write_s = book.write_s
+    back_up(out / "gradebook.sqlite")
     summary.elapsed_s = time.monotonic() - started
     return summary
+
+
+def _begun_with(book: Gradebook, options: RunOptions) -> Snapshot | None:
+    """The graders of the run that is to be resumed; None for a new one, and for one of an older format."""
+    sha256 = book.run_options().get("snapshot") if options.resume else None
+    packed = book.snapshot(sha256) if sha256 else None
+    return Snapshot.of(packed, sha256) if sha256 and packed else None
+
+
+def edited_since(results: Results, catalog: Catalog) -> list[str]:
+    """Exercises of which some results were scored by other graders than the course has now."""
+    now = {exercise.id: grader_version(exercise, catalog) for exercise in catalog.exercises()}
+    found = {
+        item.exercise: None
+        for item in results.all()
+        if item.verdict.isolation and now.get(item.exercise) != item.result.key.grader_version
+    }
+    return list(found)
 
 
 class _Run:
@@ -196,23 +246,28 @@ class _Run:
     def __init__(
         self,
         students: Sequence[Student],
-        exercises: Sequence[Exercise],
-        catalog: Catalog,
+        graders: Frozen,
+        folder: Path,
         options: RunOptions,
         book: Gradebook,
     ) -> None:
         self._students = students
-        self._exercises = exercises
-        self._catalog = catalog
+        self._graders = graders
+        self._catalog = graders.catalog
+        self._exercises = _exercises(self._catalog, options.exercises)
+        self._folder = folder
         self._options = options
         self._book = book
-        self._versions = {exercise.id: grader_version(exercise, catalog) for exercise in exercises}
+        self._versions = {exercise.id: graders.version(exercise.id) for exercise in self._exercises}
         self._times: list[SubmittedAt] = []
-        self._bank = Bank(read_questions(catalog.content.quiz))
-        self._with_quiz = bool(self._bank.ids) and (not options.exercises or QUIZ in options.exercises)
-        self.summary = Summary(seed=_seed(book, options))
+        asked = not options.exercises or QUIZ in options.exercises
+        self._bank = _bank(self._catalog) if asked else Bank(())
+        self._with_quiz = bool(self._bank.ids)
+        self.summary = Summary(seed=_seed(book, options), graders=graders.snapshot.sha256)
         self.done = 0
         self._open: Counter[str] = Counter()
+        self._found = set(book.found())
+        self._assigned = {(it.student, it.exercise) for it in book.journal() if it.kind == "assign"}
         self._note_facts()
         self.view = Results(book)
 
@@ -221,29 +276,40 @@ class _Run:
         course = self._catalog
         book.set_meta(seed=str(self.summary.seed), course=course.course_id, version=course.version)
         if options.roster is not None:
-            book.set_meta(roster=options.roster.dump())
+            remember(book, options.roster)
         terms = options.terms
-        facts = {"level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout}
-        if not (options.resume and book.run_options()):
+        facts = {
+            "level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout,
+            "snapshot": self.summary.graders, "folder": str(self._folder.absolute()),
+            "layout": options.layout,
+        }  # fmt: skip
+        if not (options.resume and book.run_options().get("snapshot")):
+            book.keep_snapshot(self.summary.graders, self._graders.snapshot.packed)
             book.begin_run("run", facts)
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
         """What is left to be graded, graded; with what was handed in."""
-        terms = msgspec.structs.replace(self._options.terms, seed=self.summary.seed)
+        terms = msgspec.structs.replace(
+            self._options.terms, seed=self.summary.seed, graders=self.summary.graders
+        )
         for graded in grade(self._left_to_do(), terms):
             submission = graded.entry.submission
             self._one_less(graded.entry.student)
+            verdict = graded.verdict
+            if graded.entry.notes:
+                warnings = (*verdict.warnings, *graded.entry.notes)
+                verdict = msgspec.structs.replace(verdict, warnings=warnings)
             yield (
-                Result(self._key(graded.entry), graded.verdict),
+                Result(self._key(graded.entry, graded.version), verdict),
                 dict(submission.files) if submission else None,
             )
         if self._with_quiz:
             yield from self._quizzes()
 
-    def _key(self, entry: Entry) -> Key:
-        version = self._versions[entry.exercise.id]
+    def _key(self, entry: Entry, judged_by: str = "") -> Key:
+        version = judged_by or self._versions[entry.exercise.id]
         return Key(entry.student, entry.exercise.id, entry.sha256, version, self.summary.seed)
 
     def _left_to_do(self) -> Iterator[Entry]:
@@ -254,12 +320,29 @@ class _Run:
                     self.summary.not_submitted += 1
                     continue
                 self._witnessed(entry.times)
-                if self._options.resume and self._book.confirm(self._key(entry)):
+                self._note_found(entry)
+                if self._options.resume and self._is_done(entry):
                     self.summary.already += 1
                     continue
                 self._open[student.name] += 1
                 yield entry
             self._one_less(student.name)
+
+    def _is_done(self, entry: Entry) -> bool:
+        """Whether it was graded before, or a file was assigned to somebody who still has none by its name."""
+        if entry.submission is None and (entry.student, entry.exercise.id) in self._assigned:
+            return True
+        return self._book.confirm(self._key(entry))
+
+    def _note_found(self, entry: Entry) -> None:
+        about = (entry.student, entry.exercise.id)
+        if about in self._assigned and entry.submission is None:
+            return
+        if entry.found is not None:
+            self._book.set_found(*about, msgspec.json.encode(entry.found).decode())
+            self._found.add(about)
+        elif about in self._found:
+            self._book.set_found(*about, None)
 
     def _one_less(self, student: str) -> None:
         """A student is done when all they handed in was read and everything read is graded."""
@@ -299,6 +382,23 @@ class _Run:
         if self._times:
             self._book.add_times(self._times)
         self._times.clear()
+
+
+def _bank(catalog: Catalog) -> Bank:
+    """The questions of the quiz.
+
+    Raises:
+        UsageError: one of them is not finished or wrong; nothing was graded, and nobody's work is at fault.
+    """
+    try:
+        return Bank(read_questions(catalog.content.quiz))
+    except ContentError as error:
+        raise UsageError(
+            f"The quiz cannot be graded: {error.message}",
+            help="Finish it (`course author check` says what is left), or name what to grade without "
+            "the quiz with --exercise.",
+            code="unfinished_content",
+        ) from None
 
 
 def _as_json(record: object) -> bytes:
@@ -342,12 +442,43 @@ def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
     """The results in the folder of a grading run.
 
     Args:
-        writing: hold the gradebook, and write what lies beside it anew at the end.
+        writing: hold the gradebook; at the end write what lies beside it anew, and a backup.
     """
     with Gradebook(out / "gradebook.sqlite", writing=writing) as book:
         yield Results(book)
         if writing:
             export_all(out, Results(book))
+    if writing:
+        back_up(out / "gradebook.sqlite")
+
+
+@contextlib.contextmanager
+def previewed(out: Path) -> Iterator[Results]:
+    """The results of a run to try a change on: a copy of the gradebook, which is thrown away.
+
+    What a change would do is found by doing it, so a preview cannot differ from it.
+    """
+    path = out / "gradebook.sqlite"
+    Gradebook(path).close()  # it is whole, nobody is writing it, and it is one file now
+    folder = private_folder()
+    try:
+        shutil.copyfile(path, folder / path.name)
+        with Gradebook(folder / path.name, writing=True) as book:
+            yield Results(book)
+    finally:
+        remove_tree(folder)
+
+
+def remember(book: Gradebook, roster: Roster) -> None:
+    """Keep who is enrolled; if somebody's score changes by it (extensions do that), that is written down."""
+    text, before = roster.dump(), book.meta().get("roster")
+    if text == before:
+        return
+    if before is None and not book.exercise_ids():
+        book.set_meta(roster=text)
+        return
+    with recorded(book, "roster", "another roster"):
+        book.set_meta(roster=text)
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
@@ -387,7 +518,7 @@ def _taken_back(out: Path) -> Iterator[_Taken]:
     new, taken = not out.exists(), _Taken()
     try:
         yield taken
-    except CourseError:
+    except BaseException:
         if new and not taken.graded and out.is_dir():
             for item in out.iterdir():
                 item.unlink()

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -74,7 +74,7 @@ class Similar:
     Attributes:
         pairs: the most alike first, at most ``MAX_PAIRS``.
         compared: number of submissions.
-        unreadable: "student exercise" of what is no Python.
+        unreadable: "student exercise" of what is no Python, or too long to compare.
         left_out: pairs beyond ``MAX_PAIRS``.
     """
 
@@ -106,12 +106,13 @@ def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, a
             code="exercise_not_found",
         )
     with Parser() as parse:
+        shipped = _shipped(catalog, parse) if graded else {}
         for name in graded:
             if exercises and name not in exercises:
                 continue
             exercise = catalog.exercise(name)
             documents = list(_submissions(results, exercise, parse, found))
-            documents += _own(catalog, exercise, parse)
+            documents += _own(catalog, exercise, shipped, parse)
             stub = parse(exercise.stub_path.read_bytes())
             ignored = set(stub.marks) if stub else set()
             found.pairs += _pairs(name, documents, ignored, at_least)
@@ -135,25 +136,43 @@ def _submissions(results: Results, exercise: Exercise, parse: Parser, found: Sim
         yield Document(effective.student, source.decode("utf-8", "backslashreplace"), prints)
 
 
-def _own(catalog: Catalog, exercise: Exercise, parse: Parser) -> list[Document]:
-    """The model solution, and what every student has: the textbook code, and the exercise's other files."""
-    paths = sorted((Path(__file__).resolve().parents[2] / "physics").glob("*.py"))
-    paths += sorted(path for path in Path(exercise.folder).glob("*.py") if path != exercise.stub_path)
-    if catalog.content.solutions is not None:
-        paths.insert(0, catalog.content.solutions / exercise.id / exercise.module)
-    documents = []
-    for path in paths:
-        if path.is_file() and path.name != "__init__.py":
-            source = path.read_bytes()
-            prints = parse(source)
-            label = "the model solution"
-            if path.parent.name == "physics":
-                label = "course.physics." + path.stem
-            elif path.name != exercise.module:
-                label = f"the exercise's {path.name}"
-            if prints is not None:
-                documents.append(Document(label, source.decode("utf-8"), prints, own=True))
-    return documents
+def _own(
+    catalog: Catalog, exercise: Exercise, shipped: dict[Path, Document], parse: Parser
+) -> Iterator[Document]:
+    """The model solution, and what every student has: all modules of the course but the stub."""
+    solutions = catalog.content.solutions
+    if solutions is not None:
+        yield from _read(solutions / exercise.id / exercise.module, "the model solution", parse)
+    for path, document in shipped.items():
+        if path.parent == Path(exercise.folder):
+            if path != exercise.stub_path:
+                yield replace(document, label=f"the exercise's {path.name}")
+        else:
+            yield document
+
+
+def _shipped(catalog: Catalog, parse: Parser) -> dict[Path, Document]:
+    """Every module that a student has."""
+    package, content = Path(__file__).resolve().parents[2], catalog.content
+    folders = (content.exercises, content.lessons, package / "physics", package / "simulations")
+    found: dict[Path, Document] = {}
+    for path in sorted(path for folder in folders for path in folder.rglob("*.py")):
+        label = path.as_posix()
+        if path.is_relative_to(package):
+            label = ".".join(("course", *path.relative_to(package).with_suffix("").parts))
+        elif path.is_relative_to(content.root):
+            label = path.relative_to(content.root).as_posix()
+        if path.name != "__init__.py":
+            found.update((path, document) for document in _read(path, label, parse))
+    return found
+
+
+def _read(path: Path, label: str, parse: Parser) -> Iterator[Document]:
+    if path.is_file():
+        source = path.read_bytes()
+        prints = parse(source)
+        if prints is not None:
+            yield Document(label, source.decode("utf-8"), prints, own=True)
 
 
 def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least: float) -> Iterator[Pair]:

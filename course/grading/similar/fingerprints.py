@@ -26,12 +26,12 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from course.grading.pipes import read_frame, write_frame
+from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["RUN", "WINDOW", "Parser", "Prints", "fingerprints"]
+__all__ = ["LONGEST", "RUN", "WINDOW", "Parser", "Prints", "fingerprints"]
 
 #: Nodes in a hashed run: about two statements. Shorter ones are common to all Python.
 RUN = 20
@@ -39,7 +39,11 @@ RUN = 20
 _SHORTEST = 12
 #: Hashes in a window; passages shorter than RUN + WINDOW - 1 nodes may go unnoticed.
 WINDOW = 8
-_DEADLINE_S = 20.0
+#: For one source. The largest takes under 2 s of CPU; a busy machine six times as long by the wall clock.
+_CPU_S, _WALL_S = 10, 60.0
+#: Bytes of a source that is compared. The longest file of this course has 27,000; a megabyte that is
+#: legal Python becomes 700 MB of syntax tree, and a page of two hundred pairs shows it two hundred times.
+LONGEST = 200_000
 _MEMORY = 1 << 30
 
 #: Whether a name is read or written, and what an import is called, does not make it another program.
@@ -173,11 +177,13 @@ class Parser:
         self._end()
 
     def __call__(self, source: bytes) -> Prints | None:
-        """The fingerprints of a source; None if it cannot be read as Python in reasonable time."""
+        """The fingerprints of a source; None if it is no Python, takes too long or is too long."""
+        if len(source) > LONGEST:
+            return None
         process = self._process = self._process or _start()
         assert process.stdin is not None
         assert process.stdout is not None
-        deadline = threading.Timer(_DEADLINE_S, process.kill)
+        deadline = threading.Timer(_WALL_S, process.kill)
         deadline.start()
         try:
             write_frame(process.stdin, source)
@@ -216,13 +222,10 @@ def _start() -> subprocess.Popen[bytes]:
 
 def main() -> None:
     """Serve until standard input ends."""
-    with contextlib.suppress(ImportError, ValueError, OSError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limit_memory(_MEMORY)
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     while (frame := read_frame(source)) is not None:
+        limit_cpu(_CPU_S)
         write_frame(sink, _Reply(fingerprints(msgspec.msgpack.decode(frame, type=bytes))))
 
 

@@ -51,12 +51,16 @@ def _lines(passage: Passage) -> range:
 def _blocks(passages: Iterable[tuple[Passage, Passage]]) -> list[tuple[Passage, Passage]]:
     """Passages that follow each other on both sides, as one: what a reader takes for one."""
     found: list[tuple[Passage, Passage]] = []
+    near: list[int] = []  # of ``found``, those that a passage further down can continue
     for first, second in sorted(passages):
-        for at, (one, other) in enumerate(found):
+        near = [at for at in near if first[0] <= found[at][0][1] + _BLANK + 1]
+        for at in near:
+            one, other = found[at]
             if _continues(one, first) and _continues(other, second):
                 found[at] = (one[0], max(one[1], first[1])), (other[0], max(other[1], second[1]))
                 break
         else:
+            near.append(len(found))
             found.append((first, second))
     return found
 

@@ -17,9 +17,14 @@ from typing import Any
 
 import msgspec
 
-__all__ = ["Cell", "code", "digest", "document", "dumped", "markdown"]
+__all__ = ["Cell", "code", "digest", "document", "dumped", "markdown", "opening"]
 
 _KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
+#: In the first cell of every notebook. Nobody owns the package's name on an index: a file or folder is named.
+_NEEDS = """\
+<small>The code below needs the course itself. Where `import course` fails, install it from the wheel your
+course hands out, `%pip install FILE.whl`, or from a checkout of it, `%pip install -e FOLDER`, and restart the
+kernel.</small>"""
 _SECTION = re.compile(r"#{2,3} (.+)")
 
 
@@ -47,6 +52,11 @@ class Cell:
 def markdown(source: str, **tags: Any) -> Cell:
     """A text cell; ``tags`` is what the course wants to know of it again."""
     return Cell("markdown", source.strip("\n"), {"course": {"role": "text", **tags}})
+
+
+def opening(source: str) -> Cell:
+    """The first cell of a notebook: its text, and how to install the course."""
+    return markdown(f"{source}\n\n{_NEEDS}")
 
 
 def code(source: str, **tags: Any) -> Cell:

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from course.handed_in.notebook import SETUP, SOLUTION
-from course.notebooks.building.cells import Cell, code, document, markdown
+from course.notebooks.building.cells import Cell, code, document, markdown, opening
 from course.notebooks.building.stub import pieces
 from course.scoring.reporting import has_report
 
@@ -28,6 +28,8 @@ _LAST = """\
 ## All of it
 
 All public checks at once; the hidden ones run when you hand it in."""
+#: A link of the course's own, which a notebook that may lie anywhere cannot follow.
+_LINK = re.compile(r"\[([^\]]+)\]\((lesson|exercise):([a-z0-9-]+)[^)]*\)")
 _REPORT = """\
 ## See what your code does
 
@@ -49,8 +51,9 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     """
     tasks = {task.id: task for task in exercise.task}
     about, parts = pieces(source, tasks)
-    readme = exercise.readme_path.read_text(encoding="utf-8")
-    cells = [markdown(section) for section in _sections(readme)]
+    readme = _LINK.sub(_as_command, exercise.readme_path.read_text(encoding="utf-8"))
+    first, *rest = _sections(readme)
+    cells = [opening(first), *map(markdown, rest)]
     cells.append(markdown(f"{_HOW.format(file=exercise.stub_path.with_suffix('.ipynb').name)}\n\n{about}"))
     cells.append(code(_LOAD, role="tools", exercise=exercise.id))
     for part in parts:
@@ -70,6 +73,11 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
         cells.append(markdown(_REPORT))
         cells.append(code(f"%course_report {exercise.id}", role="report", exercise=exercise.id))
     return cells
+
+
+def _as_command(link: re.Match[str]) -> str:
+    words, kind, name = link.groups()
+    return f"{words} (`course {'start' if kind == 'exercise' else 'lesson'} {name}`)"
 
 
 def _sections(readme: str) -> list[str]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks
-from course.notebooks.building.cells import Cell, code, document, markdown
+from course.notebooks.building.cells import Cell, code, document, markdown, opening
 from course.notebooks.building.lowering import Lowering
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["lesson_cells", "lesson_notebook"]
 
 _FIGURES = "from course.notebooks.show import figure"
+_PREDICTIONS = "from course.notebooks.predicting import predict"
 
 
 def lesson_notebook(catalog: Catalog, lesson: Lesson, layout: Layout) -> bytes:
@@ -33,9 +34,11 @@ def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]
     """The cells, in reading order; text between two code cells is one cell a section."""
     blocks = read_blocks(catalog.content.lessons / f"{lesson.id}.md")
     lowering = Lowering(layout.links(catalog, lesson.id))
-    cells = [markdown(_head(lesson))]
-    if any(isinstance(block, b.Figure) for block in b.walk_blocks(blocks)):
-        cells.append(code(_FIGURES, role="setup"))
+    cells = [opening(_head(lesson))]
+    kinds = {type(block) for block in b.walk_blocks(blocks)}
+    setup = [line for kind, line in ((b.Figure, _FIGURES), (b.Prediction, _PREDICTIONS)) if kind in kinds]
+    if setup:
+        cells.append(code("\n".join(setup), role="setup"))
     text: list[str] = []
     predictions = 0
 
@@ -57,7 +60,9 @@ def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]
                 flush()
                 predictions += 1
                 cells.append(markdown(lowering.boxed("predict", inner)))
-                cells.append(code(_PREDICT.format(number=predictions), role="prediction"))
+                cells.append(code(_PREDICT.format(number=predictions, lesson=lesson.id), role="prediction"))
+            case b.Callout(kind="answer"):
+                text.append(_FOLDED.format(answer=lowering.block(block)))
             case b.Heading():
                 flush()
                 text.append(lowering.block(block))
@@ -69,7 +74,14 @@ def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]
 
 _PREDICT = '''my_prediction_{number} = """
 
-"""  # write it down before you go on: a guess that is written is a guess that teaches'''
+"""  # write it down before you go on: a guess that is written is a guess that teaches
+predict("{lesson}", {number}, my_prediction_{number})'''
+_FOLDED = """\
+<details><summary>The answer: predict first</summary>
+
+{answer}
+
+</details>"""
 
 
 def _head(lesson: Lesson) -> str:

@@ -1,22 +1,23 @@
 """What a function answers to a list of questions, in a few numbers that can be shipped and compared.
 
-Answers are flattened to numbers, with None, True, text, nan, infinities, lengths and exceptions as numbers of
-their own, and projected: a few weighted sums over all of them. Programs that agree in every answer agree in
-the sums; programs that differ anywhere differ in them, save by a chance of one in millions. Sums cannot be
-turned back into answers.
+Answers are flattened to numbers, with None, True, each text, nan, infinities, lengths and exceptions as
+numbers of their own, dicts by their values in the order of the keys, and projected: a few weighted sums over
+all of them. Programs that agree in every answer agree in the sums; programs that differ anywhere differ in
+them, save by a chance of one in millions. Sums cannot be turned back into answers.
 """
 
 from __future__ import annotations
 
 import math
+import zlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-__all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range"]
+__all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range", "read"]
 
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
@@ -42,6 +43,20 @@ def fingerprint(answers: Answers) -> tuple[float, ...]:
     return tuple(round(float(total), 5) for total in weights @ np.arcsinh(numbers))
 
 
+def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
+    """What counts of an answer: what the exercise's reader of it gives.
+
+    Args:
+        reader: from ``questions.READ``; an answer that it cannot read counts as an exception of its own.
+    """
+    if reader is None or (isinstance(answer, dict) and answer.keys() == {"raised"}):
+        return answer
+    try:
+        return reader(answer)
+    except Exception as error:  # noqa: BLE001 - a student's answer may be anything
+        return {"raised": type(error).__name__}
+
+
 def in_range(value: float) -> float:
     """A number that JSON has: infinities as the largest one, nan as -1, which no answer here is."""
     try:
@@ -60,6 +75,10 @@ def _numbers(value: Any, depth: int = 8) -> Iterator[float]:
         yield float(len(value))
         for item in value:
             yield from _numbers(item, depth - 1)
+    elif isinstance(value, dict) and depth:
+        yield float(len(value))
+        for key in sorted(value, key=str):  # in which order it was filled says nothing
+            yield from _numbers(value[key], depth - 1)
     else:
         yield _number(value)
 
@@ -84,4 +103,11 @@ def _number(value: Any) -> float:
         if math.isnan(number):
             return _NAN
         return math.copysign(_INFINITE, number) if math.isinf(number) else number
-    return _NONE if value is None else _TEXT if isinstance(value, str) else _OTHER
+    if isinstance(value, str):
+        return _text(value)
+    return _NONE if value is None else _OTHER
+
+
+def _text(value: str) -> float:
+    """A number of its own for every text, save by a chance of one in thousands."""
+    return _TEXT + zlib.crc32(value.encode("utf-8", "replace")) / 2**32

@@ -13,20 +13,14 @@ from course.catalog.reading import read_document
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["FILE", "NOT_FINITE", "Diagnosis", "Divergence", "Entry", "Words", "read_words"]
+    from course.scoring.divergence import Divergence
+
+__all__ = ["FILE", "NOT_FINITE", "Diagnosis", "Entry", "Words", "read_words"]
 
 
 FILE = "diagnoses.toml"
 #: Codes of values that are nan or infinite where a number belongs, whatever made them so.
 NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
-
-
-class Divergence(msgspec.Struct, frozen=True):
-    """The first place where a trajectory left the reference. ``t`` in s."""
-
-    t: float
-    step: int
-    quantity: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,10 +11,11 @@ is below: callbacks that count, and modules shared by the checks of one exercise
 This side is trusted: nothing here runs in the process that holds the student's code.
 """
 
-from course.figures.described import Panel, Plot, Series
-from course.scoring.companions import companion, known_answers, reference, sibling, words
+from course.figures.drawing.described import Panel, Plot, Series
+from course.scoring.checks.companions import companion, known_answers, reference, sibling, words
+from course.scoring.explain.fingerprint import SAME, in_range
 from course.scoring.explain.words import Words
-from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, finding_of
+from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure
 from course.scoring.kit.callbacks import Counted, acceleration, black_box, counted, first_divergence
 from course.scoring.kit.expectations import (
     Diagnose,
@@ -34,14 +35,13 @@ from course.scoring.kit.expectations import (
     fail,
 )
 from course.scoring.kit.marching import Problem, march_all_errors, march_errors
-from course.scoring.report import Report, Section, guarded_section
+from course.scoring.report import Report, Section, finding_for, guarded_section
 from course.scoring.values import (
     Inspected,
     as_array,
     as_bool,
     as_integer,
     as_list,
-    as_march,
     as_matrix,
     as_number,
     as_pair,
@@ -49,11 +49,11 @@ from course.scoring.values import (
     as_text,
     as_tuple,
     as_vector,
-    plain,
 )
 from course.scoring.verdict import Divergence, Finding, Tolerance
 
 __all__ = [
+    "SAME",
     "CheckFailed",
     "Counted",
     "Diagnose",
@@ -75,7 +75,6 @@ __all__ = [
     "as_bool",
     "as_integer",
     "as_list",
-    "as_march",
     "as_matrix",
     "as_number",
     "as_pair",
@@ -100,13 +99,13 @@ __all__ = [
     "expect_true",
     "expect_untouched",
     "fail",
-    "finding_of",
+    "finding_for",
     "first_divergence",
     "guarded_section",
+    "in_range",
     "known_answers",
     "march_all_errors",
     "march_errors",
-    "plain",
     "reference",
     "sibling",
     "words",

@@ -77,7 +77,7 @@ def _judge(tables: Tables, mutant, result, share: float, seed: int) -> None:
 
 def truths(seeds: int) -> str:
     """What the hidden engines are like, over the seeds."""
-    lab = kit.sibling(str(ROOT / "tests/graders" / EXERCISE / "checks.py"), "lab")
+    lab = kit.reference(EXERCISE, "lab")
     seen = defaultdict(list)
     for seed in range(seeds):
         for parameters, truth in zip(lab.drawn(seed), lab.truths(seed), strict=True):

@@ -60,7 +60,7 @@ def grade_all(
             short, start = 0, time.process_time() + descendants_cpu(os.getpid())
             for seed in range(first, first + count):
                 session._seed = seed  # a session keeps one seed for a whole run; here each grading is a run
-                verdicts = [session.grade(submission, only=check) for check in only]
+                verdicts = [session.grade(submission, only=[check]) for check in only]
                 full = [_is_full(verdict, f"{name} seed {seed}") for verdict in verdicts]
                 short += not all(full)
             cpu = (time.process_time() + descendants_cpu(os.getpid()) - start) / max(count, 1)

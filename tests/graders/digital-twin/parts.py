@@ -73,7 +73,7 @@ def expect_swings(submission, rng):
 def expect_delays(submission, cases):
     """Each signal (x, dt, latency) comes out that much later."""
     for case, value in zip(cases, submission.call_each("delay_line", cases), strict=True):
-        actuators.expect_delayed(value, *case, delayed(*case))
+        actuators.expect_delayed(submission, value, *case, delayed(*case))
 
 
 def delayed(x, dt, latency):

@@ -8,25 +8,16 @@ import math
 from course.grading import kit
 
 bench = kit.companion("engine-comparison", "bench")
-choosing = kit.companion("engine-comparison", "choosing")
+choosing = kit.reference("engine-comparison", "choosing")
 measured = kit.companion("engine-comparison", "measured")
 
 need = measured.need
 
 
-def names(rng, count):
-    """Names that mean nothing."""
-    letters = "bcdfghklmnprstvz"
-    made = set()
-    while len(made) < count:
-        made.add("".join(rng.choice(list(letters)) + rng.choice(list("aeiou")) for _ in range(3)))
-    return [str(name) for name in rng.permutation(sorted(made))]
-
-
 def reports_of(rng, truths):
     """The hidden boxes' right reports under new names, with costs that are all different."""
     costs = rng.permutation([1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 13.0, 18.0])
-    called = names(rng, len(truths))
+    called = choosing.names(rng, len(truths))
     return {
         name: {**truth, "cost": float(cost)} for name, truth, cost in zip(called, truths, costs, strict=False)
     }
@@ -84,7 +75,7 @@ def with_gaps(rng, question):
     key = str(rng.choice([n["key"] for n in needs]))
     reports = {name: dict(report) for name, report in reports.items()}
     fitting = dict(reports[answer])
-    first, second = names(rng, 2)
+    first, second = choosing.names(rng, 2)
     reports[first + "x"] = {**{k: v for k, v in fitting.items() if k != key}, "cost": 0.5}
     reports[second + "y"] = {**fitting, key: None, "cost": 0.7}
     shuffled = [str(name) for name in rng.permutation(list(reports))]
@@ -105,18 +96,6 @@ def beyond_reach(rng, truths):
     """A question that no engine meets, though each requirement alone is met by some."""
     reports = reports_of(rng, truths)
     return reports, [need("order", ">=", 4), need("symplectic", "==", True)], None
-
-
-def renamed(rng, question):
-    """The same reports under other names and in another order."""
-    reports, needs, answer = question
-    other = dict(zip(reports, names(rng, len(reports)), strict=True))
-    shuffled = [str(name) for name in rng.permutation(list(reports))]
-    return (
-        {other[name]: dict(reports[name]) for name in shuffled},
-        [needs[i] for i in rng.permutation(len(needs))],
-        None if answer is None else other[answer],
-    )
 
 
 #: Further questions about the engines as measured: requirements, and the right name.

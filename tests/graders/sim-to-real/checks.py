@@ -65,7 +65,9 @@ def _of_promise(box, threshold):
 @pytest.mark.points(6)
 def test_excitation_shows_all(submission):
     """The excitation shows every parameter of three carts nobody has told about"""
-    judge.expect_shows(execution.command(submission), reference.realities(submission.seed))
+    u, carts = execution.command(submission), reference.realities(submission.seed)
+    judge.expect_shows(u, carts)
+    judge.expect_fitted(u, carts)
 
 
 @pytest.mark.task("design_excitation")
@@ -101,18 +103,9 @@ def test_identify_honest(submission):
     """Intervals are as wide as recordings ask for, wider for weak ones, and doubled they hold the truth"""
     estimates, carts = execution.bench(submission)
     judge.expect_intervals(estimates, carts)
+    judge.expect_growth(estimates, execution.weak(submission), carts)
     judge.expect_honest_widths(estimates, reference.recordings(submission.seed), carts)
-    judge.expect_growth(estimates, execution.weak(submission))
-    missed, total = judge.misses(estimates, carts)
-    kit.expect_bounded(
-        missed,
-        high=2,
-        source="of 24; those of correct solutions missed none in the calibration",
-        quantity="intervals that miss the truth when doubled",
-        message="Intervals twice as wide as those of identify miss the truth too often.",
-        diagnose=lambda: probes.of_misses(estimates, carts, reference.recordings(submission.seed)),
-        input={"intervals": total},
-    )
+    judge.expect_truth(estimates, carts, reference.recordings(submission.seed), 2)
 
 
 # -- tune: the plan, executed ---------------------------------------------------------------------------

@@ -69,6 +69,7 @@ def held_out(seed, i):
     return carts, search(carts, [seed, 3, i], first=100)[2]
 
 
+@functools.lru_cache(maxsize=1024)  # many submissions of a run come to the same gains
 def success(seed, i, kp, kd):
     """min(1, best/own) of these gains on the held-out fleet of reality i."""
     carts, best = held_out(seed, i)
@@ -87,6 +88,7 @@ def _other_fleet(seed, i):
     return carts, search(carts, [seed, 9, i], first=100)[2]
 
 
+@functools.lru_cache(maxsize=1024)
 def other_success(seed, i, kp, kd):
     """min(1, best/own) of these gains on carts drawn from the other box about reality i."""
     carts, best = _other_fleet(seed, i)

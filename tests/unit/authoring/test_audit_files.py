@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from typing import TYPE_CHECKING
 
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.exercises.kill_table import write_page
 from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, NotFoundError
 
@@ -48,7 +50,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
     assert report.ok
     assert report.lessons == ("twice-as-much", "half-as-much")
     assert report.exercises == ("doubling", "halving")
-    assert (report.checks, report.graded, report.isolation) == (6, 14, "L3")
+    assert (report.checks, report.graded, report.isolation) == (6, 22, "L3")
 
 
 @pytest.mark.parametrize(
@@ -84,9 +86,11 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (LESSON, "Half of twice", "[a](#the-way-forward)", "#the-way-f", "link", "heading that does not"),
         (LESSON, "Half of twice", "[3](=1+1) of twice", "[3]", "lesson", "gives 2"),
         (TOML, 'lesson = "twice-as-much"', 'lesson = "thrice"', "thrice", "exercise", "no lesson thrice"),
-        (TOML, "points = 4", "points = 7", "points = 7", "points", "has 7 points, and its checks 4"),
-        (TOML, "hidden_checks = 2", "hidden_checks = 3", "_checks", "points", "there are 2"),
-        (TOML, "hidden_points = 5", "hidden_points = 4", "_points", "points", "checks have 5"),
+        (TOML, "twice-as-much#once", "twice-as-much#twice", "#twice", "link", "heading that does not"),
+        (TOML, "twice-as-much#once", "thrice#once", "thrice#once", "link", "does not exist"),
+        (TOML, "points = 4", "points = 7", "points = 7", "points", "come to 4, and 7 is"),
+        (TOML, "hidden_checks = 2", "hidden_checks = 3", "_checks", "points", "come to 2, and 3 is"),
+        (TOML, "hidden_points = 5", "hidden_points = 4", "_points", "points", "come to 5, and 4 is"),
         (TOML, "order = 1", "order = 2", None, "exercise", "order 2 too"),
         (TOML, "order = 1", "order = one", "order", "content", "not valid TOML"),
         (HINTS, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
@@ -94,6 +98,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (README, "`double(x) -> float`", "`double` -> float", None, "readme", "signature double(x)"),
         (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
         (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),
+        (STUB, '    """Twice ``x``.', '    x = """Twice ``x``.', "def double", "stub", "no docstring"),
         (STUB, '"""Doubling, once', 'import scipy\n"""Doubling, once', "scipy", "imports", "scipy"),
         (SOLUTION, "import numpy as np", "import numpy as np\nimport course", "course", "imports", "course"),
         (SOLUTION, "def double(x)", "def double(x, y=1)", "def double(", "signature", "double(x, y=1)"),
@@ -101,7 +106,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (CHECKS, 'task("double")', 'task("doble")', "def test_double_of_three", "check", "'doble' that"),
         (CHECKS, "@pytest.mark.points(2)\n", "", "def test_double_of_three", "check", "has no points"),
         (CHECKS, "points(2)", "points(-2)", "def test_double_of_three", "check", "no points that"),
-        (CHECKS, "points(2)", "points(1 + 2)", None, "points", "has 4 points, and its checks 5"),
+        (CHECKS, "points(2)", "points(1 + 2)", None, "points", "come to 5, and 4 is"),
         (
             CHECKS,
             "points(2)",
@@ -209,14 +214,69 @@ def test_an_exercise_nobody_accepts_variants_of_is_named(
     mini: Path, only_problem: Callable[[], AuditProblem]
 ) -> None:
     shutil.rmtree(mini / "solutions" / "halving" / "accepted")
-    assert "no accepted variant" in only_problem().message
+    assert "accepted variants: 0, and an exercise of this size has at least 2" in only_problem().message
+
+
+def drop_mutants(mini: Path, exercise: str, *names: str) -> None:
+    """Take mutants out of an exercise, entry and file."""
+    folder = mini / "solutions" / exercise
+    head, *entries = (folder / "mutants.toml").read_text().split("[[mutant]]")
+    kept = [entry for entry in entries if not any(f'"{name}"' in entry for name in names)]
+    (folder / "mutants.toml").write_text("[[mutant]]".join([head, *kept]))
+    for name in names:
+        (folder / "mutants" / name).unlink()
+
+
+def test_an_exercise_with_few_mutants_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
+    drop_mutants(mini, "halving", "rounds_up.py")
+    problem = only_problem()
+    assert problem.file == "solutions/halving/mutants.toml"
+    assert "mutants: 3, and an exercise of this size has at least 4" in problem.message
+
+
+def test_one_diagnosis_for_every_mistake_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+    path = mini / MUTANTS
+    path.write_text(re.sub(r"diagnosis = .*", 'diagnosis = "WRONG"', path.read_text()))
+    assert "tell no mistakes apart" in " ".join(p.message for p in run().problems if p.file == MUTANTS)
+
+
+def test_a_page_of_mutants_that_is_older_than_they_are_is_named_and_written(
+    mini: Path, run: Callable[..., AuditReport], only_problem: Callable[[], AuditProblem]
+) -> None:
+    page = mini / "docs" / "graders.md"
+    page.parent.mkdir()
+    page.write_text("# An older page\n")
+    assert (only_problem().file, only_problem().code) == ("docs/graders.md", "stale")
+    assert run("twice-as-much").ok
+    assert write_page(Catalog()) == page
+    assert run().ok
+    assert write_page(Catalog()) is None
+
+
+def test_what_ruff_says_is_said_by_the_rules_of_the_course(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    path = mini / CHECKS
+    path.write_text(path.read_text().replace("import pytest\n", "import os\nimport pytest\nx  =  1\n"))
+    assert run("doubling").ok
+    (mini / "pyproject.toml").write_text('[tool.ruff]\nline-length = 110\nlint.select = ["F"]\n')
+    found = {(p.where, p.code, p.fix) for p in run("doubling").problems}
+    assert found == {
+        (f"{CHECKS}:{line_of(path, 'import os')}", "style", "Try `ruff check --fix`."),
+        (CHECKS, "style", "Run `ruff format`."),
+    }
 
 
 def test_a_task_that_no_mutant_breaks_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
-    text = (mini / MUTANTS).read_text()
-    (mini / MUTANTS).write_text(text[: text.index('[[mutant]]\nfile = "one_short.py"')])
-    for name in ("one_short.py", "starts_late.py"):
-        (mini / "solutions" / "doubling" / "mutants" / name).unlink()
+    names = ("one_short.py", "starts_late.py", "stops_early.py", "doubles_first.py")
+    drop_mutants(mini, "doubling", *names)
+    for name in names:  # others of the other task, so that there are enough
+        (mini / "solutions" / "doubling" / "mutants" / name).write_text(
+            (mini / "solutions" / "doubling" / "mutants" / "squares.py").read_text() + f"# {name}\n"
+        )
+        entry = f'\n[[mutant]]\nfile = "{name}"\ntask = "double"\nmisconception = "The same."\n'
+        with (mini / MUTANTS).open("a") as file:
+            file.write(entry + 'check = "double_of_three"\ndiagnosis = "SQUARES_INSTEAD"\n')
     assert "no mutant breaks task doublings" in only_problem().message
 
 
@@ -251,7 +311,8 @@ def test_checks_without_markers_are_not_graded(
 ) -> None:
     edit(mini / CHECKS, "@pytest.mark.points(2)\n", "")
     assert not run().ok
-    assert set(oracle.graded) == {"stub", "solution", "multiplies.py", "rounds_down.py"}
+    proofs = (mini / "solutions" / "halving").glob("*/*.py")
+    assert set(oracle.graded) == {"stub", "solution", *(path.name for path in proofs)}
 
 
 def test_one_exercise_or_lesson_can_be_audited_alone(mini: Path, run: Callable[..., AuditReport]) -> None:

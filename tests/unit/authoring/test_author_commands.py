@@ -22,8 +22,12 @@ def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[st
 
 def test_a_right_course_exits_with_zero(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["author", "check"]) == 0
-    counts = "2 lessons, 2 exercises, 0 questions, 13 scenes, 6 checks, 14 submissions graded"
+    counts = "2 lessons, 2 exercises, 0 questions, 13 scenes, 6 checks, 22 submissions graded"
     assert f"All is well: {counts}" in capsys.readouterr().out
+
+
+HIDDEN = "the hidden checks come to 1, and 4 is written here."
+BUILD = "Run `course author build halving`."
 
 
 def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -32,7 +36,7 @@ def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.Captur
     assert run(["author", "check", "halving"]) == 1
     out = capsys.readouterr().out.split("\n")
     place = out.index("exercises/halving/exercise.toml:8")
-    assert out[place + 1 : place + 3] == ["  `hidden_checks` is 4, and there are 1.", "  Write 1."]
+    assert out[place + 1 : place + 3] == [f"  {HIDDEN}", f"  {BUILD}"]
     code, body = answer(capsys, "author", "check", "halving")
     assert (code, body["schema"], body["ok"], body["exit_code"]) == (1, "course.author-check/1", False, 1)
     assert body["course"] == {"id": "mini", "version": "0.1.0"}
@@ -41,8 +45,8 @@ def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.Captur
             "file": "exercises/halving/exercise.toml",
             "line": 8,
             "code": "points",
-            "message": "`hidden_checks` is 4, and there are 1.",
-            "help": "Write 1.",
+            "message": HIDDEN,
+            "help": BUILD,
         }
     ]
 
@@ -79,7 +83,7 @@ def test_mutants_are_listed_with_what_their_authors_read(
     assert "halving: rounds_down.py: breaks halve, loses 1 points" in out
     assert "reads: Half of an odd number has lost its fraction." in out
     code, body = answer(capsys, "author", "mutants")
-    assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 5)
+    assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 12)
     assert body["mutants"][0]["diagnosis"] == "SQUARES_INSTEAD"
 
 
@@ -89,7 +93,20 @@ def test_a_surviving_mutant_exits_with_one(mini: Path, capsys: pytest.CaptureFix
     assert run(["author", "mutants", "halving"]) == 1
     out = capsys.readouterr().out
     assert "survives: every check passes" in out
-    assert "1 mutant: 1 not caught" in out
+    assert "4 mutants: 1 not caught" in out
+
+
+def test_what_follows_from_an_exercise_is_written_and_named(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = mini / "exercises" / "halving" / "exercise.toml"
+    right = path.read_text()
+    path.write_text(right.replace("hidden_checks = 1", "hidden_checks = 4"))
+    code, body = answer(capsys, "author", "build", "halving")
+    assert (code, body["files"]) == (0, ["exercises/halving/exercise.toml"])
+    assert path.read_text() == right
+    assert run(["author", "build"]) == 0
+    assert "up to date" in capsys.readouterr().out
 
 
 def test_a_new_exercise_is_written_and_listed(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -98,6 +115,18 @@ def test_a_new_exercise_is_written_and_listed(mini: Path, capsys: pytest.Capture
     assert "exercises/tripling/exercise.toml" in body["files"]
     assert all((mini / name).is_file() for name in body["files"])
     assert run(["author", "new", "exercise", "tripling"]) == 2
+    assert "nothing is overwritten" in capsys.readouterr().err
+
+
+def test_a_new_warm_up_is_written_and_says_what_computes_its_table(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["author", "new", "warmup", "tripling", "--lesson", "half-as-much"]
+    code, body = answer(capsys, *command)
+    assert (code, body["kind"]) == (0, "warm-up")
+    assert "exercises/warm-ups/tripling/questions.py" in body["files"]
+    assert all((mini / name).is_file() for name in body["files"])
+    assert run(command) == 2
     assert "nothing is overwritten" in capsys.readouterr().err
 
 

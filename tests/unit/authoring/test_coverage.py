@@ -21,15 +21,16 @@ if TYPE_CHECKING:
 
 TABLE = """\
 format_version = 1
-source_lines = 6
+source_lines = 7
 
 [[section]]
 title = "All of it"
+kind = "heading"
 parts = [
-    {{ lines = "1", kind = "heading", what = "the title", where = ["lesson:{lesson}"] }},
-    {{ lines = "2-4", kind = "paragraph", what = "the idea", where = ["command:demo", "exercise:{it}"] }},
-    {{ lines = "5", kind = "figure", what = "the picture", where = ["figure:integrators-phase"] }},
-    {{ lines = "6", kind = "code", what = "the loop", where = ["file:lessons/syllabus.toml"] }},
+    ["1, 7", "the title", "kept", ["lesson:{lesson}"]],
+    ["2-4", "the idea", "deeper", ["command:demo", "exercise:{it}"]],
+    ["5", "the picture", "measured", ["figure:integrators-phase"]],
+    ["6", "the loop", "corrected", ["file:lessons/syllabus.toml"]],
 ]
 """
 
@@ -74,9 +75,11 @@ def test_a_table_whose_places_all_exist_is_right(table: Path) -> None:
         ("file:lessons/syllabus.toml", "quiz:none", "is not there"),
         ("file:lessons/syllabus.toml", "page:1", "is not there"),
         ('["figure:integrators-phase"]', "[]", "has it nowhere"),
-        ('kind = "figure"', 'kind = "picture"', "no kind 'picture'"),
-        ('lines = "5"', 'lines = "five"', "'five' are no lines"),
-        ('lines = "5"', 'lines = "4-5"', "line 4 belongs to 'the idea' already"),
+        ('"kept"', '"splendid"', "no word 'splendid'"),
+        ('["5"', '["five"', "'five' are no lines"),
+        ('["1, 7"', '["1; 7"', "'1; 7' are no lines"),
+        ('["5"', '["4-5"', "line 4 belongs to 'the idea' already"),
+        ('["5"', '["5, 7"', "line 7 belongs to 'the title' already"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, said: str) -> None:
@@ -90,9 +93,15 @@ def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, sa
         assert problem.fix
 
 
+def test_a_kind_that_there_is_not_is_said(table: Path) -> None:
+    (found,) = problems(table, 'kind = "heading"', 'kind = "chapter"')
+    assert "no kind 'chapter'" in found.message
+    assert found.line
+
+
 def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table: Path) -> None:
-    (found,) = problems(table, "source_lines = 6", "source_lines = 9")
-    assert "3 lines of the chapter belong to no part: 7, 8, 9." in found.message
+    (found,) = problems(table, "source_lines = 7", "source_lines = 10")
+    assert "3 lines of the chapter belong to no part: 8, 9, 10." in found.message
 
 
 @pytest.mark.parametrize(
@@ -130,13 +139,15 @@ def test_the_command_writes_the_page_and_answers_in_json(
     catalog = Catalog(content())
     page = written_to(catalog).read_text(encoding="utf-8")
     assert page == as_markdown(read_coverage(catalog).value)
-    assert "| 2-4 | paragraph | the idea |" in page
+    assert "| the idea | deeper | `course demo`, exercise [doubling]" in page
+    assert body["parts"][1]["lines"] == "2-4"
+    assert body["parts"][1]["kind"] == "heading"
 
 
 def test_a_table_with_a_gap_exits_with_one_and_writes_nothing(
     table: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    table.write_text(table.read_text().replace("source_lines = 6", "source_lines = 7"))
+    table.write_text(table.read_text().replace("source_lines = 7", "source_lines = 8"))
     assert run(["author", "coverage", "--write"]) == 1
-    assert "4 parts, 7 lines: 1 problem." in capsys.readouterr().out
+    assert "4 parts, 8 lines: 1 problem." in capsys.readouterr().out
     assert not written_to(Catalog(content())).exists()

@@ -30,9 +30,13 @@ SOLVED = {
     ],
     "solutions/tripling/tripling.py": ["Tripling.", "Three times ``x``.", "solved"],
     "solutions/tripling/README.md": ["Three times is twice and once more."],
-    "solutions/tripling/mutants.toml": ["Three is two.", "DOUBLES"],
-    "solutions/tripling/accepted/unusual.py": ["Adds.", "added"],
-    "solutions/tripling/mutants/tripling_wrong.py": ["Doubles.", "doubled"],
+    "solutions/tripling/mutants.toml": ["Three is two.", "DOUBLES"] * 4,
+    "solutions/tripling/accepted/unusual_1.py": ["Adds.", "added"],
+    "solutions/tripling/accepted/unusual_2.py": ["Doubles and adds.", "more"],
+    "solutions/tripling/mutants/tripling_wrong_1.py": ["Doubles.", "doubled"],
+    "solutions/tripling/mutants/tripling_wrong_2.py": ["Adds twice.", "twice"],
+    "solutions/tripling/mutants/tripling_wrong_3.py": ["Squares.", "squared"],
+    "solutions/tripling/mutants/tripling_wrong_4.py": ["Adds three.", "plus"],
 }
 SOLVED["exercises/tripling/checks.py"] = SOLVED["graders/tripling/checks.py"]
 
@@ -40,7 +44,11 @@ SOLVED["exercises/tripling/checks.py"] = SOLVED["graders/tripling/checks.py"]
 CODE = {
     'raise NotImplementedError("solved")': "return 3 * x",
     'raise NotImplementedError("added")': "return x + x + x",
+    'raise NotImplementedError("more")': "return 2 * x + x",
     'raise NotImplementedError("doubled")': "return 2 * x",
+    'raise NotImplementedError("twice")': "return x + x",
+    'raise NotImplementedError("squared")': "return x * x",
+    'raise NotImplementedError("plus")': "return x + 3",
     "expected = 1.0": "expected = 3.0",
     "expected = 2.0": "expected = 6.0",
     "  # \n": "\n",
@@ -125,7 +133,11 @@ def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini:
         'def swings(t):\n    """Gives how often it swings in t."""\n    raise NotImplementedError\n'
     )
     assert 'case = {"length": 1.0, "gravity": 1.0}' in texts["exercises/swinging/checks.py"]
-    wrong = {f"solutions/swinging/mutants/{name}_wrong.py" for name in ("swing_period", "swings")}
+    wrong = {
+        f"solutions/swinging/mutants/{name}_wrong_{k}.py"
+        for name in ("swing_period", "swings")
+        for k in (1, 2, 3, 4)
+    }
     assert wrong < set(texts)
     assert 'lesson = "twice-as-much"' in texts["exercises/swinging/exercise.toml"]
     assert "FILL IN" not in stub
@@ -143,7 +155,7 @@ def test_what_is_no_signature_is_refused(text: str) -> None:
     "taken",
     [
         "exercises/tripling/hints.toml",
-        "solutions/tripling/mutants/tripling_wrong.py",
+        "solutions/tripling/mutants/tripling_wrong_4.py",
         "graders/tripling/checks.py",
     ],
 )

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+import jsonschema
 import pytest
+
+from course.cli.frame.schemas import reply_types, schema_of
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 
@@ -52,7 +56,7 @@ class FakeSession:
     def __exit__(self, *_):
         return None
 
-    def grade(self, submission, only=None):
+    def grade(self, submission, only=()):
         from course.scoring.verdict import Problem, Verdict
 
         source = submission.files[self.exercise.module].decode()
@@ -64,7 +68,7 @@ class FakeSession:
                 state=state, score=0, max_score=4.0, passed=False, checks=(), error=problem, **common
             )
         results = [self._result(check, source) for check in self.checks]
-        results = [result for result in results if only in {None, result.id}]
+        results = [result for result in results if not only or result.id in only]
         score, most = sum(r.points for r in results), sum(r.max_points for r in results)
         passed = score >= self.exercise.pass_mark * most
         return Verdict(
@@ -95,6 +99,22 @@ class FakeSession:
         )
 
 
+@functools.cache
+def validator(tag):
+    return jsonschema.Draft202012Validator(schema_of(reply_types()[tag]))
+
+
+def keeps_its_schema(out):
+    """Every reply of every command that these tests run is as ``course schema`` says."""
+    for line in filter(None, out.split("\n")):
+        reply = json.loads(line)
+        if (
+            reply["schema"] in reply_types()
+        ):  # errors of a line that no command was found in have one of their own
+            problems = [f"{e.json_path}: {e.message}" for e in validator(reply["schema"]).iter_errors(reply)]
+            assert not problems, problems[0][:1000]
+
+
 @pytest.fixture
 def course(monkeypatch, tmp_path, capsys):
     """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err."""
@@ -112,6 +132,8 @@ def course(monkeypatch, tmp_path, capsys):
         capsys.readouterr()
         code = app.run(words)
         captured = capsys.readouterr()
+        if "--json" in words:
+            keeps_its_schema(captured.out)
         return Ran(code, captured.out, captured.err)
 
     return run

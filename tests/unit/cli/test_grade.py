@@ -47,6 +47,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None:
     assert {path.name for path in graded.iterdir()} == {
+        "gradebook.backup-1.sqlite",
         "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html", "students.html", "students.csv",
         "students",
     }  # fmt: skip

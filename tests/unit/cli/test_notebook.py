@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import urllib.error
+import urllib.request
 import zipfile
 from pathlib import Path
 
@@ -223,3 +225,61 @@ def test_nbgrader_notebooks_carry_its_marks(course, tmp_path):
         if cell["metadata"].get("nbgrader", {}).get("solution"):
             text = "".join(cell["source"])
             assert text.index("def ") < text.index("### BEGIN SOLUTION") < text.index("### END SOLUTION")
+
+
+def test_open_says_in_one_sentence_what_is_missing(course, workspace, monkeypatch):
+    find = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda n, *a: None if n == "jupyterlab" else find(n, *a))
+    ran = course("open", "doubling", "--json")
+    assert ran.code == 4
+    error = ran.json["error"]
+    assert error["message"] == "Opening a notebook needs jupyterlab, which is not installed."
+    assert error["help"].startswith("Install what it needs: pip install 'jupyterlab")
+    assert not (workspace / "doubling" / "doubling.ipynb").exists()
+
+
+def test_open_knows_what_there_is(course, workspace):
+    pytest.importorskip("jupyterlab")
+    assert course("open", "trebling").code == 5
+
+
+@pytest.mark.parametrize("wanted", ["doubling", None])
+def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
+    course, workspace, monkeypatch, wanted
+):
+    """The server is asked while the command waits for it to end."""
+    pytest.importorskip("jupyterlab")
+    from course.notebooks.server import Lab
+
+    path = workspace / "doubling" / "doubling.ipynb"
+    course("notebook", "build", "doubling")
+    write_into(path, GOOD)
+    mine = path.read_bytes()
+    said = []
+
+    def wait(lab: Lab) -> int:
+        contents = lab.address.replace("/lab/tree/", "/api/contents/").replace("/lab?", "/api/contents?")
+        for address in (lab.address, contents, contents.partition("?")[0]):
+            try:
+                with urllib.request.urlopen(address) as page:
+                    said.append((page.status, page.read()))
+            except urllib.error.HTTPError as error:
+                said.append((error.code, b""))
+        return 0
+
+    monkeypatch.setattr(Lab, "wait", wait)
+    monkeypatch.setenv("JUPYTER_RUNTIME_DIR", str(workspace.parent / "runtime"))
+    ran = course("open", *([wanted] if wanted else []), "--no-browser", "--json")
+    assert ran.code == 0, ran.err
+    assert ran.json["schema"] == "course.open/1"
+    assert "token=" in ran.json["address"]
+    (lab, _), (contents, listing), (stranger, _) = said
+    assert (lab, contents, stranger) == (200, 200, 403)
+    names = {"doubling.ipynb"} if wanted else {"doubling", "lessons", "sandbox.ipynb"}
+    about = json.loads(listing)
+    inside = [one["name"] for one in about["content"]] if about["type"] == "directory" else []
+    assert names <= {about["name"], *inside}
+    assert {file["id"]: file["action"] for file in ran.json["files"]}["doubling"] == "kept"
+    assert path.read_bytes() == mine
+    with pytest.raises(urllib.error.URLError):  # it ends with the command
+        urllib.request.urlopen(ran.json["address"])

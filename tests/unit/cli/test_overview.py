@@ -72,6 +72,18 @@ def test_doctor_never_advises_switching_a_protection_off(course):
         assert phrase not in words
 
 
+def test_doctor_says_what_no_command_can_install_here(course, monkeypatch):
+    from course import extras
+
+    line = "pybullet>=3.2.7; python_version < '3.0' and extra == 'bullet'"
+    monkeypatch.setattr(extras, "_lines", lambda: [line])
+    ran = course("doctor", "--json")
+    (sentence,) = ran.json["unserved"]
+    assert sentence.startswith("Optional (bullet): pybullet has no wheel for Python 3.")
+    assert sentence in ran.err
+    assert not ran.json["fixes"]
+
+
 def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
     import importlib.metadata
 

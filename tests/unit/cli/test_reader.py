@@ -11,8 +11,8 @@ import pytest
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
+from course.cli.frame.half_blocks import half_blocks
 from course.cli.reading.screen.app import ReaderApp
-from course.cli.reading.screen.drawing import half_blocks
 from course.progress.store import Store
 from course.reading.record import Writer
 

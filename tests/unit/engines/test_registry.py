@@ -47,7 +47,9 @@ def test_a_wheel_that_this_machine_has_not_is_said_instead_of_a_command(metadata
     pybullet = availability(get("pybullet"))
     assert not pybullet.installed
     assert pybullet.command == ""
-    assert re.fullmatch(r"pybullet has no wheel for Python 3\.\d+\.\d+ on \w+ \w+", pybullet.missing)
+    assert re.fullmatch(
+        r"pybullet has no wheel for Python 3\.\d+\.\d+ on \w+ \w+; there are some where .+", pybullet.missing
+    )
     assert availability(get("mujoco")).command == "pip install 'mujoco>=4.0'"
 
 
@@ -146,3 +148,21 @@ def test_every_extra_is_a_part_and_brings_what_the_part_needs():
     for name, part in PARTS.items():
         distributions = {package.rpartition("=")[2] for package in part.packages}
         assert distributions == {re.match(r"[\w.-]+", line)[0].lower() for line in optional[name]}
+
+
+@pytest.mark.parametrize(
+    ("marker", "served"),
+    [
+        ("", ""),
+        ("; extra == 'bullet'", ""),
+        ("; (python_version < '3.0' and sys_platform == 'linux') and extra == 'bullet'",
+         "python_version < '3.0' and sys_platform == 'linux'"),
+        ("; python_version < '3.0' and extra == 'bullet'", "python_version < '3.0'"),
+        ("; extra == 'bullet' and python_version < '3.0'", "python_version < '3.0'"),
+    ],
+)  # fmt: skip
+def test_which_machines_are_served_is_said_without_the_extra(metadata, marker, served):
+    metadata[:] = [f"x>=1{marker}"]
+    found = requirement_of("x")
+    assert found.served == served
+    assert ("there are some where python_version < '3.0'" in found.unserved) is bool(served)

@@ -15,7 +15,7 @@ from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.simulator import Simulator
 from course.physics.state import RigidBodyState
-from course.scoring.plugin import MARKERS
+from course.scoring.checks.plugin import MARKERS
 
 ROOT = Path(__file__).parents[3]
 HERE = ROOT / "exercises" / "collisions"

@@ -8,7 +8,7 @@ import pytest
 from course.engines import reference
 from course.engines.registry import ENGINES
 from course.figures import engines, how_contact_is_solved, sim_to_real, summary, twins
-from course.figures.style import house_style
+from course.figures.drawing.style import house_style
 from course.physics.contact_models import Constraint
 
 

@@ -16,7 +16,7 @@ from PIL import Image, ImageFilter
 
 from course.errors import NotFoundError, UsageError
 from course.figures import registry
-from course.figures.style import METHODS, WIDTH_IN, house_style
+from course.figures.drawing.style import METHODS, WIDTH_IN, house_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

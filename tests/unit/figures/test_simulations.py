@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from course.errors import InternalError
-from course.figures import simulations
-from course.figures.style import METHODS, house_style
+from course.figures.drawing.style import METHODS, house_style
+from course.figures.experiments import basic as simulations
 from course.simulations.base import Result
 from course.simulations.registry import get
 from course.simulations.settings import run

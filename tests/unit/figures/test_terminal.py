@@ -42,6 +42,32 @@ def test_the_finding_heads_it_and_both_axes_have_numbers(name):
     assert len(numbers) >= 4
 
 
+@pytest.mark.parametrize("name", [*FIGURES, "contact-tunnelling", "engines-speed", "twins-following"])
+def test_every_word_can_be_read_on_what_is_drawn_under_it(name):
+    """By WCAG 2.1's contrast, computed anew; the inks of the house have at least 3 on paper."""
+
+    def luminance(colour):
+        share = np.asarray(colour) / 255.0
+        linear = np.where(share <= 0.03928, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+        return linear @ [0.2126, 0.7152, 0.0722]
+
+    figure = terminal_figure(name, 76, 17)
+    for label in figure.labels:
+        for at, letter in enumerate(label.text):
+            under = figure.pixels[2 * label.row : 2 * label.row + 2, label.column + at].mean(axis=0)
+            light, dark = sorted([luminance(label.ink), luminance(under)], reverse=True)
+            assert letter == " " or (light + 0.05) / (dark + 0.05) >= 3.0, label
+
+
+@pytest.mark.parametrize("name", ["engines-speed", "integrators-order", "twins-following"])
+def test_no_axis_loses_its_name_on_a_small_screen(name):
+    shown = {label.text for label in terminal_figure(name, 76, 17).labels}
+    names = [label for axes in build(name).axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
+    assert names
+    for words in names:
+        assert words.split(" (")[0].split("$")[0] in " ".join(shown), words
+
+
 def test_curves_are_seen_without_letters():
     """At least one pixel in fifty is neither paper nor a shade of grey."""
     pixels = terminal_figure("integrators-energy", 78, 20).pixels.astype(int)

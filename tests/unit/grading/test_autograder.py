@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -19,14 +21,28 @@ from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError
 from course.grading.exports.autograder import write_autograder
 from course.grading.exports.container import grade, main
+from course.scoring.session import GradingSession
 from tests.unit.grading.conftest import MINI
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from course.scoring.terms import Terms
+
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 #: A hidden input of the miniature course, and what is expected of it.
 HIDDEN = ("17.25", "34.5")
+#: What ``setup.sh`` installs.
+INSTALLED = ("msgspec", "numpy", "pymunk", "pytest")
+#: Denies what an image that has run ``setup.sh`` lacks, though it is installed here.
+DENY = """
+import sys
+class Absent:
+    def find_spec(self, name, *_):
+        if name.partition(".")[0] in ABSENT:
+            raise ModuleNotFoundError(f"No module named {name!r} in the container", name=name)
+sys.meta_path.insert(0, Absent())
+"""
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +70,8 @@ def test_the_zip_has_what_gradescope_runs_and_only_what_grading_needs(
         "content/exercises/halving/checks.py",
         "config.json",
     } <= names
-    assert not [name for name in names if "solutions" in name or name.startswith(("course/cli", "tests"))]
+    assert "content/solutions/doubling/doubling.py" in names
+    assert not [name for name in names if "mutants" in name or name.startswith(("course/cli", "tests"))]
     assert not [name for name in names if name.startswith("/") or ".." in name or "__pycache__" in name]
     again = tmp_path / "again.zip"
     write_autograder(again, catalog, catalog.exercises(), seed=5, timeout=5.0, asked=False)
@@ -65,7 +82,7 @@ def test_it_installs_the_versions_this_project_states(unpacked: Path) -> None:
     setup = (unpacked / "source" / "setup.sh").read_text("utf-8")
     stated = tomllib.loads((MINI.parents[2] / "pyproject.toml").read_text("utf-8"))["project"]["dependencies"]
     installed = {Requirement(text) for text in re.findall(r"'([a-z][^']*)'", setup) if "=" in text}
-    for name in ("msgspec", "numpy", "pytest"):
+    for name in INSTALLED:
         assert next(found for found in map(Requirement, stated) if found.name == name) in installed
 
 
@@ -98,6 +115,76 @@ def test_it_grades_from_the_unpacked_zip_alone(unpacked: Path, solution: bytes) 
     assert extra["isolation"] in {"L1", "L2", "L3"}
     assert f"doubling: graded at {extra['isolation']}" in done.stdout
     assert not [value for value in HIDDEN if value in results.read_text("utf-8")]
+
+
+def test_the_model_solution_of_every_exercise_has_full_marks_in_the_container(tmp_path: Path) -> None:
+    """With the files of the zip and the packages of ``setup.sh``, and nothing else of this machine."""
+    catalog = Catalog()
+    path = tmp_path / "autograder.zip"
+    write_autograder(path, catalog, catalog.exercises(), seed=7, timeout=10.0, asked=True)
+    source, results = tmp_path / "source", tmp_path / "results.json"
+    with zipfile.ZipFile(path) as packed:
+        packed.extractall(source)
+    assert catalog.content.solutions is not None
+    for exercise in catalog.exercises():
+        (tmp_path / "submission" / exercise.id).mkdir(parents=True)
+        model = (catalog.content.solutions / exercise.id / exercise.module).read_bytes()
+        (tmp_path / "submission" / exercise.id / exercise.module).write_bytes(model)
+    (tmp_path / "deny").mkdir()
+    (tmp_path / "deny" / "sitecustomize.py").write_text(f"ABSENT = {absent()!r}\n{DENY}", "utf-8")
+    environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH"}}
+    environment |= {"COURSE_CONTENT": str(source / "content"), "PYTHONPATH": f"{source}:{tmp_path / 'deny'}"}
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", "course.grading.exports.container",
+         tmp_path / "submission", results, source / "config.json"],
+        env=environment, cwd="/", capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    body: dict[str, Any] = json.loads(results.read_bytes())
+    lost = [(test["number"], test["output"]) for test in body["tests"] if test["status"] != "passed"]
+    assert lost == []
+    assert body["score"] == sum(exercise.max_points for exercise in catalog.exercises())
+
+
+def absent() -> set[str]:
+    """Top-level modules of what is installed here and not by ``setup.sh``."""
+    wanted, present = list(INSTALLED), set()
+    while wanted:
+        name = wanted.pop().lower().replace("_", "-")
+        if name not in present:
+            present.add(name)
+            with contextlib.suppress(metadata.PackageNotFoundError):
+                needs = [Requirement(text) for text in metadata.requires(name) or ()]
+                wanted += [need.name for need in needs if need.marker is None or need.marker.evaluate()]
+    modules = metadata.packages_distributions()
+    kept = {*present, "course", "course-physics-sim"}
+    return {
+        module
+        for module, owners in modules.items()
+        if module != "course" and not {owner.lower().replace("_", "-") for owner in owners} & kept
+    }
+
+
+def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(
+    tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The total is shown at once; a comparison with a drawn number would tell one bit of it each time."""
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+    (tmp_path / "submission").mkdir()
+    seeds: list[int] = []
+    plain = GradingSession.__init__
+
+    def noted(self: GradingSession, *args: Any, terms: Terms, **more: Any) -> None:
+        seeds.append(terms.seed)
+        plain(self, *args, terms=terms, **more)
+
+    monkeypatch.setattr(GradingSession, "__init__", noted)
+    facts = json.loads(config(tmp_path).read_text())
+    for what in (b"", b"# below 0.5?\n", b""):
+        (tmp_path / "submission" / "doubling.py").write_bytes(solution + what)
+        assert grade(tmp_path / "submission", facts)["score"] == 10
+    assert seeds[0] == seeds[2] != seeds[1]
+    assert all(0 <= seed < 2**63 for seed in seeds)
 
 
 def config(tmp_path: Path, **changes: object) -> Path:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
+from course.catalog.load import Catalog
 from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.cluster import connect, coordinator, worker
@@ -24,6 +25,7 @@ from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answe
 from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
 from course.grading.running.grader import Answer, Job
+from course.grading.running.snapshot import Snapshot, in_use
 from course.scoring.session import Submission
 from course.scoring.terms import Terms
 from course.scoring.verdict import Problem, Verdict
@@ -33,7 +35,6 @@ from tests.unit.grading.made import stillborn
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.grading.cluster.coordinator import Outcome
     from course.scoring.session import GradingSession
@@ -63,6 +64,7 @@ def perfect(job: Job) -> Answer:
         ),
         number=job.number,
         sha256=Submission(job.files).sha256,
+        version=job.version,
     )  # fmt: skip
 
 
@@ -74,6 +76,7 @@ class FakeWorkers:
         deadly: whether a batch takes its worker with it.
         together: whether all batches of a round are then lost, as if one process graded them all.
         each_s: wall seconds they say a submission takes them.
+        lacking: how many of their processes have no snapshot yet.
     """
 
     def __init__(
@@ -85,9 +88,11 @@ class FakeWorkers:
         together: bool = False,
         deaths: int = 1,
         each_s: float = 0.0,
+        lacking: int = 0,
     ) -> None:
         self._places = places
         self._each_s = each_s
+        self._lacking = lacking
         self._answer = answer
         self._deadly = deadly
         self._together = together
@@ -117,7 +122,10 @@ class FakeWorkers:
         for (batch, done), mine in zip(now, dead, strict=True):
             if mine or (self._together and any(dead)):
                 done(Lost(self._deaths))
+            elif self._lacking and not batch.graders:
+                done(encode(Answers(FORMAT, "there", (), 0.0, wanting=True)))
             else:
+                self._lacking = max(0, self._lacking - bool(batch.graders))
                 answers = tuple(map(self._answer, batch.jobs))
                 done(encode(Answers(FORMAT, "there", answers, self._each_s * len(answers))))
 
@@ -390,6 +398,54 @@ def test_a_worker_scores_as_a_session_does_and_keeps_its_grader_warm(
         assert grader._process is not None
         processes.add(grader._process.pid)
     assert len(processes) == 1
+
+
+def test_a_worker_that_lacks_the_graders_is_sent_them(catalog: Catalog) -> None:
+    workers = FakeWorkers(2, lacking=2)
+    entries = entries_of(catalog.exercise("doubling"), 60)
+    found = grade(workers, entries, graders=b"a snapshot")
+    assert sorted(one.entry.student for one in found) == sorted(entry.student for entry in entries)
+    assert {one.version for one in found} == {"v1"}
+    batches = [batch for batches in workers.rounds for batch in batches]
+    assert {batch.graders for batch in batches} == {b"", b"a snapshot"}
+    assert sum(bool(batch.graders) for batch in batches) <= 4, "only to those that ask"
+
+
+def test_an_answer_by_other_graders_is_none(catalog: Catalog) -> None:
+    def by_others(job: Job) -> Answer:
+        return msgspec.structs.replace(perfect(job), version="v2")
+
+    (found,) = grade(FakeWorkers(1, answer=by_others), entries_of(catalog.exercise("doubling"), 1))
+    assert found.verdict.state == "grader_error"
+
+
+def test_a_worker_grades_by_the_snapshot_it_was_sent(
+    at_work: Callable[..., Answers], catalog: Catalog, solution: bytes, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    shutil.copytree(MINI, tmp_path / "course")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    edited = Catalog()
+    snapshot = Snapshot.take(edited.content)
+    version = grader_version(edited.exercise("doubling"), edited)
+    checks = tmp_path / "course" / "graders" / "doubling" / "checks.py"
+    checks.write_text(checks.read_text().replace("-34.5,", "-35.5,"))
+    assert grader_version(edited.exercise("doubling"), edited) != version
+    terms = Terms("L1", "L1", 5.0, graders=snapshot.sha256)
+    job = Job("doubling", {"doubling.py": solution}, version)
+    for packed, wanting in ((b"", True), (snapshot.packed, False), (b"", False)):
+        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, terms, (job,), packed))))
+        assert reply is not None
+        assert reply.wanting is wanting
+        for answer in reply.answers:
+            assert answer.verdict is not None
+            assert (answer.verdict.score, answer.version) == (10.0, version)
+    damaged = encode(Batch(FORMAT, msgspec.structs.replace(terms, graders="0" * 64), (job,), snapshot.packed))
+    reply = decode_answers(worker.grade_batch(damaged))
+    assert reply is not None
+    assert reply.answers[0].error is not None
+    worker._forget()
+    assert in_use(snapshot.sha256) is None
 
 
 def test_a_worker_with_other_graders_refuses_before_it_grades(

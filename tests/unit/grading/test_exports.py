@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 JUNIT = Path(__file__).resolve().parents[2] / "fixtures" / "junit.xsd"
-OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"})
+OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True)
 #: Values of hidden checks, in every spelling a file may have them.
 SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
 FOR_STUDENTS = ["junit", "gradescope"]
@@ -107,19 +107,19 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(
     results: Results, tmp_path: Path, name: str
 ) -> None:
     usual = FORMATS[name][0]
-    everything = ExportOptions()
+    everything = ExportOptions(zeros=True)
     assert export(results, name, tmp_path, None, everything).paths[0] == tmp_path / usual
     before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
     roster = results.roster
     assert roster is not None
-    parts = ((roster.people, OPTIONS), (roster.people[1:], ExportOptions(partial=True)))
+    parts = ((roster.people, OPTIONS), (roster.people[1:], ExportOptions(partial=True, zeros=True)))
     for people, options in parts:
         results.roster = Roster(people)
         written = export(results, name, tmp_path, None, options)
         assert written.paths[0] == tmp_path / "part" / usual
         assert {path: path.read_bytes() for path in before} == before
     results.roster = roster
-    whole = ExportOptions(partial=True)  # which leaves nobody out
+    whole = ExportOptions(partial=True, zeros=True)  # which leaves nobody out
     assert export(results, name, tmp_path, None, whole).paths[0] == tmp_path / usual
     assert export(results, name, tmp_path, tmp_path / usual, OPTIONS).paths[0] == tmp_path / usual
 

@@ -22,6 +22,7 @@ from course.grading.gradebook.book import (
     Result,
     SubmittedAt,
 )
+from course.grading.gradebook.file import _SEALED, _digest
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -312,6 +313,41 @@ def test_what_changed_since_it_was_closed_is_damage(tmp_path: Path, change: str)
             Gradebook(path, writing=writing)
 
 
+def before_4(db: sqlite3.Connection) -> None:
+    """Make of a gradebook what the format before had: rows without digests, and three tables fewer."""
+    for table in ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results"):
+        db.execute(f"ALTER TABLE {table} DROP COLUMN row_sha256")
+    for table in ("snapshots", "found", "journal"):
+        db.execute(f"DROP TABLE {table}")
+
+
+def test_a_sealed_gradebook_of_the_format_before_is_read_and_then_written(tmp_path: Path) -> None:
+    path = tmp_path / "g.sqlite"
+    full(path)
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        before_4(db)
+        db.execute("DELETE FROM meta WHERE key = 'seal'")
+        db.execute("INSERT INTO meta VALUES ('seal', ?)", (_digest(db, _SEALED),))
+        db.execute("PRAGMA user_version = 3")
+        db.commit()
+    before = path.read_bytes()
+    with Gradebook(path) as book:
+        assert (book.journal(), book.found(), book.snapshot("x")) == ([], {}, None)
+        assert book.overrides()[0].score == 5.0
+    assert path.read_bytes() == before, "who only reads changes nothing"
+    for _ in range(2):
+        with Gradebook(path, writing=True) as book:
+            assert len(list(book.results())) == 1
+            book.add_override(Override("ada", "doubling", 6.0, "second"))
+    with Gradebook(path) as book:
+        assert [(it.kind, it.reason) for it in book.journal("ada")] == [("override", "second")] * 2
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE times SET at = 201.0")
+        db.commit()
+    with pytest.raises(IntegrityError, match="damaged"):
+        Gradebook(path)
+
+
 def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tmp_path: Path) -> None:
     """A run that was killed leaves none, and neither did the format before."""
     path = tmp_path / "g.sqlite"
@@ -319,6 +355,7 @@ def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tm
     with contextlib.closing(sqlite3.connect(path)) as db:
         db.execute("DELETE FROM meta WHERE key = 'seal'")
         db.execute("UPDATE exercises SET pass_share = 0.5")
+        before_4(db)
         db.execute("PRAGMA user_version = 2")
         db.commit()
     with Gradebook(path) as book:
@@ -327,7 +364,7 @@ def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tm
         book.set_meta(late_policy="x")
         assert book.meta() == {"seed": "7", "roster": "[]", "late_policy": "x"}
     with contextlib.closing(sqlite3.connect(path)) as db:
-        assert db.execute("PRAGMA user_version").fetchone()[0] == 3
+        assert db.execute("PRAGMA user_version").fetchone()[0] == 4
         db.execute("UPDATE exercises SET pass_share = 0.7")
         db.commit()
     with pytest.raises(IntegrityError, match="damaged"):

@@ -16,6 +16,8 @@ from hypothesis.extra import numpy as hnp
 from course.grading import kit
 from course.grading.kit import CheckFailed, Diagnosis, Inspected, StudentFailure
 from course.physics import exact, systems
+from course.scoring import failures
+from course.scoring.values import as_march, plain
 from course.scoring.verdict import Divergence
 
 WORDS = {"message": "It is wrong.", "help": "Mend it."}
@@ -53,7 +55,7 @@ READERS = [
     lambda value: kit.as_pair(value, 2),
     lambda value: kit.as_record(value, ("a", "b")),
     lambda value: kit.as_tuple(value, ("t", "q", "v")),
-    lambda value: kit.as_march(value, 2, 1),
+    lambda value: as_march(value, 2, 1),
     lambda value: kit.expect_close(value, 1.0, rel=0.1, **TOLERANCE, **WORDS),
     lambda value: kit.expect_array(value, [1.0, 2.0], rel=0.1, **TOLERANCE, **WORDS),
     lambda value: kit.expect_equal(value, "x", **WORDS),
@@ -222,18 +224,18 @@ def test_a_refusal_that_is_not_due_is_a_finding_and_other_failures_stay_what_the
     ],
 )
 def test_every_failure_of_student_code_has_words_and_advice(failure, code):
-    finding = kit.finding_of(failure)
+    finding = failures.finding_of(failure)
     assert finding.diagnosis == code
     assert finding.message.endswith(".")
     assert finding.help
 
 
 def test_the_words_of_an_error_hold_nothing_that_the_student_could_smuggle_out():
-    finding = kit.finding_of(StudentFailure("error", type="Q0_IS_0_29", message="h = 0.01", line=3))
+    finding = failures.finding_of(StudentFailure("error", type="Q0_IS_0_29", message="h = 0.01", line=3))
     assert "0_29" not in finding.message + finding.help
     assert "0.01" not in finding.message + finding.help
     assert "line 3" in finding.message
-    known = kit.finding_of(StudentFailure("error", type="ZeroDivisionError", message="division by zero"))
+    known = failures.finding_of(StudentFailure("error", type="ZeroDivisionError", message="division by zero"))
     assert "ZeroDivisionError" in known.message
 
 
@@ -302,18 +304,18 @@ def test_missing_keys_are_named_and_extra_ones_reported():
 
 
 def test_a_march_that_went_wrong_says_what_the_step_returned():
-    finding = finding_of(kit.as_march, {"bad": "NoneType: cannot unpack", "step": 0}, 3, 1)
+    finding = finding_of(as_march, {"bad": "NoneType: cannot unpack", "step": 0}, 3, 1)
     assert finding.diagnosis == "RETURNS_NOTHING"
-    finding = finding_of(kit.as_march, {"bad": "shapes (2,) and (2,)", "step": 0}, 3, 1)
+    finding = finding_of(as_march, {"bad": "shapes (2,) and (2,)", "step": 0}, 3, 1)
     assert (finding.diagnosis, finding.actual) == ("NOT_A_PAIR", "shapes (2,) and (2,)")
-    finding_of(kit.as_march, [np.zeros((3, 1)), np.zeros((4, 1))], 3, 1)
+    finding_of(as_march, [np.zeros((3, 1)), np.zeros((4, 1))], 3, 1)
 
 
 def test_long_and_strange_values_are_cut_and_named_before_they_enter_a_finding():
-    assert kit.plain(np.zeros(1000)) == "array of shape (1000,)"
-    assert kit.plain(list(range(30)))[-1] == "… 6 more"
-    assert kit.plain({"f": len}) == {"f": "(builtin_function_or_method)"}
-    json.dumps(kit.plain([np.float64(1.0), np.int64(2), np.array([True]), (1, 2)]))
+    assert plain(np.zeros(1000)) == "array of shape (1000,)"
+    assert plain(list(range(30)))[-1] == "… 6 more"
+    assert plain({"f": len}) == {"f": "(builtin_function_or_method)"}
+    json.dumps(plain([np.float64(1.0), np.int64(2), np.array([True]), (1, 2)]))
 
 
 # -- callbacks ----------------------------------------------------------------------------------------
@@ -455,5 +457,5 @@ def test_a_sibling_is_loaded_once_from_beside_the_file_that_asks(tmp_path):
 
 
 def test_all_names_what_the_kit_offers():
-    assert kit.__all__ == sorted(set(kit.__all__))
+    assert len(kit.__all__) == len(set(kit.__all__))  # ruff keeps their order
     assert all(hasattr(kit, name) for name in kit.__all__)

@@ -15,8 +15,10 @@ from course.grading.intake import reading, students
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import Place, Student
 from course.grading.intake.reading import Reader
+from course.grading.quiz import grade_quiz
 from course.handed_in.cells import MAX_CELLS
 from course.handed_in.notebook import MAX_NOTES, notebook_source
+from course.quizzing.bank import Bank
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -145,8 +147,31 @@ def test_an_archive_is_read_over_there_too(tmp_path: Path, doubling: Exercise, s
     path = tmp_path / "m\udce9.zip"
     with zipfile.ZipFile(path, "w") as target:
         target.writestr("doubling/doubling.py", _DOUBLE)
-    assert strict.module_in(path, doubling) == ("doubling/doubling.py", _DOUBLE.encode())
+    held = strict.module_in(path, doubling)
+    assert held is not None
+    assert (held.name, held.content) == ("doubling/doubling.py", _DOUBLE.encode())
     assert strict.quiz_in(path) is None
     path.write_bytes(b"PK")
     with pytest.raises(RefusedError, match="cannot be read"):
         strict.module_in(path, doubling)
+
+
+@pytest.mark.parametrize(
+    "quiz",
+    ["[" * 970 + "1" + "]" * 970, '["\\ud800"]', "[1e999, NaN]", f"[{'9' * 4000}]", '{"a": 1}', "true"],
+)
+def test_no_record_of_a_quiz_hurts_whoever_asked(tmp_path: Path, quiz: str) -> None:
+    """One list a thousand deep ended the run: whoever asks stands deeper than the process that reads."""
+    path = tmp_path / "ada.zip"
+    with zipfile.ZipFile(path, "w") as packed:
+        packed.writestr("submission.json", f'{{"format_version": 1, "files": {{}}, "quiz": {quiz}}}')
+    student = Student("ada", Place(tmp_path))
+
+    def asked(deeper: int) -> Any:
+        return asked(deeper - 1) if deeper else students.read_quiz(student)[0]
+
+    record = asked(200)
+    assert isinstance(record, str)
+    verdict = grade_quiz(Bank(()), record)
+    assert verdict is not None
+    assert (verdict.state, verdict.error.code) == ("ungradable", "quiz_record_inconsistent")  # type: ignore[union-attr]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from typing import IO, TYPE_CHECKING, Any
 import msgspec
 import pytest
 
+from course.catalog.load import Catalog
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake.students import read_class
@@ -30,7 +32,6 @@ from tests.unit.grading.made import stillborn
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.grading.intake.students import Entry
 
@@ -295,6 +296,23 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
     assert (trouble.student, trouble.exercise, trouble.code) == ("eve", "quiz", "quiz_record_inconsistent")
 
 
+def test_a_question_that_is_not_finished_stops_only_a_run_with_the_quiz(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes
+) -> None:
+    """It is the author's to finish: no fault of the grader's own (70), and no folder is left."""
+    shutil.copytree(MINI, tmp_path / "course")
+    question = '[[variant]]\nid = "one"\nprompt = "{name}"\n'
+    (tmp_path / "course" / "quiz" / "unfinished.toml").write_text(question, "utf-8")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    make_class(tmp_path / "class", solution, 1)
+    with pytest.raises(UsageError, match=r"unfinished\.toml"):
+        grade_class(tmp_path / "class", tmp_path / "out", Catalog(), RunOptions(), lambda *_: None)
+    assert not (tmp_path / "out").exists()
+    only = RunOptions(exercises=("doubling",))
+    grade_class(tmp_path / "class", tmp_path / "out", Catalog(), only, lambda *_: None)
+    assert len(scores(tmp_path / "out")) == 1
+
+
 def test_a_student_counts_as_done_when_graded_and_not_when_read(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
@@ -358,8 +376,8 @@ def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
     grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right)
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
-        "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html", "students.html", "students.csv",
-        "students",
+        "gradebook.backup-1.sqlite", "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html",
+        "students.html", "students.csv", "students",
     }  # fmt: skip
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.scoring.collected import Check
+    from course.scoring.checks.collected import Check
     from course.scoring.remote import RemoteSubmission
     from course.scoring.verdict import CheckResult, Verdict
 
@@ -152,6 +152,12 @@ def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSes
         assert "course reset" in error.help
 
 
+def test_a_file_that_exhausts_the_parser_is_told_why(session: GradingSession) -> None:
+    error = grade(session, b"x = " + b"-" * 400_000 + b"1\n").error
+    assert error is not None
+    assert "nested more deeply" in error.message
+
+
 def test_an_import_that_is_not_allowed_costs_only_the_tasks_that_need_it(
     session: GradingSession, solution: bytes
 ) -> None:
@@ -248,7 +254,7 @@ def test_a_public_session_runs_only_public_checks(
 
 
 def test_one_check_can_be_run_alone(session: GradingSession, solution: bytes) -> None:
-    verdict = session.grade(Submission({"doubling.py": solution}), only="doublings_values")
+    verdict = session.grade(Submission({"doubling.py": solution}), only=["doublings_values"])
     assert {check.id for check in verdict.checks} == {"doublings_length", "doublings_values"}
 
 
@@ -278,7 +284,7 @@ def test_a_check_that_computes_with_infinite_numbers_is_no_fault_of_ours(
     def computing(*_: object) -> None:
         seen.append(np.array([np.inf]) - np.inf)  # numpy would warn, and a warning may be an error
 
-    monkeypatch.setattr("course.scoring.collected._run_item", computing)
+    monkeypatch.setattr("course.scoring.checks.collected._run_item", computing)
     grade(session, solution)
     assert np.isnan(seen).all()
 
@@ -291,10 +297,21 @@ def test_hidden_checks_need_a_checkout(catalog: Catalog, doubling: Exercise) -> 
         GradingSession(doubling, student, scope="full")
 
 
+def test_hidden_checks_do_not_run_without_the_solutions_they_compare_with(
+    catalog: Catalog, doubling: Exercise
+) -> None:
+    """Each of them would fail on honest work, for a fault that is ours."""
+    import dataclasses
+
+    bare = type(catalog)(dataclasses.replace(catalog.content, solutions=None))
+    with pytest.raises(MissingCapabilityError, match="model solutions"):
+        GradingSession(doubling, bare, scope="full")
+
+
 def test_a_check_without_its_marks_names_the_file_and_the_line(
     catalog: Catalog, doubling: Exercise, tmp_path: Path
 ) -> None:
-    from course.scoring.collected import CollectedChecks
+    from course.scoring.checks.collected import CollectedChecks
     from course.scoring.verdict import Visibility
 
     path = tmp_path / "checks.py"
@@ -405,7 +422,7 @@ def test_a_finding_holds_whole_numbers_of_any_size() -> None:
 def test_a_check_that_pytest_never_called_is_no_pass(
     session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("course.scoring.collected._run_item", lambda _item: None)
+    monkeypatch.setattr("course.scoring.checks.collected._run_item", lambda _item: None)
     assert grade(session, solution).state == "grader_error"
 
 

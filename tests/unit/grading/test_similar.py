@@ -6,6 +6,10 @@ import dataclasses
 import itertools
 import pathlib
 import shutil
+import signal
+import subprocess
+import sys
+from time import process_time
 from typing import TYPE_CHECKING
 
 from hypothesis import given, settings
@@ -14,8 +18,8 @@ from hypothesis import strategies as st
 from course.grading.gradebook.book import Result
 from course.grading.results.effective import Results
 from course.grading.similar.compare import compare
-from course.grading.similar.fingerprints import RUN, WINDOW, Parser, fingerprints
-from course.grading.similar.page import page
+from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, fingerprints
+from course.grading.similar.page import _blocks, page
 from course.scoring.session import Submission
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book
@@ -135,6 +139,20 @@ def test_what_the_course_itself_has_is_recognised(tmp_path: Path, catalog: Catal
     ]
 
 
+def test_every_module_that_a_student_has_is_the_courses_own(tmp_path: Path, catalog: Catalog) -> None:
+    """Another exercise's checks and what the lessons run, not only this exercise's files and the textbook."""
+    import course.simulations.experiments.chaos as shown
+
+    assert shown.__file__ is not None
+    other = MINI / "exercises" / "halving" / "checks.py"
+    copied = {"ada": pathlib.Path(shown.__file__), "bob": other}
+    sources = {name: path.read_bytes() for name, path in copied.items()}
+    with class_of(tmp_path, {**sources, "cy": OTHER}) as book:
+        found = compare(Results(book), catalog, (), at_least=0.6)
+    pairs = {(pair.first.label, pair.second.label) for pair in found.pairs}
+    assert pairs == {("ada", "course.simulations.experiments.chaos"), ("bob", "exercises/halving/checks.py")}
+
+
 def test_many_copies_of_one_file_are_all_found_without_all_pairs(tmp_path: Path, catalog: Catalog) -> None:
     sources = {f"student {number:03}": ORIGINAL + f"# {number}\n" for number in range(60)}
     with class_of(tmp_path, sources) as book:
@@ -192,6 +210,33 @@ def test_sources_that_hurt_the_parser_are_named_and_the_rest_compared(
     assert [{pair.first.label, pair.second.label} for pair in found.pairs] == [{"ada", "bob"}]
     assert {"syntax doubling", "nul doubling", "parentheses doubling"} <= set(found.unreadable)
     assert found.compared + len(found.unreadable) == 2 + len(bad)
+
+
+def test_a_source_that_is_too_long_is_named_and_never_parsed(tmp_path: Path, catalog: Catalog) -> None:
+    long = ORIGINAL + "#" * LONGEST
+    with class_of(tmp_path, {"ada": ORIGINAL, "bob": RENAMED, "long": long}) as book:
+        found = compare(Results(book), catalog, (), at_least=0.6)
+    assert found.unreadable == ["long doubling"]
+    assert [{pair.first.label, pair.second.label} for pair in found.pairs] == [{"ada", "bob"}]
+
+
+def test_passages_in_reversed_order_are_joined_in_time_that_grows_with_their_number() -> None:
+    """Two who hand in the same functions, one of them backwards: nothing continues anything."""
+    took: dict[int, float] = {}
+    for size in [500, 4000] * 3:
+        passages = [((10 * n, 10 * n + 1), (10 * (size - n), 10 * (size - n) + 1)) for n in range(size)]
+        start = process_time()
+        assert len(_blocks(passages)) == size
+        took[size] = min(took.get(size, 1e9), process_time() - start)
+    # 8 if it is linear, 64 if it is quadratic.
+    assert took[4000] / took[500] < 24, took
+
+
+def test_a_process_that_parses_ends_when_its_time_is_used_up() -> None:
+    """By CPU time: on a busy machine an honest source has six times as long by the wall clock."""
+    spins = "from course.grading.pipes import limit_cpu\nlimit_cpu(0)\nwhile True:\n    pass"
+    done = subprocess.run([sys.executable, "-c", spins], check=False)
+    assert done.returncode == -signal.SIGXCPU
 
 
 def test_a_source_is_never_run(tmp_path: Path) -> None:

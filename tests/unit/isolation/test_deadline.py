@@ -141,7 +141,7 @@ def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str)
         os.sched_setaffinity(0, {processor})
         found: Any = spawner(Level(level), ("numpy",))
         stack.callback(found.close)
-        stack.enter_context(_crowd(processor, 4))
+        stack.enter_context(_crowd(processor, 8))
 
         def connected() -> Connection:
             made = Connection(found, {"a.py": _WORK.encode()}, "a.py", Deadline(10))
@@ -151,7 +151,9 @@ def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str)
         connection = connected()
         connection.deadline = Deadline(0.6, wall=60)
         assert connection.call("work", 0.4) is True
-        assert connection.deadline.wall > 0.8, "the machine was not busy"
+        assert connection.deadline.wall > 0.6, (
+            "the machine was not busy: by the wall it would have been in time"
+        )
         for hopeless in ("sleeps", "spins"):
             connection = connected()
             connection.deadline = Deadline(0.5, wall=60)

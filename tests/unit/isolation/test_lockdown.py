@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from course.isolation import lockdown
+from course.isolation.inside import lockdown
 
 _MACHINES = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 _ALLOW, _EPERM, _ENOSYS, _KILL = 0x7FFF0000, 0x00050001, 0x00050026, 0x80000000

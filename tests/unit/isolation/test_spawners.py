@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 linux_only = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
+_LOCKDOWN = "course_worker/isolation/inside/lockdown.py"
+
 
 @pytest.fixture
 def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -56,6 +58,34 @@ def test_a_tree_of_any_depth_is_removed(tmp_path: Path) -> None:
         os.close(here)
         here = below
     os.close(here)
+    launch.remove_tree(top)
+    assert not top.exists()
+
+
+def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However deep the rest is: what a killed session left behind must not end the next one."""
+    top, stays = tmp_path / "top", "stays"
+    here = os.open(tmp_path, os.O_RDONLY)
+    os.mkdir("top", dir_fd=here)
+    for name in ("top", *["d"] * 1500):  # deeper than recursion, and than a path may be
+        below = os.open(name, os.O_RDONLY, dir_fd=here)
+        os.close(here)
+        here = below
+        for file in ("file", stays):
+            os.close(os.open(file, os.O_CREAT | os.O_WRONLY, dir_fd=here))
+        os.mkdir("d", dir_fd=here)
+    os.close(here)
+    unlink = os.unlink
+
+    def refusing(path: str, **named: Any) -> None:
+        if str(path).endswith(stays):
+            raise PermissionError(path)
+        unlink(path, **named)
+
+    monkeypatch.setattr(os, "unlink", refusing)
+    launch.remove_tree(top)
+    assert {path.name for path in top.rglob("*") if path.is_file()} == {stays}
+    monkeypatch.undo()
     launch.remove_tree(top)
     assert not top.exists()
 
@@ -173,7 +203,7 @@ def test_output_replaced_by_a_pipe_does_not_hold_the_grader(plain: ProcessSpawne
     start = monotonic()
     assert connection.output() == "before\n"
     connection.close()
-    assert monotonic() - start < 1
+    assert monotonic() - start < 30  # reading the pipe would last for ever
 
 
 def test_the_next_plain_process_is_ready_before_it_is_needed(plain: ProcessSpawner) -> None:
@@ -232,7 +262,7 @@ def test_a_layer_that_fails_stops_the_worker_before_any_stranger_runs(
 
     def sabotaged(target: Path) -> None:
         copy(target)
-        with (target / "course_worker" / "isolation" / "lockdown.py").open("a", encoding="utf-8") as handle:
+        with (target / _LOCKDOWN).open("a", encoding="utf-8") as handle:
             handle.write("\n\ndef apply_seccomp(program):\n    raise LockdownError(0, 'sabotaged')\n")
 
     monkeypatch.setattr(launch, "copy_worker_files", sabotaged)
@@ -261,7 +291,7 @@ def test_the_canary_notices_a_layer_that_does_nothing(
 
     def without(target: Path) -> None:
         copy(target)
-        with (target / "course_worker" / "isolation" / "lockdown.py").open("a", encoding="utf-8") as handle:
+        with (target / _LOCKDOWN).open("a", encoding="utf-8") as handle:
             handle.write(f"\n\ndef {layer}(*_):\n    pass\n")
             handle.write("\n\ndef apply_limits(**_):\n    pass\n")  # or they would stop the fork as well
 

@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from course.isolation import decoding, wire
-from course.isolation.wire import Codec, Kind, Reference, Rhs, Seed, UnsupportedValueError, WireError
+from course.isolation.inside import decoding, wire
+from course.isolation.inside.wire import Codec, Kind, Reference, Rhs, Seed, UnsupportedValueError, WireError
 
 _DTYPES = st.sampled_from([np.dtype(name) for name in ("<f8", "<i8", "?", "<c16")])
 _SHAPES = hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import nbformat
 import pytest
 
@@ -18,6 +20,7 @@ from course.catalog import blocks as b
 from course.errors import NotFoundError
 from course.handed_in.notebook import notebook_source
 from course.notebooks.build import Generated, generate
+from course.notebooks.building.exercises import exercise_cells
 from course.notebooks.building.layout import FOLDERS, WORKSPACE
 from course.notebooks.building.lowering import Lowering
 from course.notebooks.building.stub import pieces
@@ -44,6 +47,15 @@ def cells(data: bytes, kind: str = "") -> list[dict[str, Any]]:
 
 def text(cell: dict[str, Any]) -> str:
     return "".join(cell["source"])
+
+
+def test_the_first_cell_of_each_notebook_says_how_to_install_what_it_needs(
+    everything: list[Generated],
+) -> None:
+    for one in everything:
+        first = cells(one.data)[0]
+        assert first["cell_type"] == "markdown"
+        assert "%pip install" in text(first), one.path
 
 
 def test_everything_has_a_notebook(catalog: Catalog, everything: list[Generated]) -> None:
@@ -95,6 +107,17 @@ def test_nothing_is_left_that_jupyter_would_show_as_stray_text(everything: list[
                 "{eq}",
             ):
                 assert not any(stray in part for part in outside), (one.path, stray)
+
+
+def test_a_link_in_a_readme_becomes_the_command_that_opens_it(tmp_path: Path, catalog: Catalog) -> None:
+    """A notebook of an exercise may lie in a workspace, a class's folder or anywhere."""
+    real = catalog.exercise("integrators")
+    shutil.copytree(real.folder, tmp_path / "integrators")
+    exercise = msgspec.structs.replace(real, folder=str(tmp_path / "integrators"))
+    exercise.readme_path.write_text("See [it](lesson:accuracy#drift), then [that](exercise:collisions).\n")
+    first = exercise_cells(exercise, exercise.stub_path.read_text())[0]
+    told = first.source.partition("\n\n")[0]
+    assert told == "See it (`course lesson accuracy`), then that (`course start collisions`)."
 
 
 def test_links_between_notebooks_lead_to_notebooks(catalog: Catalog) -> None:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.cli.frame import app
+from course.errors import NotFoundError, UsageError
 from course.handed_in.notebook import notebook_source
-from course.notebooks import magic
+from course.notebooks import check, magic
 from course.notebooks.building.exercises import exercise_notebook
 from course.notebooks.typed import module_of
 from course.progress.history import fingerprint
@@ -18,8 +21,6 @@ from course.progress.workspace import Workspace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from course.catalog.load import Catalog
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 DOUBLE = "def double(x):\n    return x + x"
@@ -125,3 +126,51 @@ def test_the_newest_version_of_a_cell_counts(here: Workspace) -> None:
     wrong = DOUBLE.replace("x + x", "x")
     assert not magic.check([DOUBLE, DOUBLINGS, wrong], "doubling", "double").passed
     assert magic.check([wrong, DOUBLINGS, DOUBLE], "doubling", "double").passed
+
+
+def double(x: float) -> float:
+    return x + x
+
+
+def doublings(x: float, n: int) -> list[float]:
+    return [double(x) * 2 ** (k - 1) for k in range(n + 1)]
+
+
+@pytest.mark.parametrize("form", ["text", "path", "name", "notebook", "functions", "mixed"])
+def test_a_check_needs_no_ipython(here: Workspace, form: str) -> None:
+    text = f"{DOUBLE}\n\n\n{DOUBLINGS}\n"
+    Path("mine.py").write_text(text)
+    made = json.loads(exercise_notebook(Catalog(), Catalog().exercise("doubling")))
+    made["cells"] = [{**made["cells"][-1], "cell_type": "code", "source": text, "metadata": {}}]
+    Path("mine.ipynb").write_text(json.dumps(made))
+    source: Any = {
+        "text": text,
+        "path": Path("mine.py"),
+        "name": "mine.py",
+        "notebook": Path("mine.ipynb"),
+        "functions": [double, doublings],
+        "mixed": (double, DOUBLINGS),
+    }[form]
+    table = check("doubling", source=source)
+    assert table.passed, repr(table)
+    assert len(table.checks) == 2
+    (attempt,) = attempts(here)
+    assert attempt["passed"]
+    wrong = check("doubling", "double", source=["def double(x):\n    return x + 1"])
+    assert not wrong.passed
+    assert attempts(here)[1]["only"] == "double"
+
+
+def test_a_check_without_ipython_and_without_a_source_says_what_to_give(
+    here: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    with pytest.raises(UsageError, match="no IPython") as caught:
+        check("doubling")
+    assert "source=" in caught.value.help
+    with pytest.raises(UsageError, match="source of"):
+        check("doubling", source=[len])
+    with pytest.raises(NotFoundError):
+        check("doubling", source="missing.py")
+    with pytest.raises(NotFoundError, match="no function"):
+        check("doubling", "treble", source=[double])

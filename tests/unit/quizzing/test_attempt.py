@@ -57,6 +57,23 @@ def test_an_answer_that_is_no_option_is_an_error(bank: Bank) -> None:
         mark(bank.pose(4), {"sums": "z", "colours": "a"})
 
 
+def test_a_first_attempt_asks_the_first_variant_of_each_question(bank: Bank) -> None:
+    first = {document.value.id: document.value.variant[0].id for document in bank.documents}
+    for start in range(50):
+        chance = random.Random(start)
+        seed = fresh_seed(bank, {}, lambda: chance.randrange(MAX_SEED + 1))  # noqa: B023
+        assert {name: bank.variant(name, seed) for name in bank.ids} == first
+
+
+def test_a_question_that_is_new_to_a_student_starts_with_its_first_variant(bank: Bank) -> None:
+    chance = random.Random(3)
+    seed = fresh_seed(bank, {"sums": 4}, lambda: chance.randrange(MAX_SEED + 1))
+    assert bank.variant("sums", seed) != bank.variant("sums", 4)
+    assert (
+        bank.variant("colours", seed) == bank.documents[list(bank.ids).index("colours")].value.variant[0].id
+    )
+
+
 def test_a_retake_asks_everything_otherwise(bank: Bank) -> None:
     for seed in range(100):
         chance = random.Random(seed)

@@ -174,8 +174,7 @@ def test_search_does_not_look_behind_an_open_prediction(lesson):
     progress = InProgress(script)
 
     def hits():
-        closed = [i for i in range(len(script.blocks)) if progress.closed_by(i) and script.gives_away(i)]
-        return [hit.block for hit in find(script, "  four ", closed=lambda i: i in closed)]
+        return [hit.block for hit in find(progress, "  four ")]
 
     assert hits() == []
     progress.predict(script.questions[0], "")

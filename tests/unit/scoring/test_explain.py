@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from time import process_time
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,10 +12,11 @@ import pytest
 
 from course.errors import ContentError
 from course.scoring.explain.calls import calls_between
-from course.scoring.explain.fingerprint import SAME, fingerprint
+from course.scoring.explain.fingerprint import SAME, fingerprint, read
 from course.scoring.explain.story import Failure, common, tell
 from course.scoring.explain.table import Row, Table, is_right, matching, read_table, write_table
 from course.scoring.explain.words import Diagnosis, Entry, Words, read_words
+from course.scoring.explaining import asked, tasks_asked
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,6 +70,8 @@ def test_the_same_answers_in_another_form_and_rounding_have_the_same_fingerprint
         ([[1.0]], [1.0]),
         ([{"raised": "ValueError"}], [None]),
         (["text"], [None]),
+        (["bias"], ["lag"]),
+        ([{"a": 1.0, "b": 2.0}], [{"a": 2.0, "b": 1.0}]),
         ([1e200], [1e201]),
         ([10**400], [1.0]),
     ],
@@ -76,7 +81,38 @@ def test_other_answers_have_another_fingerprint(one: list[object], other: list[o
     assert any(abs(a - b) > 10 * SAME for a, b in pairs)
 
 
+def test_an_exercise_may_ask_by_itself_and_give_numbers_for_each_part_of_a_task() -> None:
+    module = SimpleNamespace(
+        QUESTIONS={"half": [(4.0,), (6.0,)], "quarter": []},
+        READ={"half": lambda value: value + 1},
+        ASK={"report": lambda answer, names: {name: answer([(8.0,)]) for name in sorted(names)}},
+    )
+
+    def answer(calls: list[tuple[float]]) -> list[float]:
+        return [x / 2 for (x,) in calls]
+
+    assert tasks_asked(module) == {"half", "quarter", "report"}  # type: ignore[arg-type]
+    assert asked(module, "half", answer) == {"half": fingerprint([3.0, 4.0])}  # type: ignore[arg-type]
+    assert asked(module, "half", answer, within=0.1) == {"half": (3.0, 4.0)}  # type: ignore[arg-type]
+    assert asked(module, "quarter", answer) == {}  # type: ignore[arg-type]
+    names = frozenset({"report.a", "report.b"})
+    assert asked(module, "report", answer, names=names) == {"report.a": (4.0,), "report.b": (4.0,)}  # type: ignore[arg-type]
+
+
 # -- the table --------------------------------------------------------------------------------------------
+
+
+def test_a_dict_is_its_values_in_whatever_order_it_was_filled() -> None:
+    one = fingerprint([{"kp": 2.0, "kd": 1.0}])
+    assert one == fingerprint([{"kd": 1.0, "kp": 2.0}])
+    assert one != fingerprint([{"kp": 2.0, "kd": 1.5}])
+
+
+def test_of_an_answer_counts_what_its_reader_gives_and_what_it_cannot_read_is_an_exception() -> None:
+    assert read({"t": 1.0, "memory": [3]}, lambda twin: twin["t"]) == 1.0
+    assert read(None, lambda twin: twin["t"]) == {"raised": "TypeError"}
+    assert read({"raised": "ValueError"}, lambda twin: twin["t"]) == {"raised": "ValueError"}
+    assert read([3], None) == [3]
 
 
 def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Path) -> None:
@@ -179,3 +215,27 @@ def test_words_of_no_known_kind_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ContentError) as error:
         read_words(path)
     assert "'guess'" in str(error.value)
+
+
+def test_a_file_longer_than_any_honest_one_is_not_parsed_among_the_checks() -> None:
+    source = b"def one(x):\n    return two(x)\n\n\ndef two(x):\n    return x\n"
+    tasks = frozenset({"one", "two"})
+    assert calls_between(source, tasks) == {"one": ("two",), "two": ()}
+    # A megabyte of this becomes 700 MB of syntax tree, in the process that holds what is expected.
+    assert calls_between(source + b"1\n" * 50_000, tasks) == {}
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "def task():\n    f0\n" + "".join(f"def f{n}(): f{n + 1}\n" for n in range(5_000)),
+        "def task():\n    f0\n" + "=".join(f"f{n}" for n in range(14_000)) + "=0\n",
+    ],
+)
+def test_a_chain_of_functions_is_followed_in_time_that_grows_with_it(source: str) -> None:
+    """What each of thousands reaches would be the square of their number, in time and in memory."""
+    start = process_time()
+    assert calls_between(source.encode(), frozenset({"task"})) == {"task": ()}
+    assert (
+        process_time() - start < 5.0
+    )  # takes 0.3 s; 7 s and 600 MB, and over a minute, where each is followed

@@ -1,4 +1,4 @@
-"""What is laid over the page: contents, search, a prediction, a cell to edit, help."""
+"""What is laid over the page: contents, search, a prediction, a cell to edit."""
 
 from __future__ import annotations
 
@@ -7,38 +7,21 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rich.text import Text
 from textual.binding import Binding
 from textual.containers import Vertical, VerticalScroll
-from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList, Static, TextArea
 from textual.widgets.option_list import Option
+
+from course.full_screen import Overlay
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from textual.app import ComposeResult
 
-__all__ = ["Choose", "Edit", "Find", "Predict", "Tell"]
-
-_BOX = """
-%(name)s { align: center middle; background: black 40%%; }
-%(name)s > .box {
-    width: 96%%; max-width: 84; height: auto; max-height: 96%%;
-    border: round $primary; padding: 0 1; background: $surface; scrollbar-size-vertical: 1;
-}
-%(name)s OptionList { height: auto; max-height: 80vh; border: none; background: $surface; padding: 0; }
-%(name)s OptionList:focus { border: none; }
-%(name)s Input { width: 100%%; }
-"""
+__all__ = ["Choose", "Edit", "Find", "Predict"]
 
 
-def _css(name: str) -> str:
-    return _BOX % {"name": name}
-
-
-class Predict(ModalScreen[str | None]):
+class Predict(Overlay[str]):
     """The question, and a place for what the reader expects. Dismissed with it, or None."""
-
-    DEFAULT_CSS = _css("Predict")
-    BINDINGS: ClassVar[list[Any]] = [Binding("escape", "leave", show=False)]
 
     def __init__(self, question: str) -> None:
         super().__init__()
@@ -64,17 +47,12 @@ class Predict(ModalScreen[str | None]):
         if event.value.strip():
             self.dismiss(event.value.strip())
 
-    def action_leave(self) -> None:
-        """Back to the page."""
-        self.dismiss(None)
 
-
-class Choose(ModalScreen[str | None]):
+class Choose(Overlay[str]):
     """A list to choose from. Dismissed with the key of what was chosen, or None."""
 
-    DEFAULT_CSS = _css("Choose")
     BINDINGS: ClassVar[list[Any]] = [
-        Binding("escape,q,t", "leave", show=False),
+        Binding("q,t", "leave", show=False),
         Binding("j", "down", show=False),
         Binding("k", "up", show=False),
     ]
@@ -103,10 +81,6 @@ class Choose(ModalScreen[str | None]):
         """Take it."""
         self.dismiss(event.option.id)
 
-    def action_leave(self) -> None:
-        """Back to the page."""
-        self.dismiss(None)
-
     def action_down(self) -> None:
         """Further down."""
         self.query_one(OptionList).action_cursor_down()
@@ -116,15 +90,12 @@ class Choose(ModalScreen[str | None]):
         self.query_one(OptionList).action_cursor_up()
 
 
-class Find(ModalScreen[str | None]):
+class Find(Overlay[str]):
     """Words to look for, and where they are. Dismissed with the key of a hit, or None.
 
     Args:
         search: (key, what to show) of each hit for some words.
     """
-
-    DEFAULT_CSS = _css("Find")
-    BINDINGS: ClassVar[list[Any]] = [Binding("escape", "leave", show=False)]
 
     def __init__(self, search: Callable[[str], list[tuple[str, str]]]) -> None:
         super().__init__()
@@ -162,15 +133,11 @@ class Find(ModalScreen[str | None]):
         """Take it."""
         self.dismiss(event.option.id)
 
-    def action_leave(self) -> None:
-        """Back to the page."""
-        self.dismiss(None)
 
-
-class Edit(ModalScreen[tuple[str, bool] | None]):
+class Edit(Overlay[tuple[str, bool]]):
     """A cell's code. Dismissed with the code and whether to run it, or None to leave it as it was."""
 
-    DEFAULT_CSS = _css("Edit") + "Edit TextArea { height: 1fr; border: none; } Edit > .box { height: 96%; }"
+    DEFAULT_CSS = "Edit TextArea { height: 1fr; border: none; } Edit > .box { height: 96%; }"
     BINDINGS: ClassVar[list[Any]] = [
         Binding("escape", "keep", show=False, priority=True),
         Binding("ctrl+r,f5", "run", show=False, priority=True),
@@ -204,35 +171,4 @@ class Edit(ModalScreen[tuple[str, bool] | None]):
 
     def action_drop(self) -> None:
         """As it was."""
-        self.dismiss(None)
-
-
-class Tell(ModalScreen[str | None]):
-    """Something to read. Dismissed with the key that closed it, if it was one of ``keys``."""
-
-    DEFAULT_CSS = _css("Tell")
-    BINDINGS: ClassVar[list[Any]] = [Binding("escape,enter,q,question_mark,f1", "leave", show=False)]
-
-    def __init__(self, title: str, shown: Any, keys: Sequence[str] = (), hint: str = "Escape: back") -> None:
-        super().__init__()
-        self._title, self._shown, self._keys, self._hint = title, shown, tuple(keys), hint
-
-    def compose(self) -> ComposeResult:
-        """The page, scrolled with arrows and the wheel."""
-        with VerticalScroll(classes="box") as box:
-            box.border_title, box.border_subtitle = self._title, self._hint
-            yield Static(self._shown)
-
-    def on_mount(self) -> None:
-        """Arrows scroll at once."""
-        self.query_one(VerticalScroll).focus()
-
-    def on_key(self, event: Any) -> None:
-        """Close with a key that means something to what is behind."""
-        if event.character in self._keys:
-            event.stop()
-            self.dismiss(event.character)
-
-    def action_leave(self) -> None:
-        """Back to the page."""
         self.dismiss(None)

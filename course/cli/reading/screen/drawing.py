@@ -15,16 +15,15 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.color import Color
-from rich.style import Style
 from rich.text import Text
 
-from course.cli.reading.screen.machine import can_open
+from course.browser import opened
+from course.cli.frame.half_blocks import half_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["Drawer", "half_blocks"]
+__all__ = ["Drawer"]
 
 #: A figure is about this much lower than wide, in cells; its caption stands below it on the same screen.
 _LOW = 0.26
@@ -79,10 +78,7 @@ class Drawer:
                 self._folder = tempfile.TemporaryDirectory(prefix="course-figures-")
             path = Path(self._folder.name) / f"{figure}.png"
             path.write_bytes(base64.b64decode(answer["png"]))
-            if can_open():
-                import webbrowser
-
-                webbrowser.open(path.as_uri())
+            if opened(path.as_uri()):
                 say(f"Opened {figure}.png")
             else:
                 say(f"No viewer here; until you leave, the figure is {path}")
@@ -127,42 +123,3 @@ class Drawer:
             for line in process.stdout:
                 answer = json.loads(line)
                 self._waiting.pop(answer["id"])(answer)
-
-
-def half_blocks(pixels: bytes, columns: int, rows: int, labels: list[list[Any]]) -> list[Text]:
-    """Pixels as half blocks, with letters over them.
-
-    Args:
-        pixels: red, green and blue, row by row, two rows a cell.
-        labels: (column, row, text, (red, green, blue), bold) each.
-    """
-    letters = {
-        (row, column + at): (letter, ink, bold)
-        for column, row, words, ink, bold in labels
-        for at, letter in enumerate(words)
-    }
-    colours: dict[bytes, Color] = {}
-
-    def colour(at: int) -> Color:
-        three = pixels[at : at + 3]
-        if three not in colours:
-            colours[three] = Color.from_rgb(*three)
-        return colours[three]
-
-    lines = []
-    for row in range(rows):
-        line = Text(no_wrap=True)
-        for column in range(columns):
-            upper = 3 * (2 * row * columns + column)
-            lower = upper + 3 * columns
-            letter = letters.get((row, column))
-            if letter is None:
-                line.append("▀", Style(color=colour(upper), bgcolor=colour(lower)))
-            else:
-                words, ink, bold = letter
-                paper = [(pixels[upper + part] + pixels[lower + part]) // 2 for part in range(3)]
-                line.append(
-                    words, Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*paper), bold=bold)
-                )
-        lines.append(line)
-    return lines

@@ -1,21 +1,12 @@
-"""What the reader needs of the machine it runs on: something that shows files, and a folder to write to."""
+"""What the reader needs of the machine it runs on: a folder to write to."""
 
 from __future__ import annotations
 
-import os
-import sys
 from pathlib import Path
 
 from course.errors import MissingCapabilityError
 
-__all__ = ["can_open", "write_new"]
-
-
-def can_open() -> bool:
-    """Whether something here can show a page of the web or a picture in a window of its own."""
-    if sys.platform in {"darwin", "win32"}:
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or os.environ.get("BROWSER"))
+__all__ = ["write_new"]
 
 
 def write_new(name: str, text: str) -> Path:

@@ -18,6 +18,8 @@ from rich.text import Text
 
 from course.catalog import blocks as b
 from course.cli.reading.fancy import KEEP, FancyPrinter
+from course.cli.reading.screen.practice import Standing
+from course.cli.reading.screen.tasks import standing_lines
 from course.reading.pages import Row
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
     from course.catalog.load import Catalog
+    from course.cli.reading.screen.practice import Practice
     from course.reading.parts import Cell, Question
     from course.reading.record import InProgress
 
@@ -34,7 +37,7 @@ __all__ = ["BlockRows", "Item", "ScreenPrinter"]
 #: Prose is this wide at most; a cell's two outputs stand side by side where both fit.
 COLUMN = 80
 _BESIDE = 2 * 58 + 3
-Kind = Literal["link", "cell", "question", "answer", "figure"]
+Kind = Literal["link", "cell", "question", "answer", "figure", "task"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +47,7 @@ class Item:
     Attributes:
         row: within its block.
         block: index of the block.
-        target: where a link leads; the id of a figure.
+        target: where a link leads; the id of a figure or a warm-up.
         number: tells the links of a block apart.
     """
 
@@ -72,6 +75,7 @@ class ScreenPrinter(FancyPrinter):
         width: columns there are.
         busy: the key of the cell that runs, with what to say of it; empty if none does.
         picture: a figure's lines for a width: blank while it is being drawn, none if it stays described.
+        practice: how far the student is with warm-ups; None where there is nothing to work in.
     """
 
     def __init__(
@@ -82,6 +86,7 @@ class ScreenPrinter(FancyPrinter):
         width: int,
         busy: Callable[[], tuple[str, str]] = lambda: ("", ""),
         picture: Callable[[str, int], list[Text]] = lambda *_: [],
+        practice: Practice | None = None,
     ) -> None:
         script = progress.script
         figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
@@ -91,6 +96,7 @@ class ScreenPrinter(FancyPrinter):
         self._width = width
         self._busy = busy
         self._picture = picture
+        self._practice = practice
         self._index = -1
         self._links = 0
 
@@ -178,8 +184,8 @@ class ScreenPrinter(FancyPrinter):
         if not isinstance(block, b.CodeCell) or not block.hidden:
             if isinstance(block, b.CodeCell):
                 return [Item("cell", index, 1)]
-            if isinstance(block, b.Figure):
-                return [Item("figure", index, 1, block.id)]
+            if isinstance(block, b.Figure | b.WarmUp):
+                return [Item("figure" if isinstance(block, b.Figure) else "task", index, 1, block.id)]
             if self._said(index) is not None:
                 return [Item("answer", index, 1)]
         return []
@@ -205,6 +211,23 @@ class ScreenPrinter(FancyPrinter):
             words = "What comes out is shown once you have predicted it, or skipped it: Enter, s."
             return Text(words, style="dim italic")
         return None
+
+    def _block(self, block: b.Block) -> RenderableType | None:
+        return self._task(block) if isinstance(block, b.WarmUp) else super()._block(block)
+
+    def _task(self, task: b.WarmUp) -> RenderableType:
+        """A warm-up: its text, and how far the student is with it."""
+        now = self._practice.of(task.id) if self._practice is not None else Standing()
+        done = ", done" if now.done else ""
+        shown: list[RenderableType] = [
+            self._rule(f"warm-up, {task.minutes} minutes{done}"),
+            Text(task.title, style="bold"),
+        ]
+        for block in task.blocks:
+            made = self._block(block)
+            shown += [Text(""), made] if made is not None else []
+        possible = self._practice is not None and self._practice.possible
+        return Group(*shown, Text(""), *standing_lines(now, task.id, possible=possible), self._rule(""))
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
         if kind == "predict":

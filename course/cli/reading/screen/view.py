@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 from typing import TYPE_CHECKING
@@ -12,7 +11,8 @@ from course.reading.record import Writer
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
-    from course.progress.store import Event, Store
+    from course.progress.store import Event
+    from course.progress.workspace import Workspace
     from course.reading.record import InProgress
 
 __all__ = ["is_possible", "read"]
@@ -27,20 +27,22 @@ def is_possible() -> bool:
     return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
 
 
-def read(catalog: Catalog, first: str, store: Store | None) -> tuple[InProgress, str]:
+def read(catalog: Catalog, first: str, workspace: Workspace | None) -> tuple[InProgress, str]:
     """Read until the reader leaves. The terminal is left as it was, whatever happens.
 
     Args:
         catalog: the course.
         first: id of the lesson to open.
-        store: the student's record; None outside of a workspace.
+        workspace: the student's; None outside of one.
 
     Returns:
         The lesson that was open last, and why something was not recorded ("" if all was).
     """
     from course.cli.reading.screen.app import ReaderApp
     from course.cli.reading.screen.drawing import Drawer
+    from course.cli.reading.screen.practice import Practice
 
+    store = workspace.store if workspace is not None else None
     writer = Writer(store)
     troubles: list[str] = []
 
@@ -53,12 +55,11 @@ def read(catalog: Catalog, first: str, store: Store | None) -> tuple[InProgress,
             troubles.append(f"{error.message} {error.help}")
             return ()
 
-    app = ReaderApp(catalog, first, events=events, write=writer, pictures=Drawer())
+    practice = Practice(catalog, workspace)
+    app = ReaderApp(catalog, first, events=events, write=writer, pictures=Drawer(), practice=practice)
     try:
-        with contextlib.suppress(KeyboardInterrupt):
-            app.run()
+        app.play()
     finally:
+        practice.close()
         writer.close()
-    if app.failure is not None:
-        raise app.failure
     return app.progress, writer.trouble or "".join(troubles[:1])

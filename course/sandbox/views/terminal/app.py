@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import asyncio
-import contextlib
-import os
-import signal
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual.app import App
 from textual.binding import Binding
 from textual.containers import Horizontal
 from textual.geometry import Size
 
 from course.errors import UsageError
+from course.full_screen import FullScreenApp
 from course.sandbox.scene.settings import SETTINGS
 from course.sandbox.views.story import Experiment, Teller
 from course.sandbox.views.terminal.asking import Ask, Told, comparison, help_pages
@@ -43,8 +39,6 @@ _BLINK, _SEEN = 0.5, 3.0
 _READ = 0.2
 #: Pictures a second for those who asked for little motion.
 _CALM_FPS = 4.0
-#: How long a message stays in the last line, in s.
-_MESSAGE = 3.0
 #: Below this many columns there is no room beside the picture.
 _NARROW = 60
 _LOWEST = 12
@@ -54,7 +48,7 @@ _SLOWEST, _FASTEST = 1 / 1024, 16.0
 _COLOURS = {"ink": "#d5dae1", "paper": "#1b2028", "bar": "#2a323d"}
 
 
-class SandboxApp(App[None]):
+class SandboxApp(FullScreenApp):
     """A world, a picture of it, and everything that can be done to it.
 
     Args:
@@ -64,9 +58,6 @@ class SandboxApp(App[None]):
         guess: an answer to the scene's question; None to ask for one.
         keep: called with each comparison that has a guess.
         clock: real time, in s.
-
-    Attributes:
-        failure: what went wrong inside; raised again by ``terminal.play`` once the terminal is clean.
     """
 
     CSS = """
@@ -76,7 +67,6 @@ class SandboxApp(App[None]):
     #panel { height: 100%; }
     #events { width: 100%; }
     """
-    ENABLE_COMMAND_PALETTE = False
 
     BINDINGS: ClassVar[list[Any]] = [
         Binding("ctrl+c,ctrl+q", "quit", priority=True, show=False),
@@ -117,25 +107,17 @@ class SandboxApp(App[None]):
         keep: Callable[[Comparison], None] | None = None,
         clock: Callable[[], float] = perf_counter,
     ) -> None:
-        # Without colour the terminal's own colours stay, rather than shades of grey.
-        self.in_colour = not os.environ.get("NO_COLOR")
-        if self.in_colour:
-            super().__init__()
-        else:
-            super().__init__(ansi_color=True)
+        super().__init__(clock)
         self.world, self.chosen = world, chosen
-        self.failure: BaseException | None = None
         self.experiment = Experiment(world, chosen, guess, keep)
         self.pacer = Pacer(world, 0.5 / max(fps, 1.0), clock)
         self.stage = Stage(world, colour=self.in_colour)
         self.pointer = Pointer(world, self.stage, on_touch=self.experiment.touch)
         self.calm = self.animation_level != "full"
         self._fps = fps
-        self._clock = clock
         self._last = clock()
         self._teller = Teller()
         self._lines: list[str] = []
-        self._message: tuple[float, str] = (0.0, "")
         self._read_at = -1.0
         self._drawn_at = -1.0
         self._panel_wanted = True
@@ -163,12 +145,6 @@ class SandboxApp(App[None]):
 
     def on_mount(self) -> None:
         """Start."""
-        loop = asyncio.get_running_loop()
-        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-            # A closed window or a plain kill leaves the terminal as clean as a key does. Where signals cannot
-            # be caught here (Windows, another thread) the keys remain.
-            with contextlib.suppress(NotImplementedError, AttributeError, RuntimeError, ValueError):
-                loop.add_signal_handler(getattr(signal, name), self.exit)
         self.begin()
 
     def begin(self) -> None:
@@ -178,16 +154,6 @@ class SandboxApp(App[None]):
         self.world.paused = self.calm
         if self.experiment.stage == "ask":
             self.ask()
-
-    def _handle_exception(self, error: Exception) -> None:
-        # Whoever called ``play`` reports errors; a picture of the stack on the screen would be a second one.
-        if self.failure is None:
-            self.failure = error
-        if self.is_headless:
-            super()._handle_exception(error)
-        else:
-            self._return_code = 1
-            self._close_messages_no_wait()
 
     def on_resize(self, event: Any) -> None:
         """Give each part its room."""
@@ -219,7 +185,7 @@ class SandboxApp(App[None]):
             self._draw(now)
         if now - self._read_at >= _READ or self._read_at < 0:
             self._read_at = now
-            self._write(now)
+            self._write()
 
     def _hear(self, now: float) -> None:
         """Take in what happened."""
@@ -248,7 +214,7 @@ class SandboxApp(App[None]):
             return "the run is over"
         return "paused" if self.world.paused else ""
 
-    def _write(self, now: float) -> None:
+    def _write(self) -> None:
         """Numbers, curves, events and keys."""
         if self.panel.display:
             width, height = self.panel.size
@@ -257,9 +223,8 @@ class SandboxApp(App[None]):
             lines += [((" ", ""),)] * (height - len(lines))
             self.panel.show([((rule, "dim"), *line) for line in lines])
         self.events.show(self._told(self.events.size.width, self.events.size.height))
-        since, message = self._message
-        if message and now - since < _MESSAGE:
-            self.keys.show([((f" {message}", "bold"),)])
+        if self.message:
+            self.keys.show([((f" {self.message}", "bold"),)])
         elif self.pointer.status():
             self.keys.show([((f" {self.pointer.status()}", "bold"),)])
         else:
@@ -283,7 +248,7 @@ class SandboxApp(App[None]):
 
     def say(self, message: str) -> None:
         """Show something in the last line for a moment."""
-        self._message = (self._clock(), clean(message))
+        super().say(clean(message))
         self._read_at = -1.0
 
     # -- asking ----------------------------------------------------------------------------------
@@ -346,11 +311,6 @@ class SandboxApp(App[None]):
         self.push_screen(Told("What happened", page, at_end=True))
 
     # -- keys ------------------------------------------------------------------------------------
-
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Keys of the world do nothing while something is laid over it."""
-        del parameters
-        return action == "quit" or len(self.screen_stack) == 1 or not hasattr(self, f"action_{action}")
 
     def action_pause(self) -> None:
         """Run, or stand still."""

@@ -10,9 +10,9 @@ from rich.table import Table
 from rich.text import Text
 from textual.binding import Binding
 from textual.containers import VerticalScroll
-from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
+from course.full_screen import Overlay, Tell
 from course.sandbox.views.terminal.words import KEYS, clean
 
 if TYPE_CHECKING:
@@ -21,14 +21,6 @@ if TYPE_CHECKING:
     from course.sandbox.scene.model import Scene
 
 __all__ = ["Ask", "Page", "Told", "comparison", "guess_of", "help_pages"]
-
-_BOX = """
-%s { align: center middle; background: black 40%%; }
-%s > VerticalScroll {
-    width: 90%%; max-width: 76; height: auto; max-height: 90%%;
-    border: round $primary; padding: 0 1; background: $surface; scrollbar-size-vertical: 1;
-}
-"""
 
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
@@ -43,11 +35,10 @@ def guess_of(text: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
-class Ask(ModalScreen[float | None]):
+class Ask(Overlay[float]):
     """The scene's question. Dismissed with the guess, or None to run without one."""
 
-    DEFAULT_CSS = _BOX % ("Ask", "Ask") + "Ask Input { width: 100%; } Ask #wrong { height: auto; }"
-    BINDINGS: ClassVar[list[Any]] = [Binding("escape", "without", show=False)]
+    DEFAULT_CSS = "Ask #wrong { height: auto; }"
 
     def __init__(self, scene: Scene, question: str, unit: str, *, calm: bool) -> None:
         super().__init__()
@@ -55,7 +46,7 @@ class Ask(ModalScreen[float | None]):
 
     def compose(self) -> ComposeResult:
         """Title, what to know, the question and a place for the answer."""
-        with VerticalScroll(can_focus=False) as box:
+        with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
             box.border_subtitle = "Enter: run   Escape: run without a guess"
             yield Static(Text(clean(self._scene.note)))
@@ -80,58 +71,24 @@ class Ask(ModalScreen[float | None]):
             return
         self.dismiss(guess)
 
-    def action_without(self) -> None:
-        """Run without a guess."""
-        self.dismiss(None)
 
+class Told(Tell):
+    """A page to read."""
 
-class Told(ModalScreen[str | None]):
-    """A page to read. Dismissed with the key that closed it, if it was one of ``keys``."""
-
-    DEFAULT_CSS = _BOX % ("Told", "Told")
-    BINDINGS: ClassVar[list[Any]] = [Binding("escape,enter,q,question_mark,f1,l", "close('')", show=False)]
+    BINDINGS: ClassVar[list[Any]] = [Binding("l", "leave", show=False)]
 
     def __init__(
         self,
         title: str,
         page: Page,
-        *,
         keys: Sequence[str] = (),
         hint: str = "Escape: back",
+        *,
         at_end: bool = False,
     ) -> None:
-        super().__init__()
-        self._title, self._page, self._keys = title, page, tuple(keys)
-        self._hint, self._at_end = hint, at_end
-
-    def compose(self) -> ComposeResult:
-        """The page, scrolled with arrows and the wheel."""
-        with VerticalScroll() as box:
-            box.border_title, box.border_subtitle = self._title, self._hint
-            for piece in self._page:
-                yield Static(_shaped(piece))
-
-    @property
-    def words(self) -> str:
-        """Everything on the page."""
-        return "\n".join(piece if isinstance(piece, str) else " ".join(piece) for piece in self._page)
-
-    def on_mount(self) -> None:
-        """Arrows scroll at once."""
-        box = self.query_one(VerticalScroll)
-        box.focus()
-        if self._at_end:
-            box.scroll_end(animate=False)
-
-    def on_key(self, event: Any) -> None:
-        """Close with a key that means something to what is behind."""
-        if event.character in self._keys or event.key in self._keys:
-            event.stop()
-            self.dismiss(event.key)
-
-    def action_close(self, key: str) -> None:
-        """Back to the world."""
-        self.dismiss(key or None)
+        super().__init__(title, [_shaped(piece) for piece in page], keys, hint, at_end=at_end)
+        #: Everything on the page.
+        self.words = "\n".join(piece if isinstance(piece, str) else " ".join(piece) for piece in page)
 
 
 def _shaped(piece: str | tuple[str, str]) -> Text | Table:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 from pathlib import Path
@@ -46,11 +45,7 @@ def play(
     _need_terminal()
     from course.sandbox.views.terminal.app import SandboxApp
 
-    app = SandboxApp(world, chosen or _as_it_is(scene), fps=fps, guess=guess, keep=keep)
-    with contextlib.suppress(KeyboardInterrupt):
-        app.run()
-    if app.failure is not None:
-        raise app.failure
+    SandboxApp(world, chosen or _as_it_is(scene), fps=fps, guess=guess, keep=keep).play()
 
 
 def _need_terminal() -> None:

@@ -9,10 +9,11 @@ import contextlib
 import secrets
 import socket
 import threading
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
+from course.browser import can_open, opened
 from course.errors import UsageError
 from course.extras import require
 
@@ -31,7 +32,6 @@ __all__ = ["play"]
 
 #: This machine, and nobody else.
 _LOOPBACK = "127.0.0.1"
-_IN_TERMINAL = frozenset({"elinks", "links", "lynx", "w3m", "www-browser"})
 
 
 def play(
@@ -114,18 +114,13 @@ def _configured(app: ASGIApp) -> uvicorn.Config:
 def _invite(address: str, say: Callable[[str], None], *, show: bool) -> None:
     say(f"The world is at {address}")
     say("Only this machine's browser gets there, and only with the whole address. Ctrl+C ends it.")
-    if show:
+    if show and can_open():
         # Starting a browser can take as long as it likes; the page is served meanwhile.
-        threading.Thread(target=_open, args=(address,), daemon=True).start()
-
-
-def _open(address: str) -> None:
-    # A browser that cannot be started is no reason to stop: the address was said.
-    with contextlib.suppress(webbrowser.Error, OSError):
-        browser = webbrowser.get()
-        # One that runs in this terminal would take it over, and draws no canvas.
-        if getattr(browser, "basename", "") not in _IN_TERMINAL:
-            browser.open(address)
+        threading.Thread(target=opened, args=(address,), daemon=True).start()
+        return
+    number = urlsplit(address).port
+    say("From another machine, first forward the port, with the same number at both ends:")
+    say(f"  ssh -N -L {number}:{_LOOPBACK}:{number} {socket.gethostname()}")
 
 
 def _listener(port: int) -> socket.socket:

@@ -1,0 +1,150 @@
+"""``course author pictures``: the pictures of the README, made from what the program really says and does.
+
+Beside them lies a digest of what each was made from. A test makes the digests anew, which takes seconds, and
+says which picture no longer shows what the program does.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.author.replies import AuthorPictures
+from course.cli.frame.console import current
+from course.cli.frame.here import load_catalog
+from course.errors import InternalError
+from course.progress.workspace import write_atomically
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["PICTURES", "pictures"]
+
+#: The digests, beside the pictures.
+_MADE_FROM = "made-from.json"
+_COLUMNS = 84
+_SCENE = "newtons-cradle"
+#: Between the samples that the film's digest is made of, in s; rounded to a millimetre and less.
+_EVERY, _DECIMALS = 0.25, 3
+
+
+def pictures(
+    check: Annotated[
+        bool, typer.Option("--check", help="Write nothing; exit code 1 if a picture is stale.")
+    ] = False,
+) -> int:
+    """Make the README's pictures.
+
+    From the output of `course demo` and a run of the sandbox, into docs/pictures.
+    """
+    console, folder = current(), load_catalog().content.root / "docs" / "pictures"
+    known = _known(folder)
+    stale = []
+    for name, (source, picture) in PICTURES.items():
+        digest = hashlib.sha256(source()).hexdigest()
+        path = folder / name
+        if known.get(name) == digest and path.is_file():
+            console.line(f"{name} is up to date.")
+            continue
+        stale.append(name)
+        if check:
+            console.line(f"{name} is stale: course author pictures makes it anew.")
+            continue
+        folder.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, picture())  # generated, and under version control: no copy
+        known[name] = digest
+        write_atomically(folder / _MADE_FROM, f"{json.dumps(known, indent=2)}\n".encode())
+        console.line(f"Wrote {path}")
+    ok = not (check and stale)
+    console.emit(AuthorPictures(ok=ok, exit_code=0 if ok else 1, stale=tuple(stale)))
+    return 0 if ok else 1
+
+
+def _known(folder: Path) -> dict[str, str]:
+    try:
+        return dict(json.loads((folder / _MADE_FROM).read_text(encoding="utf-8")))
+    except (OSError, ValueError):  # none yet, or damaged: every picture is made anew
+        return {}
+
+
+def _run(*arguments: str, colour: bool = False) -> str:
+    """What the program prints in a terminal of a fixed width."""
+    environ = {key: value for key, value in os.environ.items() if key not in {"NO_COLOR", "COURSE_CONTENT"}}
+    environ |= {"COLUMNS": str(_COLUMNS), "TERM": "xterm-256color", "COLORTERM": "truecolor"}
+    environ |= {"PYTHONUTF8": "1"} | ({"FORCE_COLOR": "1"} if colour else {})
+    done = subprocess.run(
+        [sys.executable, "-m", "course", *arguments],
+        env=environ,
+        capture_output=True,
+        check=False,
+        encoding="utf-8",
+    )
+    if done.returncode:
+        raise InternalError(
+            f"`course {' '.join(arguments)}` failed: {done.stderr.strip()[-300:]}", code="picture_failed"
+        )
+    return done.stdout
+
+
+def _until_mended(text: str) -> str:
+    """The demonstration up to the passing checks; its picture has no place in a small one."""
+    return text.partition("3. What the mistake hid")[0].rstrip()
+
+
+def _diagnosis_source() -> bytes:
+    return _until_mended(_run("demo", "--plain")).encode()
+
+
+def _diagnosis() -> bytes:
+    """The screen as SVG; the same output gives the same bytes."""
+    import io
+
+    from rich.console import Console as RichConsole
+    from rich.text import Text
+
+    screen = Text.from_ansi(_run("demo", colour=True))
+    shown = screen[: len(_until_mended(screen.plain))]
+    recorder = RichConsole(file=io.StringIO(), record=True, width=_COLUMNS, force_terminal=True)
+    recorder.print(shown)
+    return recorder.export_svg(title="course demo", unique_id="diagnosis").encode()
+
+
+def _film_source() -> bytes:
+    """Where everything was, and how it is drawn."""
+    import course.sandbox.runs.film as drawing
+
+    with tempfile.TemporaryDirectory(prefix="course-pictures-") as folder:
+        table = Path(folder) / "run.csv"
+        _run("sandbox", "play", _SCENE, "--headless", "--csv", str(table), "--every", str(_EVERY))
+        rows = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
+    rounded = "\n".join(",".join(map(_rounded, row)) for row in rows)
+    return rounded.encode() + Path(str(drawing.__file__)).read_bytes()
+
+
+def _rounded(cell: str) -> str:
+    try:
+        return f"{round(float(cell), _DECIMALS) + 0.0:.{_DECIMALS}f}"
+    except ValueError:  # a heading or a name
+        return cell
+
+
+def _film() -> bytes:
+    with tempfile.TemporaryDirectory(prefix="course-pictures-") as folder:
+        film = Path(folder) / "film.gif"
+        _run("sandbox", "play", _SCENE, "--gif", str(film))
+        return film.read_bytes()
+
+
+#: Each picture: what it is made from, and how.
+PICTURES: dict[str, tuple[Callable[[], bytes], Callable[[], bytes]]] = {
+    "diagnosis.svg": (_diagnosis_source, _diagnosis),
+    "sandbox.gif": (_film_source, _film),
+}

@@ -1,0 +1,107 @@
+"""``course schema``: what ``--json`` prints, as JSON Schemas for whoever reads it with a program."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Annotated, Any
+
+import msgspec
+import typer
+
+from course.cli.frame.console import current
+from course.cli.frame.replies import Bare, Check, CheckAll, Envelope, ErrorReply, Schema, Schemas, Watch
+from course.errors import NotFoundError
+
+__all__ = ["reply_types", "schema", "schema_names", "schema_of"]
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+#: Where replies are declared, beside the ones that the frame itself has.
+_ROOMS = (
+    "author.replies", "engines.replies", "grade.replies", "notebook.replies", "quiz.replies",
+    "sandbox.replies", "sim.replies", "work.reporting",
+)  # fmt: skip
+#: JSON has no such numbers, so replies spell them.
+_NUMBER = {"anyOf": [{"type": "number"}, {"enum": ["nan", "inf", "-inf"]}]}
+
+
+def schema_names(incomplete: str) -> list[str]:
+    """Kinds of replies whose name begins with what was typed."""
+    return sorted(name for name in map(_short, reply_types()) if name.startswith(incomplete))
+
+
+def schema(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME", help="Of a reply; the list of them if left out.", autocompletion=schema_names
+        ),
+    ] = None,
+) -> int:
+    """Print the JSON Schema of a reply.
+
+    Each reply names its schema: "course.check/1" is "check" here. Within a version fields may be added;
+    renaming or removing one, or changing what it means, makes a new version, and the CHANGELOG says so.
+    """
+    console, found = current(), reply_types()
+    if name is None:
+        console.table(("Name", "Schema"), [(_short(tag), tag) for tag in found])
+        console.emit(Schemas(schemas=tuple(found)))
+        return 0
+    tag = next((tag for tag in found if name in {tag, _short(tag)}), None)
+    if tag is None:
+        raise NotFoundError(
+            f"There is no reply called {name[:80]!r}.",
+            help="`course schema` lists them.",
+            code="schema_not_found",
+        )
+    document = schema_of(found[tag])
+    console.raw(msgspec.json.format(msgspec.json.encode(document), indent=2).decode() + "\n")
+    console.emit(Schema(name=tag, document=document))
+    return 0
+
+
+def reply_types() -> dict[str, type[msgspec.Struct]]:
+    """Every kind of reply by its schema's name, sorted."""
+    from course.grading.exports.lines import GradeLine
+
+    for room in _ROOMS:
+        importlib.import_module(f"course.cli.{room}")
+    kinds: list[type[msgspec.Struct]] = [*Envelope.__subclasses__(), GradeLine]
+    return {_tag(kind): kind for kind in sorted(kinds, key=_tag)}
+
+
+def schema_of(kind: type[msgspec.Struct]) -> dict[str, Any]:
+    """The JSON Schema of a reply: what the command answers, or why it could not."""
+    names = [kind, ErrorReply, Bare, *([Check] if kind in {CheckAll, Watch} else ())]
+    references, definitions = msgspec.json.schema_components(names, ref_template="#/$defs/{name}")
+    for name in (
+        ErrorReply.__name__,
+        Bare.__name__,
+    ):  # or any answer would be one of these, with something added
+        definitions[name]["additionalProperties"] = False
+    return {
+        "$schema": _DIALECT,
+        "$id": _tag(kind),
+        "title": _tag(kind),
+        "anyOf": list(references),
+        "$defs": _with_spelt_numbers(definitions),
+    }
+
+
+def _tag(kind: type[msgspec.Struct]) -> str:
+    return str(kind.__struct_config__.tag)  # "course.check/1"
+
+
+def _short(tag: str) -> str:
+    return tag.removeprefix("course.").partition("/")[0]
+
+
+def _with_spelt_numbers(value: Any) -> Any:
+    if isinstance(value, dict):
+        if value == {"type": "number"}:
+            return _NUMBER
+        changed = {key: _with_spelt_numbers(item) for key, item in value.items()}
+        if changed.get("type") == "number":
+            return {**{key: item for key, item in changed.items() if key != "type"}, **_NUMBER}
+        return changed
+    return [_with_spelt_numbers(item) for item in value] if isinstance(value, list) else value

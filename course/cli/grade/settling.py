@@ -1,0 +1,252 @@
+"""``course grade assign``, ``log`` and ``salvage``: whose file it is, who decided what, a damaged book."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course.cli.frame.completion import choice_of, exercise_ids, student_ids
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import load_catalog
+from course.cli.grade.running import levels
+from course.errors import UsageError
+from course.grading.gradebook.backup import back_up
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import Decision
+from course.grading.gradebook.salvage import salvage as rescue
+from course.grading.results.effective import Results
+from course.printable import one_line
+from course.scoring.numbers import format_points
+
+if TYPE_CHECKING:
+    from course.cli.grade.replies import AssignedOne, UnsettledOne
+    from course.grading.running.assign import Assigned, Unsettled
+
+__all__ = ["assign", "log", "salvage"]
+
+Out = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")]
+_SHOWN = 200
+
+
+def assign(
+    out: Out,
+    student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
+    file: Annotated[
+        str | None,
+        typer.Argument(metavar="FILE", help="As it is listed, or a path; into a zip with a slash."),
+    ] = None,
+    exercise: Annotated[
+        str | None,
+        typer.Option("--exercise", metavar="ID", help="If it does not follow.", autocompletion=exercise_ids),
+    ] = None,
+    accept_names: Annotated[
+        bool, typer.Option("--accept-names", help="Take every match that is proposed.")
+    ] = False,
+    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with each result.")] = "",
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade, show, and keep nothing.")] = False,
+    jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
+    isolation: Annotated[
+        str,
+        typer.Option(
+            "--isolation",
+            metavar="auto|strict|process",
+            help="As for `course grade run`.",
+            autocompletion=choice_of("auto", "strict", "process"),
+        ),
+    ] = "auto",
+) -> int:
+    """Say whose file it is, and grade it.
+
+    Without STUDENT it lists what could not be graded by its name, what there is for it, which functions that
+    defines, and the match that is proposed. Nothing is renamed; who decided, when and why is kept.
+    """
+    from course.cli.grade.replies import GradeAssign
+    from course.grading.running.assign import assign as take
+    from course.grading.running.assign import named, proposals, unsettled
+    from course.grading.running.batch import grade_all
+    from course.grading.running.run import open_results, previewed
+
+    if (student is None) != (file is None) or (student is not None and accept_names):
+        raise UsageError(
+            "Give STUDENT and FILE, or --accept-names, or neither for a list.",
+            help="See `course grade assign -h`.",
+        )
+    console = current()
+    done: list[Assigned] = []
+    if student is None and not accept_names:
+        with open_results(out) as results:
+            left = unsettled(results)
+    else:
+        level, at_least = levels(isolation)
+        reason = reason or ("the match that was proposed" if accept_names else "")
+        opened = previewed(out) if dry_run else open_results(out, writing=True)
+        with opened as results:
+            if student is not None and file is not None:
+                wanted = [named(results, student, file, exercise)]
+            else:
+                wanted = [one for one in proposals(results) if exercise in {None, one.exercise}]
+            grade = partial(grade_all, graders=jobs)
+            with console.working("Grading"):
+                done = take(
+                    results, load_catalog(), wanted, reason, grade=grade, level=level, at_least=at_least
+                )
+            left = unsettled(results)
+    if console.json:
+        console.emit(
+            GradeAssign(
+                dry_run=dry_run,
+                assigned=tuple(map(_assigned_one, done)),
+                unsettled=tuple(_unsettled_one(item) for item in left),
+            )
+        )
+        return 0
+    _show_assigned(console, done, dry_run=dry_run)
+    _show_unsettled(console, left)
+    return 0
+
+
+def _assigned_one(item: Assigned) -> AssignedOne:
+    from course.cli.grade.replies import AssignedOne
+
+    one, before = item.assignment, item.before
+    return AssignedOne(
+        student=one.student,
+        exercise=one.exercise,
+        file=one.name,
+        score_before=before.score if before else None,
+        score_after=item.after.score,
+        state_before=before.verdict.state if before else "missing",
+        state_after=item.after.verdict.state,
+    )
+
+
+def _unsettled_one(item: Unsettled) -> UnsettledOne:
+    from course.cli.grade.replies import FoundFile, UnsettledOne
+
+    files = tuple(
+        FoundFile(file=one.name, defines=one.defines, proposed=one.proposed) for one in item.found.candidates
+    )
+    return UnsettledOne(student=item.student, exercise=item.exercise, reason=item.found.reason, files=files)
+
+
+def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
+    for item in done:
+        one, after = item.assignment, item.after
+        was = item.before.verdict.state if item.before else "missing"
+        points = "no score" if after.score is None else format_points(after.score)
+        most = format_points(after.max_score)
+        words = f"{was} -> {after.verdict.state}, {points} of {most}; from {one_line(one.name)}"
+        console.item(f"{one_line(one.student)} {one.exercise}", words)
+    if done:
+        console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
+
+
+def _show_unsettled(console: Console, left: list[Unsettled]) -> None:
+    for item in left[:_SHOWN]:
+        console.item(f"{one_line(item.student)} {item.exercise}", item.found.reason)
+        for one in item.found.candidates:
+            defines = f"defines {', '.join(one.defines)}" if one.defines else "defines none of the functions"
+            console.item(one.name, defines + ("; proposed" if one.proposed else ""), indent=4)
+    if len(left) > _SHOWN:
+        console.line(f"and {len(left) - _SHOWN} more; --json lists them all.", indent=2)
+    proposed = sum(any(one.proposed for one in item.found.candidates) for item in left)
+    console.line((f"{len(left)} to settle; {proposed} with a match.", "bold"))
+    if proposed:
+        console.note("--accept-names takes the matches; --dry-run shows first what they would get.")
+
+
+def log(
+    out: Out,
+    student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
+    exercise: Annotated[str | None, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)] = None,
+) -> int:
+    """List every run and every change of a grade: who, when, why, and what it was before."""
+    from course.cli.grade.replies import GradeLog
+    from course.grading.running.run import open_results
+
+    console = current()
+    with open_results(out) as results:
+        runs = results.book.runs()
+        decisions = results.book.journal(student, exercise)
+    if console.json:
+        console.emit(GradeLog(runs=tuple(runs), changes=tuple(decisions)))
+        return 0
+    for run in runs:
+        graders = str(run.options.get("snapshot", ""))[:12] or "not kept"
+        why = f", {run.options['reason']}" if run.options.get("reason") else ""
+        words = f"{run.started_at}, {run.options.get('who', 'nobody noted')}, graders {graders}{why}"
+        console.item(f"{run.kind} {run.number}", words, width=10)
+    for decision in decisions:
+        about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))
+        words = f"{decision.at}, {decision.who}, {about or 'the class'}: {one_line(decision.reason)}"
+        console.item(decision.kind, words, width=10)
+        if decision.before or decision.after:
+            changed = f"{_short(decision.before)} -> {_short(decision.after)}"
+            console.line(changed, indent=12)
+    return 0
+
+
+def _short(text: str) -> str:
+    return one_line(text if len(text) <= _SHOWN else text[:_SHOWN] + "...")
+
+
+def salvage(
+    out: Out,
+    to: Annotated[Path, typer.Option("--to", metavar="NEW", help="Folder for what is whole; must be new.")],
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what there is; write nothing.")] = False,
+) -> int:
+    """Get what is whole out of a damaged gradebook and its backups.
+
+    Everything goes into a new folder; the damaged file and its backups stay as they are. The exit code is 0
+    when nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
+    """
+    from course.cli.grade.replies import GradeSalvage
+    from course.grading.running.run import export_all
+    from course.isolation.launch import private_folder, remove_tree
+
+    console = current()
+    if to.exists():
+        raise UsageError(
+            f"{to} exists already; nothing was touched.", help="Name a new folder.", code="out_exists"
+        )
+    folder = private_folder() if dry_run else to
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        path = folder / "gradebook.sqlite"
+        told = rescue(out / path.name, path)
+        with Gradebook(path, writing=True) as book:
+            lost = "; ".join(told.lost) or "nothing known to be lost"
+            book.note(Decision("", "", "salvage", "", "", f"from {out}", "", lost))
+            if not dry_run:
+                export_all(folder, Results(book))
+        if not dry_run:
+            back_up(path)
+    finally:
+        if dry_run:
+            remove_tree(folder)
+        elif not any(folder.iterdir()):
+            folder.rmdir()
+    code = 6 if told.lost else 0
+    if console.json:
+        console.emit(
+            GradeSalvage(
+                ok=not code, exit_code=code, dry_run=dry_run, rows=dict(told.rows),
+                from_backup=dict(told.from_backup), lost=tuple(told.lost), out=str(to),
+            )
+        )  # fmt: skip
+        return code
+    for name in ("results", "submissions", "overrides", "journal", "snapshots"):
+        backed = told.from_backup[name]
+        words = f"{told.rows[name]}" + (f", {backed} of them from a backup" if backed else "")
+        console.item(name, words, width=12)
+    for entry in told.lost[:_SHOWN]:
+        console.line(f"lost: {one_line(entry)}")
+    console.line(
+        (f"{len(told.lost)} known to be lost." if told.lost else "Nothing is known to be lost.", "bold")
+    )
+    if not dry_run:
+        console.note(f"Written: {to}. `course grade run ... --out {to} --resume` grades what is missing.")
+    return code

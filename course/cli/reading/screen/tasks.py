@@ -1,0 +1,71 @@
+"""How far the student is with a warm-up, in lines below its text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from rich.text import Text
+
+from course.cli.frame.console import STATUS_STYLE
+from course.scoring.numbers import numbers_of
+from course.scoring.verdict import CheckResult
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.cli.reading.screen.practice import Standing
+
+__all__ = ["standing_lines"]
+
+
+def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text]:
+    """What to do next, or what the last check said: the first thing that is wrong, and how many are.
+
+    Args:
+        name: id of the warm-up.
+        possible: there is a workspace to work in.
+    """
+    if not possible:
+        yield Text.assemble(("$ ", "dim"), ("course init my-course", "bold cyan"), "   makes a place for it")
+        return
+    if not now.file:
+        yield Text.assemble(("Enter", "bold"), " puts its file into your workspace")
+        return
+    yield Text.assemble(("Your file: ", "bold"), now.file)
+    if now.busy:
+        yield Text(f"{now.busy} …", style="dim")
+    elif now.reply is None:
+        yield Text.assemble(
+            ("e", "bold"), " changes it here, or save it in an editor of yours; ", ("r", "bold"), " checks it"
+        )
+    else:
+        yield from _said(now.reply, name)
+    if now.hint:
+        yield Text(now.hint, style="italic")
+
+
+def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
+    if "error" in reply:
+        yield Text(reply["error"]["message"], style="red")
+        yield Text(reply["error"].get("help", ""))
+        return
+    checks = msgspec.convert(reply["checks"], tuple[CheckResult, ...])
+    passing = sum(check.status == "pass" for check in checks)
+    first = next((check for check in checks if check.status != "pass"), None)
+    if first is None:
+        yield Text("Done: every check passes.", style="bold green")
+        step = (reply.get("next") or {}).get("command", "")
+        if step.startswith("course report"):
+            yield Text.assemble(("$ ", "dim"), (step, "bold cyan"), "   shows what has changed")
+        return
+    word = str(first.status).upper()
+    yield Text.assemble((f"{word}: ", STATUS_STYLE.get(str(first.status), "red")), (first.title, "bold"))
+    for text in (first.message, first.help):
+        if text:
+            yield Text(text)
+    for label, text in numbers_of(first):
+        if label != "diagnosis":
+            yield Text(f"{label}: {text}", style="dim")
+    if len(checks) > 1:
+        yield Text(f"{passing} of {len(checks)} checks pass.  course hint {name} or h: a hint", style="dim")

@@ -1,0 +1,136 @@
+"""What keys do with a lesson's warm-ups: start, change, check, hint; a file that was saved is checked."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual.binding import Binding
+
+from course.catalog.blocks import WarmUp
+from course.cli.reading.screen.cells import CellsApp
+from course.errors import CourseError
+
+if TYPE_CHECKING:
+    from course.cli.reading.screen.printing import Item
+
+__all__ = ["WarmUpsApp"]
+
+
+class WarmUpsApp(CellsApp):
+    """A lesson on the whole screen, whose cells run and whose warm-ups are done in place."""
+
+    BINDINGS: ClassVar[list[Any]] = [Binding("h", "hint", show=False)]
+
+    def on_mount(self) -> None:
+        """Hear of what the checks say."""
+        self._practice.changed = self._task_changed
+
+    def _tick(self) -> None:
+        super()._tick()
+        if self._practice.possible and len(self.screen_stack) == 1:
+            for item in self.page.items():
+                # Saved in an editor of the student's.
+                if item.kind == "task" and self._practice.was_saved(item.target):
+                    self._practice.check(item.target)
+                    self._rebuild(item.block)
+
+    def _is_offered(self, item: Item) -> bool:
+        if item.kind == "task":
+            return not self._practice.of(item.target).done
+        return super()._is_offered(item)
+
+    def _keys(self) -> str:
+        item = self.page.item
+        if item is None or item.kind != "task":
+            return super()._keys()
+        if not self._practice.possible:
+            return "a warm-up: done in a workspace   Space on   ? keys"
+        if not self._practice.of(item.target).file:
+            return "Enter start the warm-up   Space on   ? keys"
+        return "r check   e edit   h hint   Space on   ? keys"
+
+    @property
+    def _at_hand(self) -> Item | None:
+        """The warm-up at hand."""
+        item = self.page.item
+        return item if item is not None and item.kind == "task" else None
+
+    def action_run_cell(self) -> None:
+        """Check the warm-up at hand, or run the cell."""
+        if self._at_hand is None:
+            super().action_run_cell()
+        else:
+            self._do(self._at_hand)
+
+    def action_edit(self) -> None:
+        """Change the file of the warm-up at hand, or the cell."""
+        if self._at_hand is None:
+            super().action_edit()
+        else:
+            self._edit(self._at_hand)
+
+    def action_hint(self) -> None:
+        """The hint that is due at the warm-up at hand; all keys elsewhere."""
+        item = self._at_hand
+        if item is None:
+            self.action_help()
+        elif not self._practice.of(item.target).file:
+            self._do(item)
+        elif self._practice.hint(item.target):
+            self._rebuild(item.block)
+
+    def action_help(self) -> None:
+        """All keys; a layer above knows them."""
+
+    def _do(self, item: Item) -> None:
+        """Start a warm-up, or check it."""
+        practice = self._practice
+        if not practice.possible:
+            self.say("Make a workspace first: course init my-course")
+        elif practice.of(item.target).file:
+            if not practice.check(item.target):
+                self.say("Something is being checked already.")
+        else:
+            try:
+                practice.start(item.target)
+            except CourseError as error:
+                self.say(error.message)
+        self._rebuild(item.block)
+        self._say_round()
+
+    def _edit(self, item: Item) -> None:
+        """Change the file of a warm-up here; one that is not there is put there first."""
+        practice = self._practice
+        if not practice.of(item.target).file:
+            self._do(item)
+            if not practice.of(item.target).file:
+                return
+        from course.cli.reading.screen.asking import Edit
+
+        def done(result: tuple[str, bool] | None) -> None:
+            if result is None:
+                return
+            source, check = result
+            try:
+                practice.write(item.target, source)
+            except CourseError as error:
+                self.say(error.message)
+                return
+            if check:
+                practice.check(item.target)
+            self._rebuild(item.block)
+
+        self.push_screen(Edit(practice.of(item.target).file, practice.source(item.target)), done)
+
+    def _task_changed(self, warm_up: str) -> None:
+        """A warm-up's standing has changed (from another thread)."""
+        with contextlib.suppress(RuntimeError):  # the reader is gone
+            self.call_from_thread(self._show_task, warm_up)
+
+    def _show_task(self, warm_up: str) -> None:
+        for index, block in enumerate(self.progress.script.blocks):
+            if isinstance(block, WarmUp) and block.id == warm_up:
+                self._rebuild(index)
+                self._bring_to_sight(index)
+                self._say_round()

@@ -1,0 +1,132 @@
+"""``course bug``: what somebody needs who looks for a fault, in a file, without anything personal in it."""
+
+from __future__ import annotations
+
+import getpass
+import os
+import platform
+import re
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from course import __version__
+from course.cli.frame import files
+from course.cli.frame.console import current
+from course.cli.frame.here import cwd
+from course.cli.frame.replies import Bug
+from course.cli.work.doctor import packages, protection, terminal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["bug", "redacted"]
+
+#: The last line of a crash report that is not its traceback: what was typed may name a student.
+_TYPED = re.compile(r"^command: .*$", re.MULTILINE)
+
+
+def bug(
+    out: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Where to; course-bug.txt here if left out."),
+    ] = None,
+) -> int:
+    """Write what a fault report needs into a file.
+
+    Versions, what this machine can protect, and the last traceback of the course itself. Names of the user
+    and the machine and the paths to home are taken out. Nothing is sent anywhere.
+    """
+    console = current()
+    target = files.target(out or Path("course-bug.txt"), "-o", ("txt", "md"))
+    crash = _last_crash()
+    text = redacted("\n".join(_report(crash)))
+    written = files.write(target, text.encode("utf-8", "backslashreplace"), why="bug")
+    if written.backup:
+        console.line(f"There was another {written.path}; it is kept at {written.backup.backup}.")
+    console.line(f"Wrote {written.path}")
+    console.line(
+        "It holds a traceback." if crash else "No crash of the course was found: it has no traceback."
+    )
+    console.note("Read it before you pass it on: what an error says can quote your own files.")
+    console.emit(Bug(file=written, traceback=crash is not None))
+    return 0
+
+
+def redacted(text: str) -> str:
+    """A text without the names of the user and the machine, and without the folders that bear them."""
+    for place, name in _places():
+        # A path may be written with either slash, and with the backslashes of a Python string.
+        for way in {place, place.replace("\\", "/"), place.replace("\\", "\\\\")}:
+            text = re.sub(re.escape(way) + r"(?![\w-])", name, text, flags=re.IGNORECASE)
+    for word, name in _names():
+        text = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", name, text, flags=re.IGNORECASE)
+    return text
+
+
+def _places() -> list[tuple[str, str]]:
+    """Folders and what they are called instead, the innermost first."""
+    installed = sysconfig.get_paths()
+    package = Path(__file__).resolve().parents[3]
+    found = {
+        str(Path.home()): "~",
+        tempfile.gettempdir(): "<temporary>",
+        sys.base_prefix: "<python>",
+        sys.prefix: "<python>",
+        installed["purelib"]: "<packages>",
+        str(cwd()): "<here>",
+        str(package): "<course>",
+    }
+    found |= {os.path.realpath(place): name for place, name in found.items()}
+    kept = [(place, name) for place, name in found.items() if len(Path(place).parts) > 1]
+    return sorted(kept, key=lambda pair: len(pair[0]), reverse=True)
+
+
+def _names() -> Iterator[tuple[str, str]]:
+    """Words that tell whose machine it is; a system without a list of users has the environment's."""
+    words = {os.environ.get(name, "") for name in ("USER", "LOGNAME", "USERNAME")} | {Path.home().name}
+    try:
+        words.add(getpass.getuser())
+    except (ImportError, KeyError, OSError):
+        words.discard("")
+    yield from ((word, "<user>") for word in sorted(words - {"", "/"}, key=len, reverse=True))
+    host = platform.node()
+    machines = {host, host.partition(".")[0], os.environ.get("COMPUTERNAME", "")} - {"", "localhost"}
+    yield from ((word, "<machine>") for word in sorted(machines, key=len, reverse=True))
+
+
+def _report(crash: str | None) -> Iterator[str]:
+    yield f"course {__version__}, Python {platform.python_version()} ({platform.python_implementation()})"
+    yield f"system: {platform.platform()}"
+    level, causes, _ = protection()
+    yield f"protection: {level}"
+    yield from (f"  {cause}" for cause in causes)
+    yield "terminal: " + "; ".join(f"{name} {value}" for name, value in terminal(current()).items())
+    yield "packages: " + ", ".join(f"{one.name} {one.installed}" for one in packages() if one.installed)
+    yield ""
+    yield crash or "No crash of the course was found."
+    yield ""
+
+
+def _last_crash() -> str | None:
+    """The newest crash report of this user's, without what was typed; None if there is none."""
+    found = []
+    for path in Path(tempfile.gettempdir()).glob("course-crash-*.txt"):
+        try:
+            facts = path.lstat()
+        except OSError:
+            continue
+        mine = not hasattr(os, "getuid") or facts.st_uid == os.getuid()
+        if mine and path.is_file() and not path.is_symlink():
+            found.append((facts.st_mtime, path))
+    if not found:
+        return None
+    try:
+        text = max(found)[1].read_text(encoding="utf-8", errors="backslashreplace")
+    except OSError:
+        return None
+    return _TYPED.sub("command: left out", text)

@@ -1,0 +1,83 @@
+"""``course next`` and ``course go``: the next step named, and done."""
+
+from __future__ import annotations
+
+import shlex
+
+from course.cli.frame.app import again
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import Here
+from course.cli.frame.replies import Go, Next, NextStep
+from course.cli.work.advice import next_in_course
+
+__all__ = ["go", "next_command"]
+
+#: What a step is, by its command.
+_WHY = {
+    "lesson": "the next lesson you have not read to its end",
+    "lessons": "everything this course has was read",
+    "warmup": "a small task of the lesson you read",
+    "start": "the exercise of the lesson you read",
+    "check": "the exercise you started",
+    "report": "what your code shows",
+    "reflect": "the question that no check can judge",
+    "quiz": "the quiz",
+    "submit": "everything is done: hand it in",
+}
+
+
+def next_command() -> int:
+    """Say what is next.
+
+    `course go` does it.
+    """
+    console, here = current(), Here.load()
+    step = next_in_course(here)
+    console.line(step)
+    console.note((_why(step), "dim"))
+    for warning in here.warnings:
+        console.warn(warning)
+    console.emit(Next(next=NextStep(step), why=_why(step)))
+    return 0
+
+
+def go() -> int:
+    """Go on from where you stopped.
+
+    Runs the next command: a lesson, its predictions and small tasks, its exercise, the next lesson, at last
+    the quiz and what to hand in. In a terminal it asks before each further step. With --json it runs nothing
+    and says what it would run.
+    """
+    console = current()
+    step = next_in_course(Here.load())
+    if console.json:
+        console.emit(Go(next=NextStep(step), why=_why(step)))
+        return 0
+    while True:
+        words = _as_run(console, step)
+        console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(step)}", "dim"))
+        code = again(words)
+        if not console.interactive:
+            return code
+        before, step = step, next_in_course(Here.load())
+        if step == before:
+            console.note(f"Not finished yet: {step}. `course go` goes on from here.")
+            return code
+        if not console.go_on(f"Next: {step} ({_why(step)})."):
+            return 0
+
+
+def _why(step: str) -> str:
+    return _WHY.get(step.split()[1], "")
+
+
+def _as_run(console: Console, step: str) -> list[str]:
+    """The words of a step, in the form that suits somebody who is there and goes on."""
+    words = shlex.split(step)[1:]
+    if not console.interactive:
+        return words
+    if words[0] == "check":
+        words[0] = "watch"
+    if words[0] == "lesson" and console.plain:
+        words.append("--page")  # a lesson that is only printed does not count as read
+    return words

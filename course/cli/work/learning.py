@@ -1,0 +1,229 @@
+"""What ``course progress`` says about learning: predictions, mistakes made and mended, what to read again."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.cli.frame.replies import (
+    MistakeState,
+    PredictionsOf,
+    PredictionsState,
+    PredictionState,
+    Revisit,
+)
+from course.errors import CourseError
+from course.progress.mistakes import mistakes_of
+from course.reading.parts import read_script
+from course.reading.predictions import predictions_of, tally
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+    from course.cli.frame.console import Console
+    from course.progress.store import Event
+    from course.reading.parts import Script
+    from course.reading.predictions import Said
+
+__all__ = ["Learning", "day", "show_learning"]
+
+#: So many days of predictions are shown; ``--json`` has all.
+_DAYS = 7
+
+
+class Learning:
+    """What the record tells about learning.
+
+    Attributes:
+        predictions: None if nothing was ever predicted.
+        mistakes: in the order they were first made.
+        revisit: sections worth reading again, what the most mistakes point at first.
+    """
+
+    def __init__(self, catalog: Catalog, events: Sequence[Event]) -> None:
+        self._catalog = catalog
+        self._scripts = cache(self._script)
+        said = predictions_of(events)
+        self.predictions = self._predictions(said) if said else None
+        self.mistakes = tuple(self._mistakes(events))
+        self.revisit = tuple(self._revisit(said))
+
+    # -- predictions -----------------------------------------------------------------------------------
+
+    def _predictions(self, said: Sequence[Said]) -> PredictionsState:
+        lessons = [one for one in self._catalog.lesson_ids() if any(each.lesson == one for each in said)]
+        days = sorted({_day(one) for one in said})
+        return PredictionsState(
+            all=_counts("all", said),
+            by_lesson=tuple(_counts(one, [x for x in said if x.lesson == one]) for one in lessons),
+            by_day=tuple(_counts(day, [x for x in said if _day(x) == day]) for day in days),
+            each=tuple(
+                PredictionState(
+                    lesson=one.lesson,
+                    section=self._section(one)[0],
+                    question=self._question(one),
+                    said=one.text or None,
+                    judged=one.judged,
+                    at=one.at.isoformat(),
+                )
+                for one in said
+            ),
+        )
+
+    def _script(self, lesson: str) -> Script | None:
+        """The lesson; None if the course has it no more."""
+        try:
+            return read_script(self._catalog.lesson(lesson))
+        except CourseError:
+            return None
+
+    def _question(self, said: Said) -> str:
+        script = self._scripts(said.lesson)
+        asked = next((one for one in script.questions if one.key == said.key), None) if script else None
+        return asked.words if asked else ""
+
+    def _section(self, said: Said) -> tuple[str, str]:
+        """Where it was asked, as "lesson#section", and the title of that section; "" if it is gone."""
+        script = self._scripts(said.lesson)
+        asked = next((one for one in script.questions if one.key == said.key), None) if script else None
+        section = script.section_of(asked.index) if script and asked else None
+        return (f"{said.lesson}#{section.slug}", section.title) if section else ("", "")
+
+    # -- mistakes --------------------------------------------------------------------------------------
+
+    def _mistakes(self, events: Sequence[Event]) -> Iterable[MistakeState]:
+        known = {one.id: one for one in (*self._catalog.exercises(), *self._catalog.warm_ups())}
+        for one in mistakes_of(events):
+            exercise = known.get(one.exercise)
+            if exercise is None:
+                continue
+            yield MistakeState(
+                exercise=one.exercise,
+                task=one.task,
+                title=exercise.task_titled(one.task),
+                diagnosis=one.diagnosis,
+                looks_like=_looks_like(exercise, one.diagnosis),
+                read=exercise.where_to_read(one.task),
+                first_seen=one.first.isoformat(),
+                last_seen=one.last.isoformat(),
+                runs=one.runs,
+                mended_at=one.mended.isoformat() if one.mended else None,
+            )
+
+    # -- what to read again ----------------------------------------------------------------------------
+
+    def _revisit(self, said: Sequence[Said]) -> Iterable[Revisit]:
+        why: dict[str, list[str]] = {}
+        for one in self.mistakes:
+            if one.mended_at is None:
+                why.setdefault(one.read, []).append(f"{one.task} in {one.exercise}: {one.diagnosis}")
+        wrong: dict[str, int] = {}
+        for each in said:
+            place = self._section(each)[0] if each.judged == "wrong" else ""
+            if place:
+                wrong[place] = wrong.get(place, 0) + 1
+        for place, count in wrong.items():
+            often = "a prediction was" if count == 1 else f"{count} predictions were"
+            why.setdefault(place, []).append(f"{often} wrong")
+        for place, reasons in sorted(why.items(), key=lambda item: -len(item[1])):
+            lesson = place.partition("#")[0]
+            yield Revisit(
+                lesson=lesson,
+                section=place,
+                title=self._title(place),
+                why=tuple(reasons),
+                command=f"course lesson {lesson}",
+            )
+
+    def _title(self, place: str) -> str:
+        """The section's title; the lesson's where there is no such section."""
+        lesson, _, slug = place.partition("#")
+        script = self._scripts(lesson)
+        if script is None:
+            return place
+        return next((one.title for one in script.sections if one.slug == slug), script.lesson.title)
+
+
+def show_learning(console: Console, learning: Learning) -> None:
+    """Print what there is; nothing for somebody who predicted nothing and made no mistake."""
+    if learning.predictions is not None:
+        _show_predictions(console, learning.predictions)
+    if learning.mistakes:
+        _show_mistakes(console, learning.mistakes)
+    if learning.revisit:
+        console.heading("To read again")
+        for place in learning.revisit:
+            console.line(f"{place.title} ({place.lesson}): {'; '.join(place.why)}", indent=2)
+
+
+def _show_predictions(console: Console, predictions: PredictionsState) -> None:
+    whole = predictions.all
+    console.heading("Predictions", f"{whole.said} made, {whole.skipped} skipped")
+    for one in predictions.by_lesson:
+        console.line(f"{one.of}: {_in_words(one)}", indent=2)
+    days = predictions.by_day[-_DAYS:]
+    if len(days) > 1:
+        for one in days:
+            console.line(f"{one.of}: {_in_words(one)}", indent=2)
+
+
+def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
+    mended = sum(one.mended_at is not None for one in mistakes)
+    console.heading("Mistakes", f"{len(mistakes)} made, {mended} mended")
+    for one in mistakes:
+        seen = f"seen {day(one.first_seen)}"
+        if one.runs > 1:
+            seen += f", last {day(one.last_seen)}, in {one.runs} runs"
+        state = f"mended {day(one.mended_at)}" if one.mended_at else "not mended yet"
+        console.line(f"{one.title} ({one.exercise}), {one.diagnosis}: {state}; {seen}", indent=2)
+        if one.looks_like and one.mended_at is None:
+            console.line(one.looks_like, indent=4)
+
+
+def _in_words(counts: PredictionsOf) -> str:
+    """ "3 right, 1 nearly, 1 wrong, 1 skipped": what is none is left out."""
+    named = (
+        (counts.right, "right"),
+        (counts.nearly, "nearly right"),
+        (counts.wrong, "wrong"),
+        (counts.unjudged, "not compared"),
+        (counts.skipped, "skipped"),
+    )
+    return ", ".join(f"{number} {word}" for number, word in named if number)
+
+
+def _counts(of: str, said: Sequence[Said]) -> PredictionsOf:
+    counted = tally(said)
+    return PredictionsOf(
+        of=of,
+        said=counted.said,
+        right=counted.right,
+        nearly=counted.nearly,
+        wrong=counted.wrong,
+        unjudged=counted.unjudged,
+        skipped=counted.skipped,
+    )
+
+
+def _looks_like(exercise: Exercise, code: str) -> str:
+    """The diagnosis in words; "" where the exercise keeps none as data."""
+    from course.scoring.explain.words import FILE, read_words
+
+    path = Path(exercise.folder) / FILE
+    if not path.is_file():
+        return ""
+    entry = read_words(path).entries.get(code)
+    return entry.looks_like if entry else ""
+
+
+def _day(said: Said) -> str:
+    return said.at.astimezone().strftime("%Y-%m-%d")
+
+
+def day(moment: str) -> str:
+    """The local date and time of an ISO moment, to the minute."""
+    return datetime.fromisoformat(moment).astimezone().strftime("%Y-%m-%d %H:%M")

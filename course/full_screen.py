@@ -1,0 +1,170 @@
+"""What every program of the course that has the whole terminal to itself does alike: start, leave, tell."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from rich.text import Text
+from textual.app import App
+from textual.binding import Binding
+from textual.containers import VerticalScroll
+from textual.screen import ModalScreen
+from textual.widgets import Static
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rich.console import RenderableType
+    from textual.app import ComposeResult
+
+__all__ = ["FullScreenApp", "Overlay", "Tell"]
+
+#: How long a message stays in the last line, in s.
+_MESSAGE = 4.0
+
+Answer = TypeVar("Answer")
+
+
+class FullScreenApp(App[None]):
+    """A program on the whole screen, which leaves the terminal as it found it.
+
+    Args:
+        clock: real time, in s.
+
+    Attributes:
+        in_colour: whether colours may be sent.
+        failure: what went wrong inside; ``play`` raises it once the terminal is clean.
+    """
+
+    ENABLE_COMMAND_PALETTE = False
+    #: Actions that work while something is laid over the screen.
+    ALWAYS: ClassVar[frozenset[str]] = frozenset({"quit"})
+
+    def __init__(self, clock: Callable[[], float] = perf_counter) -> None:
+        # Without colour the terminal's own colours stay, rather than shades of grey.
+        self.in_colour = not os.environ.get("NO_COLOR")
+        super().__init__(ansi_color=None if self.in_colour else True)
+        self.failure: BaseException | None = None
+        self._clock = clock
+        self._message = ("", 0.0)
+
+    def play(self) -> None:
+        """Run until its user leaves, and raise what went wrong inside."""
+        with contextlib.suppress(KeyboardInterrupt):
+            self.run()
+        if self.failure is not None:
+            raise self.failure
+
+    def on_mount(self) -> None:
+        """Be ready for signals."""
+        loop = asyncio.get_running_loop()
+        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+            # A closed window or a plain kill leaves the terminal as clean as a key does. Where signals cannot
+            # be caught here (Windows, another thread) the keys remain.
+            with contextlib.suppress(NotImplementedError, AttributeError, RuntimeError, ValueError):
+                loop.add_signal_handler(getattr(signal, name), self.action_quit_now)
+
+    def _handle_exception(self, error: Exception) -> None:
+        # Whoever called ``play`` reports errors; a picture of the stack would be a second report.
+        if self.failure is None:
+            self.failure = error
+        if self.is_headless:
+            super()._handle_exception(error)
+        else:
+            self._return_code = 1
+            self._close_messages_no_wait()
+
+    def say(self, message: str) -> None:
+        """Show something in the last line for a moment."""
+        self._message = (message, self._clock())
+
+    @property
+    def message(self) -> str:
+        """What the last line says just now; empty once it was there long enough."""
+        words, since = self._message
+        return words if self._clock() - since < _MESSAGE else ""
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Keys do nothing to what something is laid over."""
+        del parameters
+        return action in self.ALWAYS or len(self.screen_stack) == 1 or not hasattr(self, f"action_{action}")
+
+    async def action_quit(self) -> None:
+        """Leave."""
+        self.action_quit_now()
+
+    def action_quit_now(self) -> None:
+        """Leave."""
+        self.exit()
+
+
+class Overlay(ModalScreen[Answer | None]):
+    """A box over the screen, with a title above and its keys below. Dismissed with an answer, or None."""
+
+    DEFAULT_CSS = """
+    Overlay { align: center middle; background: black 40%; }
+    Overlay > .box {
+        width: 96%; max-width: 84; height: auto; max-height: 96%;
+        border: round $primary; padding: 0 1; background: $surface; scrollbar-size-vertical: 1;
+    }
+    Overlay OptionList { height: auto; max-height: 80vh; border: none; background: $surface; padding: 0; }
+    Overlay OptionList:focus { border: none; }
+    Overlay Input { width: 100%; }
+    """
+    BINDINGS: ClassVar[list[Any]] = [Binding("escape", "leave", show=False)]
+
+    def action_leave(self) -> None:
+        """Back to what is below."""
+        self.dismiss(None)
+
+
+class Tell(Overlay[str]):
+    """Something to read. Dismissed with the key that closed it, if it was one of ``keys``.
+
+    Args:
+        title: above it.
+        shown: paragraphs, from top to bottom.
+        keys: that mean something to what is below.
+        hint: the keys, in words.
+        at_end: begin with the end.
+    """
+
+    BINDINGS: ClassVar[list[Any]] = [Binding("enter,q,question_mark,f1", "leave", show=False)]
+
+    def __init__(
+        self,
+        title: str,
+        shown: Sequence[RenderableType],
+        keys: Sequence[str] = (),
+        hint: str = "Escape: back",
+        *,
+        at_end: bool = False,
+    ) -> None:
+        super().__init__()
+        self._title, self._keys, self._hint, self._at_end = title, tuple(keys), hint, at_end
+        self._shown = [Text(one) if isinstance(one, str) else one for one in shown]
+
+    def compose(self) -> ComposeResult:
+        """The page, scrolled with arrows and the wheel."""
+        with VerticalScroll(classes="box") as box:
+            box.border_title, box.border_subtitle = self._title, self._hint
+            for piece in self._shown:
+                yield Static(piece)
+
+    def on_mount(self) -> None:
+        """Arrows scroll at once."""
+        box = self.query_one(VerticalScroll)
+        box.focus()
+        if self._at_end:
+            box.scroll_end(animate=False)
+
+    def on_key(self, event: Any) -> None:
+        """Close with a key that means something to what is below."""
+        if event.character in self._keys:
+            event.stop()
+            self.dismiss(event.character)

@@ -1,0 +1,178 @@
+"""What a student has that is nobody's submission yet: found, read for the functions it defines, and proposed.
+
+A file under another name, in another folder, or beside the one that was graded is never passed over in
+silence. Names of functions are read in the process that reads submissions, which can be ended; nothing is
+run. What is proposed is settled by an instructor, with ``course grade assign``.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.grading.intake.archives import RefusedError
+from course.grading.intake.downloads import IGNORED
+from course.grading.intake.names import plain
+from course.grading.intake.reading import reader
+from course.printable import one_line
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from course.catalog.models import Exercise
+    from course.grading.intake.downloads import Place
+
+__all__ = ["Candidate", "Found", "found_for", "said_of", "survey"]
+
+_KINDS = (".py", ".ipynb", ".zip")
+#: How far one student's folder is searched: folders deep, entries looked at, files read, and files that took
+#: the process that reads with them, which may have had ten seconds each.
+_DEEP, _ENTRIES, _READ, _FATAL = 6, 2000, 60, 3
+#: How alike two names are, of 1, before one is taken for a slip in the other: ``integrator`` for
+#: ``integrators`` is 0.95, ``collision`` for ``integrators`` 0.3.
+_ALIKE = 0.75
+_SHOWN = 4
+
+
+class Candidate(msgspec.Struct, frozen=True):
+    """One file that may be meant for an exercise.
+
+    Attributes:
+        name: where it is, from the student's folder; what lies in an archive follows the archive's name.
+        path: of the file, or of the archive it lies in.
+        member: in the archive; empty for a file.
+        sha256: digest of its content.
+        defines: names of the functions in it; of one exercise's tasks, where it is listed for an exercise.
+        proposed: it is the one match there is.
+    """
+
+    name: str
+    path: str
+    member: str = ""
+    sha256: str = ""
+    defines: tuple[str, ...] = ()
+    proposed: bool = False
+
+
+class Found(msgspec.Struct, frozen=True):
+    """What there is for one student and exercise that could not be taken by its name.
+
+    Attributes:
+        reason: the code of the problem.
+        times: who says when it was handed in, and when.
+    """
+
+    reason: str
+    candidates: tuple[Candidate, ...]
+    times: tuple[tuple[str, float | None], ...] = ()
+
+
+@dataclass
+class _Search:
+    left: int = _ENTRIES
+    files: list[tuple[str, Path]] = field(default_factory=list)
+
+
+def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
+    """Files of a student's that no exercise was graded from.
+
+    Args:
+        used: path and member of those that were.
+        exercises: whose functions are looked for.
+    """
+    functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
+    candidates: list[Candidate] = []
+    for name, path in _files(place):
+        fatal = sum(not one.sha256 for one in candidates)
+        if len(candidates) >= _READ or fatal >= _FATAL:
+            break
+        if (str(path), "") not in used:
+            skip = tuple(member for archive, member in used if archive == str(path) and member)
+            candidates += _outlined(name, path, skip, functions)
+    return candidates[:_READ]
+
+
+def _files(place: Place) -> list[tuple[str, Path]]:
+    if place.files is not None:
+        return [
+            (name, path)
+            for name, path in place.files
+            if name.casefold().endswith(_KINDS) and path.is_file() and not path.is_symlink()
+        ]
+    search = _Search()
+    _search(place.root, "", 0, search)
+    return search.files
+
+
+def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except OSError:
+        return  # what cannot be listed was refused, with its reason, by whoever wanted a file in it
+    for entry in entries:
+        search.left -= 1
+        if search.left < 0:
+            return
+        if entry.name in IGNORED or entry.is_symlink():
+            continue
+        if entry.is_dir(follow_symlinks=False):
+            if depth < _DEEP:
+                _search(folder / entry.name, f"{above}{entry.name}/", depth + 1, search)
+        elif entry.name.casefold().endswith(_KINDS) and entry.is_file(follow_symlinks=False):
+            search.files.append((above + entry.name, folder / entry.name))
+
+
+def _outlined(
+    name: str, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]
+) -> Iterator[Candidate]:
+    """What is in a file, or in each file of an archive but those to skip."""
+    shown = one_line(os.fsencode(name).decode("utf-8", "backslashreplace"))
+    try:
+        outlines = reader.outlines(path, skip, functions)
+    except RefusedError:
+        yield Candidate(shown, os.fspath(path))
+        return
+    for member, sha256, defines in outlines:
+        inner = f"{shown}/{one_line(member)}" if member else shown
+        yield Candidate(inner, os.fspath(path), member, sha256, defines)
+
+
+def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: bool) -> tuple[Candidate, ...]:
+    """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
+
+    Args:
+        asked: the exercise was asked for by name, so that anything there is may be meant for it.
+    """
+    tasks = [task.id for task in exercise.task]
+    stem = Path(exercise.module).stem.casefold()
+    ranked: list[tuple[float, Candidate]] = []
+    for one in candidates:
+        mine = tuple(name for name in tasks if name in one.defines)
+        worth = len(mine) / len(tasks) if tasks else 0.0
+        alike = difflib.SequenceMatcher(None, stem, Path(plain(Path(one.name).name)).stem).ratio()
+        alike = alike if alike >= _ALIKE else 0.0
+        if asked or worth >= 0.5 or alike:
+            ranked.append((worth + alike / 10, msgspec.structs.replace(one, defines=mine)))
+    ranked.sort(key=lambda item: (-item[0], item[1].name))
+    distinct = {item[1].sha256: item[0] for item in reversed(ranked)}
+    best = max(distinct.values(), default=0.0)
+    # Two files that are as good, and not the same: which one counts is not ours to say.
+    clear = best > 0 and list(distinct.values()).count(best) == 1
+    return tuple(
+        msgspec.structs.replace(one, proposed=clear and number == 0) for number, (_, one) in enumerate(ranked)
+    )
+
+
+def said_of(candidates: Sequence[Candidate]) -> str:
+    """Files and what they define, in a sentence's words."""
+    told = []
+    for one in candidates[:_SHOWN]:
+        names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")
+        told.append(f"{one.name} (defines {names})" if names else one.name)
+    more = len(candidates) - _SHOWN
+    return ", ".join(told) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,235 @@
+"""Files that an instructor says are somebody's submission: taken as they lie, graded at once, written down.
+
+Nothing is renamed. The graders are those of the run, so that the score is the one the student would have got
+under the right name; ``course grade run --resume`` leaves what was assigned as it is.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.errors import NotFoundError, UngradableError, UsageError
+from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
+from course.grading.intake.archives import RefusedError
+from course.grading.intake.students import Entry, submission_from
+from course.grading.intake.triage import Found
+from course.grading.results.effective import Results
+from course.grading.running.batch import grade_all
+from course.grading.running.snapshot import Snapshot, frozen
+from course.scoring.terms import Terms
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from course.catalog.load import Catalog
+    from course.grading.results.effective import Effective
+    from course.grading.running.run import GradeAll
+
+__all__ = ["Assigned", "Assignment", "Unsettled", "assign", "named", "proposals", "unsettled"]
+
+_MAX_REASON = 2000
+
+
+@dataclass(frozen=True)
+class Unsettled:
+    """What nobody could grade by its name, and what there is for it."""
+
+    student: str
+    exercise: str
+    found: Found
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A file that is to be somebody's submission.
+
+    Attributes:
+        name: what to call it, as it was handed in.
+        member: in the archive at ``path``; empty for the file itself.
+    """
+
+    student: str
+    exercise: str
+    name: str
+    path: Path
+    member: str = ""
+    times: tuple[tuple[str, float | None], ...] = ()
+
+
+@dataclass(frozen=True)
+class Assigned:
+    """An assignment, and what counted before and counts now."""
+
+    assignment: Assignment
+    before: Effective | None
+    after: Effective
+
+
+def unsettled(results: Results) -> list[Unsettled]:
+    """What there is to settle, ordered by student and exercise; what has a score by hand is settled."""
+    open_still = []
+    for (student, exercise), listed in results.book.found().items():
+        counts = next(results.all(student, exercise), None)
+        if counts is None or (counts.override is None and counts.verdict.state == "ungradable"):
+            open_still.append(Unsettled(student, exercise, msgspec.json.decode(listed, type=Found)))
+    return open_still
+
+
+def proposals(results: Results) -> list[Assignment]:
+    """The matches that are proposed, one for each that has one."""
+    return [
+        Assignment(item.student, item.exercise, one.name, Path(one.path), one.member, item.found.times)
+        for item in unsettled(results)
+        for one in item.found.candidates
+        if one.proposed
+    ]
+
+
+def named(results: Results, student: str, file: str, exercise: str | None) -> Assignment:
+    """The assignment that an instructor means.
+
+    Args:
+        file: a name in the list of what is unsettled, or a path; into an archive it goes on with a slash.
+        exercise: None where it follows from what is unsettled, or from there being one exercise.
+
+    Raises:
+        NotFoundError: no such student, exercise or file.
+        UsageError: the exercise does not follow.
+    """
+    if student not in results.students():
+        raise NotFoundError(
+            f"The gradebook has no student {student!r}.",
+            help="grades.csv lists all, and with a roster everybody who is enrolled.",
+            code="student_not_found",
+        )
+    mine = [item for item in unsettled(results) if item.student == student]
+    known = [item.id for item in results.exercises() if item.id != "quiz"]
+    if exercise is None:
+        having = [item for item in mine if any(one.name == file for one in item.found.candidates)] or mine
+        proposing = [
+            item for item in having if any(one.name == file and one.proposed for one in item.found.candidates)
+        ]
+        names = {item.exercise for item in proposing or having} or set(known)
+        if len(names) != 1:
+            raise UsageError(
+                f"Which exercise {file} is for does not follow.",
+                help=f"Add --exercise, one of {', '.join(sorted(names))}.",
+                code="needs_exercise",
+            )
+        exercise = names.pop()
+    elif exercise not in known:
+        raise NotFoundError(
+            f"The gradebook has no exercise {exercise!r}.",
+            help=f"It has {', '.join(known)}.",
+            code="exercise_not_found",
+        )
+    times: tuple[tuple[str, float | None], ...] = ()
+    for item in mine:
+        if item.exercise == exercise:
+            times = item.found.times
+            for one in item.found.candidates:
+                if one.name == file:
+                    return Assignment(student, exercise, one.name, Path(one.path), one.member, times)
+    return Assignment(student, exercise, file, *_on_disk(file), times)
+
+
+def _on_disk(file: str) -> tuple[Path, str]:
+    """A path, cut in two where it leads into an archive."""
+    path = Path(file)
+    if os.path.lexists(path):
+        return path, ""
+    for above in path.parents:
+        if above.suffix.casefold() == ".zip" and above.is_file():
+            return above, path.relative_to(above).as_posix()
+    raise NotFoundError(
+        f"There is no file {file}.",
+        help="Name it as `course grade assign OUT` lists it, or by its path.",
+        code="file_not_found",
+    )
+
+
+def assign(
+    results: Results,
+    catalog: Catalog,
+    assignments: Sequence[Assignment],
+    reason: str,
+    *,
+    grade: GradeAll = grade_all,
+    level: str | None = None,
+    at_least: str = "L2",
+) -> list[Assigned]:
+    """Take files as submissions and grade them, with the graders of the run.
+
+    Args:
+        results: over a gradebook opened for writing.
+        reason: why these files are theirs.
+        level, at_least: as in ``Terms``.
+
+    Raises:
+        UngradableError: a file cannot be read.
+        UsageError: there is no reason.
+    """
+    reason = reason.strip()
+    if not reason or len(reason) > _MAX_REASON:
+        raise UsageError(
+            "An assignment needs a reason of at most 2000 characters.",
+            help="Add --reason: it is kept with the result.",
+            code="no_reason",
+        )
+    book, options = results.book, results.book.run_options()
+    kept = book.snapshot(options.get("snapshot", ""))
+    snapshot = Snapshot.of(kept, options["snapshot"]) if kept else Snapshot.take(catalog.content)
+    timeout = float(options.get("timeout", 10.0))
+    done: list[Assigned] = []
+    with frozen(snapshot) as graders:
+        entries = {}
+        for one in assignments:
+            exercise = graders.catalog.exercise(one.exercise)
+            try:
+                submission = submission_from(exercise, one.path, one.member)
+            except RefusedError as refused:
+                problem = refused.problem
+                raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
+            entries[one.student, one.exercise] = (one, Entry(one.student, exercise, submission))
+        terms = Terms(level, at_least, timeout, results.seed, snapshot.sha256)
+        for graded in list(grade([entry for _, entry in entries.values()], terms)):
+            if not done:
+                book.keep_snapshot(snapshot.sha256, snapshot.packed)
+                facts = {"level": level, "at_least": at_least, "snapshot": snapshot.sha256}
+                book.begin_run("assign", {**options, **facts})
+            one, entry = entries[graded.entry.student, graded.entry.exercise.id]
+            before = next(results.all(one.student, one.exercise), None)
+            note = f"Graded from {one.name}, assigned by the instructor: {reason}"
+            verdict = graded.verdict
+            verdict = msgspec.structs.replace(verdict, warnings=(*verdict.warnings, note))
+            version = graded.version or graders.version(one.exercise)
+            key = Key(one.student, one.exercise, entry.sha256, version, results.seed)
+            assert entry.submission is not None
+            book.add(Result(key, verdict), dict(entry.submission.files))
+            book.add_times(
+                SubmittedAt(one.student, one.exercise, entry.sha256, source, at) for source, at in one.times
+            )
+            after = next(Results(book).all(one.student, one.exercise))
+            book.note(
+                Decision(
+                    "", "", "assign", one.student, one.exercise, reason, _told(before), _told(after, one.name)
+                )
+            )
+            book.set_found(one.student, one.exercise, None)
+            done.append(Assigned(one, before, after))
+    return done
+
+
+def _told(counts: Effective | None, file: str = "") -> str:
+    if counts is None:
+        return msgspec.json.encode({"state": "missing", "score": None}).decode()
+    told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score}
+    told |= {"submission": counts.result.key.submission_sha256}
+    if counts.verdict.error is not None:
+        told["reason"] = counts.verdict.error.code
+    return msgspec.json.encode(told | ({"file": file} if file else {})).decode()

@@ -1,0 +1,209 @@
+"""The graders of a run, frozen: what judges is a copy made when the run began, whatever is edited meanwhile.
+
+A snapshot holds everything that a grader process reads and imports: the exercises with their checks, hidden
+checks and solutions, the quiz, and the part of this package that grades. It is one zip, known by a digest of
+its names and contents, and is kept in the gradebook, so that any result can be made again later.
+
+A grader process is started with the unpacked snapshot first on its path, so it runs the frozen code, its
+successors after a death included; it tells the version it computes of itself with every verdict. Because an
+old snapshot is run by a newer coordinator, what the two say to each other (``grader``) only ever grows.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import os
+import zipfile
+from dataclasses import dataclass, field
+from importlib.util import cache_from_source
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.catalog.load import Catalog
+from course.catalog.locate import Content, chosen
+from course.errors import IntegrityError
+from course.isolation.launch import private_folder, remove_tree
+from course.scoring.version import grader_version
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["Frozen", "Snapshot", "frozen", "in_use"]
+
+_PACKAGE = Path(__file__).resolve().parents[2]
+#: Of this package, what a grader process imports, and what checks may.
+_CODE = (
+    "catalog", "engines", "figures", "handed_in", "isolation", "physics", "progress", "scoring",
+    "simulations",
+)  # fmt: skip
+_FILES = (
+    "grading/__init__.py", "grading/kit.py", "grading/pipes.py",
+    "grading/running/__init__.py", "grading/running/grader.py",
+)  # fmt: skip
+#: Wrong and unusual solutions take no part in grading; neither does what only people read.
+_LEFT_OUT = {"__pycache__", "accepted", "mutants"}
+_PROSE = {".md", ".pyc"}
+_MAX_UNPACKED = 200 << 20
+#: Seconds that a compiled file must be younger than its source to be taken as its: one that was compiled in
+#: the second of an edit may be of the text before.
+_SETTLED_S = 2.0
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Graders as they were at one moment.
+
+    Attributes:
+        sha256: digest of the names and contents in it.
+        packed: all of it, as a zip.
+    """
+
+    sha256: str
+    packed: bytes = field(repr=False)
+
+    @classmethod
+    def take(cls, content: Content) -> Snapshot:
+        """The graders as they are now."""
+        digest, buffer = hashlib.sha256(), io.BytesIO()
+        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+            for name, path in sorted(_files(content)):
+                body = path.read_bytes()
+                digest.update(f"{len(name)}:{name}:{len(body)}:".encode() + body)
+                archive.writestr(zipfile.ZipInfo(name), body, zipfile.ZIP_DEFLATED)
+        return cls(digest.hexdigest(), buffer.getvalue())
+
+    @classmethod
+    def of(cls, packed: bytes, sha256: str) -> Snapshot:
+        """A snapshot as it was kept.
+
+        Raises:
+            IntegrityError: it is not what was kept.
+        """
+        digest = hashlib.sha256()
+        for name, body in _members(packed):
+            digest.update(f"{len(name)}:{name}:{len(body)}:".encode() + body)
+        if digest.hexdigest() != sha256:
+            raise _damaged(sha256)
+        return cls(sha256, packed)
+
+
+def _files(content: Content) -> Iterator[tuple[str, Path]]:
+    """What belongs into a snapshot: its name there, and where it is."""
+    folders = {f"course/{name}": _PACKAGE / name for name in _CODE}
+    folders |= {"content/exercises": content.exercises, "content/quiz": content.quiz}
+    if content.solutions is not None:
+        folders["content/solutions"] = content.solutions
+    if content.graders is not None:
+        folders["content/graders"] = content.graders
+    for name, folder in folders.items():
+        for path in folder.rglob("*"):
+            inner = path.relative_to(folder)
+            if path.is_file() and path.suffix not in _PROSE and not _LEFT_OUT.intersection(inner.parts):
+                yield f"{name}/{inner.as_posix()}", path
+    yield "content/lessons/syllabus.toml", content.syllabus
+    yield from ((f"course/{it.name}", it) for it in _PACKAGE.glob("*.py") if it.name != "__main__.py")
+    yield from ((f"course/{name}", _PACKAGE / name) for name in _FILES)
+
+
+def _members(packed: bytes) -> Iterator[tuple[str, bytes]]:
+    """Names and contents; every name lies inside.
+
+    Raises:
+        IntegrityError: it cannot be read.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(packed)) as archive:
+            infos = archive.infolist()
+            if sum(info.file_size for info in infos) > _MAX_UNPACKED:
+                raise _damaged("")
+            for info in infos:
+                if info.filename.startswith("/") or ".." in info.filename.split("/") or "\\" in info.filename:
+                    raise _damaged("")
+                yield info.filename, archive.read(info)
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, ValueError, OSError, RuntimeError):
+        raise _damaged("") from None
+
+
+def _damaged(sha256: str) -> IntegrityError:
+    return IntegrityError(
+        " ".join(f"The snapshot {sha256[:12]} of the graders is damaged.".split()),
+        help="`course grade salvage` looks for it in the backups; `course grade rerun` grades with the ones"
+        " of now.",
+    )
+
+
+@dataclass(frozen=True)
+class Frozen:
+    """A snapshot that is unpacked.
+
+    Attributes:
+        folder: holds ``course``, importable, and ``content``.
+        catalog: the course in it.
+    """
+
+    snapshot: Snapshot
+    folder: Path
+    catalog: Catalog
+    _versions: dict[str, str] = field(default_factory=dict, repr=False, compare=False)
+
+    def version(self, exercise_id: str) -> str:
+        """The version of an exercise's graders in it."""
+        if exercise_id not in self._versions:
+            exercise = self.catalog.exercise(exercise_id)
+            self._versions[exercise_id] = grader_version(exercise, self.catalog, self.folder / "course")
+        return self._versions[exercise_id]
+
+
+#: The unpacked snapshots of this process, by digest: what ``Terms.graders`` names.
+_in_use: dict[str, Frozen] = {}
+
+
+def in_use(sha256: str) -> Frozen | None:
+    """The snapshot of that digest, if it is unpacked here."""
+    return _in_use.get(sha256)
+
+
+@contextlib.contextmanager
+def frozen(snapshot: Snapshot) -> Iterator[Frozen]:
+    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms."""
+    known = _in_use.get(snapshot.sha256)
+    if known is not None:
+        yield known
+        return
+    folder = private_folder()
+    try:
+        _unpack(snapshot.packed, folder)
+        it = _in_use[snapshot.sha256] = Frozen(snapshot, folder, Catalog(chosen(folder / "content")))
+        yield it
+    finally:
+        _in_use.pop(snapshot.sha256, None)
+        remove_tree(folder)
+
+
+def _unpack(packed: bytes, folder: Path) -> None:
+    made: set[Path] = set()
+    for name, body in _members(packed):
+        path = folder / name
+        if path.parent not in made:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            made.add(path.parent)
+        path.write_bytes(body)
+        if name.startswith("course/") and name.endswith(".py"):
+            _take_compiled(_PACKAGE / name.removeprefix("course/"), path, body)
+    for name in ("exercises", "lessons", "quiz"):
+        (folder / "content" / name).mkdir(parents=True, exist_ok=True)
+
+
+def _take_compiled(original: Path, copy: Path, body: bytes) -> None:
+    """Save graders compiling a file anew, where the package has it compiled and it is the same file."""
+    with contextlib.suppress(OSError, NotImplementedError):
+        status, compiled = original.stat(), Path(cache_from_source(str(original)))
+        if compiled.stat().st_mtime < status.st_mtime + _SETTLED_S or original.read_bytes() != body:
+            return
+        target = Path(cache_from_source(str(copy)))
+        target.parent.mkdir(exist_ok=True)
+        target.write_bytes(compiled.read_bytes())
+        # A compiled file is for the source of the size and time that stand in it.
+        os.utime(copy, ns=(status.st_mtime_ns, status.st_mtime_ns))

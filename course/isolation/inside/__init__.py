@@ -1,0 +1,7 @@
+"""What runs beside a stranger's code: standard library and NumPy only, copied as a package of its own.
+
+worker, zygote, lockdown  the process, the one it is forked from, and what it may not do
+loops, declared           marches and folds run where the function is; what may be imported
+wire, frames, encoding, decoding
+                          the language of questions and answers
+"""

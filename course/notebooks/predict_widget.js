@@ -1,0 +1,31 @@
+// A field for a prediction, and two buttons. The answer is no part of this page until one was pressed.
+
+export default {
+  render({ model, el }) {
+    el.addEventListener("focusin", (event) => {
+      event.target.dataset.lmSuppressShortcuts = "true";
+    });
+    const field = document.createElement("textarea");
+    field.rows = 3;
+    field.style.cssText = "display: block; width: 100%; box-sizing: border-box; font: inherit; padding: 0.4em";
+    field.setAttribute("aria-label", "Your prediction");
+    field.placeholder = "What do you expect, and why? A guess that is written is a guess that teaches.";
+    const say = (text) => model.send({ kind: "predict", text });
+    const button = (words, act) => {
+      const made = document.createElement("button");
+      made.textContent = words;
+      made.style.cssText = "margin: 0.4em 0.4em 0.4em 0";
+      made.addEventListener("click", act);
+      return made;
+    };
+    const keep = button("Keep it and open the answer", () => (field.value.trim() ? say(field.value) : field.focus()));
+    const skip = button("Skip", () => say(""));
+    const hear = (message) => {
+      if (message.kind === "kept") for (const part of [field, keep, skip]) part.disabled = true;
+    };
+    model.on("msg:custom", hear);
+    el.replaceChildren(field, keep, skip);
+    model.send({ kind: "hello" });
+    return () => model.off("msg:custom", hear);
+  },
+};

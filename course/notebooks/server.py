@@ -1,0 +1,114 @@
+"""JupyterLab on a folder, for one person at this machine."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote, urlencode
+
+from course.errors import CourseError
+from course.extras import require
+from course.notebooks.execute import environment
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["Lab", "started"]
+
+#: Between two looks whether it is there, in s.
+_LOOK = 0.1
+#: How long it may take to shut its kernels down before it is ended, in s.
+_GRACE = 20
+
+
+@dataclass
+class Lab:
+    """A JupyterLab that runs.
+
+    Attributes:
+        address: opens what was asked for in a browser; with the token that lets one in.
+    """
+
+    address: str
+    _process: subprocess.Popen[bytes]
+
+    def wait(self) -> int:
+        """Until it ends; its exit code."""
+        return self._process.wait()
+
+
+@contextlib.contextmanager
+def started(folder: Path, path: str = "", *, browser: bool = True) -> Iterator[Lab]:
+    """Start JupyterLab and wait until it answers; it ends with the context.
+
+    Args:
+        folder: what its file browser shows.
+        path: of a notebook in it that is opened.
+        browser: open a browser on it as well.
+
+    Raises:
+        MissingCapabilityError: the extra ``notebook`` is not installed.
+        CourseError: it ended before it was ready.
+    """
+    require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
+    page = f"/lab/tree/{quote(path)}" if path else "/lab"
+    token = secrets.token_hex(24)
+    # Ctrl+C reaches it as well as this process, and is not asked about a second time. Only errors are said.
+    command = [sys.executable, "-m", "jupyterlab", "-y", "--log-level=ERROR"]
+    command += [f"--ServerApp.root_dir={folder}", f"--ServerApp.default_url={page}"]
+    command += [] if browser else ["--no-browser"]
+    # Who works as root, as containers do, has decided so before.
+    command += ["--allow-root"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
+    # In the environment, and not on the command line, where every user of the machine reads it.
+    process = subprocess.Popen(
+        command, env=environment() | {"JUPYTER_TOKEN": token}, cwd=folder, stdout=subprocess.DEVNULL
+    )
+    try:
+        yield Lab(_address(process, token, page), process)
+    finally:
+        _ended(process)
+
+
+def _address(process: subprocess.Popen[bytes], token: str, page: str) -> str:
+    """Once the server has said where it is: in a file for each server that runs."""
+    from jupyter_core.paths import jupyter_runtime_dir
+
+    runtime = Path(jupyter_runtime_dir())
+    while process.poll() is None:
+        for file in runtime.glob("jpserver-*.json"):
+            about = _read(file)
+            if about.get("pid") == process.pid or about.get("token") == token:
+                query = f"?{urlencode({'token': about['token']})}" if about.get("token") else ""
+                return str(about["url"]).rstrip("/") + page + query
+        time.sleep(_LOOK)
+    raise CourseError(
+        f"JupyterLab ended before it was ready (exit code {process.returncode}).",
+        help="What it said stands above. `jupyter lab` in this folder starts it without the course.",
+        code="jupyter_ended",
+    )
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        about = json.loads(file.read_text("utf-8"))
+    except (OSError, ValueError):  # gone, another user's, or still being written
+        return {}
+    return about if isinstance(about, dict) else {}
+
+
+def _ended(process: subprocess.Popen[bytes]) -> None:
+    if process.poll() is None:
+        process.terminate()
+    try:
+        process.wait(_GRACE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

@@ -1,0 +1,210 @@
+"""Checks, collected once by pytest and run again for every submission.
+
+This is the one place that calls pytest's insides. ``pytest.main`` per submission would cost some 30 ms and
+grow; collecting once and re-running the items costs about 4 and stays flat. A contract test covers the
+calls made here, and the project's metadata caps pytest at the majors it was run with.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from course.errors import ContentError
+from course.scoring.checks.plugin import CheckPlugin
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.scoring.remote import RemoteSubmission
+    from course.scoring.verdict import Visibility
+
+__all__ = ["Check", "CollectedChecks"]
+
+# Plugins that write files, read the user's settings, or cost time on every check.
+_BLOCKED = (
+    "cacheprovider", "capture", "doctest", "faulthandler", "junitxml", "logging", "nose", "pastebin",
+    "setuponly", "setupplan", "stepwise", "terminal", "threadexception", "unraisableexception", "warnings",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check, as its function declares it.
+
+    Attributes:
+        id: the function's name without ``test_``.
+        title: first line of its docstring.
+        requires: ids of the checks that must have passed before.
+    """
+
+    id: str
+    title: str
+    task: str
+    points: float
+    visibility: Visibility
+    requires: tuple[str, ...]
+
+
+class CollectedChecks:
+    """The checks of one exercise.
+
+    Args:
+        files: check files with the visibility of what is in them, public first.
+        draws: public checks draw their inputs too, as in a grading run.
+
+    Raises:
+        ContentError: a file cannot be imported, or a check lacks its marks.
+    """
+
+    def __init__(self, files: list[tuple[Path, Visibility]], *, draws: bool = False) -> None:
+        self._plugin = CheckPlugin(draws=draws)
+        self._session, items = _collect([path for path, _ in files], self._plugin)
+        visibility = {path.resolve(): kind for path, kind in files}
+        self._items: dict[str, pytest.Item] = {}
+        self._checks: list[Check] = []
+        for item in items:
+            check = _check_of(item, visibility[item.path.resolve()])
+            if check.id in self._items:
+                raise _fault(item, f"two checks have the id {check.id!r}", "Rename one of the functions.")
+            self._items[check.id] = item
+            self._checks.append(check)
+        for check in self._checks:
+            for required in check.requires:
+                if required not in self._items:
+                    item = self._items[check.id]
+                    raise _fault(
+                        item, f"it requires {required!r}, which is no check", "Name an existing check."
+                    )
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """In the order they are defined, public ones first."""
+        return tuple(self._checks)
+
+    def in_order(self) -> list[Check]:
+        """Every check after those it requires, otherwise as defined."""
+        ordered: list[Check] = []
+        by_id = {check.id: check for check in self._checks}
+
+        def place(check: Check, above: tuple[str, ...]) -> None:
+            if check in ordered or check.id in above:
+                return
+            for required in check.requires:
+                place(by_id[required], (*above, check.id))
+            ordered.append(check)
+
+        for check in self._checks:
+            place(check, ())
+        return ordered
+
+    def run(self, check: Check, submission: RemoteSubmission) -> BaseException | None:
+        """How the check ends for this submission: None if it passes, else what it raised."""
+        self._plugin.submission = submission
+        self._plugin.outcome = None
+        self._plugin.called = False
+        with np.errstate(all="ignore"):  # a check may compute with whatever a submission returned
+            _run_item(self._items[check.id])
+        self._plugin.submission = None
+        outcome, self._plugin.outcome = self._plugin.outcome, None
+        if outcome is None and not self._plugin.called:
+            return RuntimeError("pytest did not call it")  # no news is not a pass
+        return outcome
+
+    def close(self) -> None:
+        """Undo what collecting registered."""
+        config = self._session.config
+        with contextlib.suppress(Exception):
+            config._ensure_unconfigure()
+
+
+def _run_item(item: pytest.Item) -> None:
+    """pytest's own protocol for one item: set up, call, tear down, with a fresh set of fixtures."""
+    from _pytest.runner import runtestprotocol
+
+    runtestprotocol(item, log=False, nextitem=None)
+
+
+def _collect(paths: list[Path], plugin: CheckPlugin) -> tuple[pytest.Session, list[pytest.Item]]:
+    """Import the check files hermetically: no conftest, no ini, no plugin and no setting of the user's."""
+    from _pytest.config import _prepareconfig
+    from _pytest.mark.structures import MARK_GEN
+
+    ini = Path(__file__).with_name("checks.ini")
+    arguments = [
+        "-c", str(ini), f"--rootdir={ini.parent}", "--noconftest", "--import-mode=importlib",
+        "--assert=plain", "--strict-markers", *[f"-pno:{name}" for name in _BLOCKED], *map(str, paths),
+    ]  # fmt: skip
+    with _clean_environment():
+        config = _prepareconfig(arguments, [plugin])
+        # The session's own start-up hooks are left out: they print, and check the working folder.
+        session = pytest.Session.from_config(config)
+        config.hook.pytest_sessionstart(session=session)
+        # Marks are checked against this plugin's list, even where another pytest runs around this one.
+        plugin.pytest_configure(config)
+        around, MARK_GEN._config = MARK_GEN._config, config
+        try:
+            items = session.perform_collect()
+        except pytest.UsageError as error:
+            raise ContentError(paths[0], None, str(error), help="Restore the file.") from None
+        finally:
+            MARK_GEN._config = around
+    if plugin.collect_errors:
+        last = plugin.collect_errors[0].strip().splitlines()[-1].removeprefix("E").strip()
+        problem = f"a check file cannot be imported: {last}"
+        raise ContentError(paths[0], None, problem, help="Repair the file.")
+    if not items:
+        raise ContentError(paths[0], None, "there is no check in it", help="Name its functions test_...")
+    found = [item for item in items if isinstance(item, pytest.Item)]
+    for item in found:
+        # pytest would answer a later import of this path from sys.modules, even of a file that changed.
+        module: Any = getattr(item, "module", None)
+        sys.modules.pop(getattr(module, "__name__", ""), None)
+    return session, found
+
+
+@contextlib.contextmanager
+def _clean_environment() -> Iterator[None]:
+    """Without PYTEST_* and without writing bytecode beside the checks, for as long as collecting takes."""
+    saved = dict(os.environ)
+    bytecode = sys.dont_write_bytecode
+    for name in list(os.environ):
+        if name.startswith("PYTEST_"):
+            del os.environ[name]
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    sys.dont_write_bytecode = True
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(saved)
+        sys.dont_write_bytecode = bytecode
+
+
+def _check_of(item: pytest.Item, visibility: Visibility) -> Check:
+    function: Any = getattr(item, "function", None)
+    title = (getattr(function, "__doc__", None) or "").strip().splitlines()
+    if not title:
+        raise _fault(item, "it has no docstring", "Give it one: its first line is the check's title.")
+    marks = {name: item.get_closest_marker(name) for name in ("task", "points", "requires")}
+    if marks["task"] is None or marks["points"] is None:
+        raise _fault(item, "it lacks a mark", "Mark it @pytest.mark.task(...) and @pytest.mark.points(...).")
+    return Check(
+        id=item.name.removeprefix("test_"),
+        title=title[0].strip(),
+        task=str(marks["task"].args[0]),
+        points=float(marks["points"].args[0]),
+        visibility=visibility,
+        requires=tuple(marks["requires"].args) if marks["requires"] else (),
+    )
+
+
+def _fault(item: pytest.Item, problem: str, advice: str) -> ContentError:
+    return ContentError(item.path, (item.location[1] or 0) + 1, f"check {item.name}: {problem}", help=advice)

@@ -1,0 +1,85 @@
+"""What the checks of an exercise share, from the course in use: modules, known answers, words."""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from course.catalog.locate import content
+from course.scoring.explain.table import FILE as TABLE
+from course.scoring.explain.table import read_table
+from course.scoring.explain.words import FILE as WORDS
+from course.scoring.explain.words import Words, read_words
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+__all__ = ["companion", "known_answers", "reference", "sibling", "words"]
+
+
+def companion(exercise_id: str, module: str) -> ModuleType:
+    """A module that the public and hidden checks of an exercise share: ``exercises/<id>/<module>.py``.
+
+    It is loaded by path from the course in use, once a process.
+
+    Raises:
+        FileNotFoundError: the exercise has no such file.
+    """
+    return _load(content().exercise_folder(exercise_id) / f"{module}.py", f"{exercise_id}_{module}")
+
+
+def reference(exercise_id: str, module: str) -> ModuleType | None:
+    """A module that answers for the student, ``solutions/<id>/<module>.py``; None at home, which has none."""
+    folder = content().solution_folder(exercise_id)
+    if folder is None:
+        return None
+    return _load(folder / f"{module}.py", f"{exercise_id}_{module}_right")
+
+
+def known_answers(exercise_id: str, check: str) -> list[Any]:
+    """What a public check with fixed inputs expects where there is no reference, in the order it asks."""
+    table = read_table(content().exercise_folder(exercise_id) / TABLE)
+    return [_known(value) for value in table.answers[check]]
+
+
+def _known(value: Any) -> Any:
+    """A known answer as it was: "inf" a number, and lists of numbers arrays."""
+    if isinstance(value, list):
+        items = [_known(item) for item in value]
+        return np.array(items) if items and all(isinstance(item, float) for item in items) else items
+    return float(value) if isinstance(value, str) else value
+
+
+def words(exercise_id: str) -> Words:
+    """The diagnoses of an exercise by their codes, from its ``diagnoses.toml``."""
+    return read_words(content().exercise_folder(exercise_id) / WORDS)
+
+
+def sibling(file: str, module: str) -> ModuleType:
+    """A module beside a file of checks: ``sibling(__file__, "bundles")``.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+    """
+    path = Path(file).resolve()
+    return _load(path.with_name(f"{module}.py"), f"{path.parent.name}_{module}")
+
+
+@functools.cache
+def _load(path: Path, label: str) -> ModuleType:
+    if not path.is_file():
+        raise FileNotFoundError(path)
+    # Two courses may be in use in one process (tests do that), so the name tells them apart.
+    name = f"course_companion_{label}_{abs(hash(path)):x}".replace("-", "_")
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise FileNotFoundError(path)
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[name] = loaded  # dataclasses look their own module up
+    spec.loader.exec_module(loaded)
+    return loaded

@@ -1,0 +1,15 @@
+"""Where a trajectory left the right one; a leaf of its own, so that reading a verdict loads no numpy."""
+
+from __future__ import annotations
+
+import msgspec
+
+__all__ = ["Divergence"]
+
+
+class Divergence(msgspec.Struct, frozen=True):
+    """The first place where a trajectory left the reference. ``t`` in s."""
+
+    t: float
+    step: int
+    quantity: str

@@ -1,0 +1,153 @@
+"""What tells wrong programs of ``engine-comparison`` apart; a task with a failed check is asked it besides.
+
+The same at home and in a grading run. What should come back is not here.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+bench = kit.companion("engine-comparison", "bench")
+boxes = kit.companion("engine-comparison", "boxes")
+
+# -- engines ----------------------------------------------------------------------------------------------
+
+
+def explicit_euler(a, x, v, h):
+    """Grows at every step, however small."""
+    return x + h * v, v + h * a(x, v)
+
+
+def implicit_euler(a, x, v, h):
+    """Fades at every step, however large. a(x, v) is linear, so v' = v + h a(x + h v', v') is a division."""
+    still, moving = a(x, 0.0), a(x + h, 1.0)
+    v = (v + h * still) / (1 - h * (moving - still))
+    return x + h * v, v
+
+
+def two_verlet_steps(a, x, v, h):
+    """Verlet over a fifth of h and then the rest: stability is lost, found again, and lost for good."""
+    x, v = boxes.velocity_verlet(a, x, v, 0.188 * h)
+    return boxes.velocity_verlet(a, x, v, 0.812 * h)
+
+
+KNOWN = {"anvil": boxes.ANVIL, "balsa": boxes.BALSA, "cork": boxes.CORK}
+#: Where the largest stable step is zero, infinite, or followed by larger ones that are stable again.
+ENDS = {
+    "an engine that is never stable": dataclasses.replace(boxes.BALSA, step=explicit_euler, damping=0.0),
+    "an engine that is never unstable": dataclasses.replace(boxes.BALSA, step=implicit_euler, mass=0.8),
+    "an engine that is stable again": dataclasses.replace(boxes.ANVIL, step=two_verlet_steps),
+}
+
+# -- characterise -----------------------------------------------------------------------------------------
+
+TASK = "characterise"
+PARTS = {
+    check: f"{TASK}.{key}" for key in bench.KEYS for check in (key, f"hidden_{key}", f"{key}_at_its_ends")
+} | {"report_complete": f"{TASK}.report", "hidden_report_complete": f"{TASK}.report"}
+
+#: key: (size below which differences count as they are, above it relative to the value; what counts as equal)
+_NEAR = {
+    "linear_damping": (0.1, 0.012),
+    "max_stable_step": (1e-3, 0.02),
+    "friction_anisotropy": (0.01, 0.04),
+    "rest_penetration": (2e-3, 0.03),
+    "restitution": (1.0, 0.04),
+    "tunnelling_speed": (1.0, 0.06),
+}
+#: Keys of which three engines show too little.
+_OF_ENDS = ("symplectic", "max_stable_step", "order", "linear_damping")
+
+
+def _characterise(answer, names=None):
+    """Numbers for each key. names: of the parts that are of interest; None for all."""
+    wanted = [key for key in bench.KEYS if names is None or f"{TASK}.{key}" in names]
+    known = [_case(answer, name, box) for name, box in KNOWN.items()] if wanted else []
+    ends = [_case(answer, name, box) for name, box in ENDS.items()] if set(wanted) & set(_OF_ENDS) else []
+    return {f"{TASK}.{key}": _numbers(key, known, ends) for key in wanted}
+
+
+def _case(answer, name, box):
+    """One engine in the program's hands, with every run it makes."""
+    case = bench.Case(name, box, {})
+    (case.report,) = answer([(bench.engine(case),)])
+    return case
+
+
+def _raised(case):
+    return isinstance(case.report, dict) and case.report.keys() == {"raised"}
+
+
+def _numbers(key, known, ends):
+    cases = known + ends if key in _OF_ENDS else known
+    numbers = [-4e3 if _raised(case) else _number(key, case.measured(key)) for case in cases]
+    if key == "symplectic":
+        numbers.append(float(all(map(_took_one_half, cases))))
+    if key == "deterministic":
+        numbers.append(float(max(map(bench.repeated, cases))))
+    return tuple(numbers)
+
+
+def _number(key, value):
+    if isinstance(value, bool | np.bool_):
+        return float(value)
+    if value is None or not isinstance(value, int | float | np.number):
+        return -1e3 if value is None else -2e3
+    number = kit.in_range(value)
+    if key not in _NEAR:
+        return round(number, 3)
+    least, equal = _NEAR[key]
+    if abs(number) > 1e12:
+        return math.copysign(3e3, number)
+    return round(math.asinh(number / least) / equal * kit.SAME, 9)
+
+
+def _took_one_half(case):
+    """Whether a single step of the spring was taken at h omega = 0.5."""
+    return any(
+        scene == "spring" and n == 1 and math.isclose(h * case.box.omega, 0.5, rel_tol=1e-6)
+        for scene, _, _, h, n, _ in case.runs
+    )
+
+
+# -- choose_engine ----------------------------------------------------------------------------------------
+
+_NAMES = ("mujoco", "kifo", "ode", "zaru", "balsa")
+_KEYS = ("order", "noise_db", "symplectic", "limit")
+
+
+def _choices():
+    """Small reports and requirements, made of few values, so that limits are met exactly, values are
+    missing, None, zero or False, and any slip in a requirement or in the choice shows somewhere."""
+    rng = np.random.default_rng(27)
+    values = {
+        "order": (0, 1, 2, 4, None),
+        "noise_db": (0.0, 55.0, 60.0, 60.3, None),
+        "symplectic": (True, False),
+        "limit": (0.0, 0.5, 1.5, math.inf),
+    }
+    asked = []
+    for _ in range(100):
+        costs = rng.permutation([1.0, 1.5, 1.7, 4.0, 9.0]).tolist()
+        reports = {}
+        for name, cost in zip(rng.permutation(_NAMES).tolist(), costs, strict=True):
+            kept = [key for key in _KEYS if key == "symplectic" or rng.random() < 0.85]
+            picked = {key: values[key][int(rng.integers(len(values[key])))] for key in kept}
+            reports[name] = {**picked, "cost": cost}
+        needs = []
+        for key in rng.permutation(_KEYS)[: int(rng.choice([0, 1, 1, 2, 2, 3]))].tolist():
+            known = [value for value in values[key] if value is not None]
+            ops = ("==",) if key == "symplectic" else ("<=", ">=", "==")
+            op, value = ops[int(rng.integers(len(ops)))], known[int(rng.integers(len(known)))]
+            needs.append({"key": key, "op": op, "value": value})
+        asked.append((reports, needs))
+    return asked
+
+
+QUESTIONS = {"choose_engine": _choices(), "engine_facts": []}
+ASK = {TASK: _characterise}

@@ -1,0 +1,30 @@
+"""Checks of `clear-the-forces`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("final_speed")
+@pytest.mark.points(1)
+def test_constant_force(submission):
+    """A constant force gives a speed that grows evenly"""
+    cases = [
+        ((2.0, 3.0, 0.1, 10), 1.5),
+        ((0.5, 9.81, 0.01, 200), 39.24),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("final_speed", *args),
+            expected,
+            rel=1e-9,
+            source=(
+                "a constant force: speed is force times time over mass, whatever the step; the "
+                "loop's rounding is far below nine digits"
+            ),
+            quantity="speed",
+            units="m/s",
+            input=dict(zip(("mass", "force", "h", "n"), args, strict=True)),
+            message="The speed after n steps is wrong.",
+            help="Print the sum of the forces in every step: it should be the same each time.",
+        )

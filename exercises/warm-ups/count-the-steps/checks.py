@@ -1,0 +1,25 @@
+"""Checks of `count-the-steps`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("steps_in")
+@pytest.mark.points(1)
+def test_quotients_beside_a_whole_number(submission):
+    """Quotients just beside a whole number are counted as that number"""
+    cases = [
+        ((0.3, 0.1), 3),
+        ((0.7, 0.1), 7),
+        ((2.1, 0.3), 7),
+        ((2.0, 0.01), 200),
+    ]
+    for args, expected in cases:
+        kit.expect_equal(
+            submission.call("steps_in", *args),
+            expected,
+            input=dict(zip(("duration", "h"), args, strict=True)),
+            message="The number of steps is wrong.",
+            help="Print duration / h with repr(): how far is it from a whole number?",
+        )

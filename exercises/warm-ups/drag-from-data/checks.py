@@ -1,0 +1,28 @@
+"""Checks of `drag-from-data`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("damping")
+@pytest.mark.points(1)
+def test_slopes(submission):
+    """Points on a line, and points with noise"""
+    cases = [
+        (([1.0, 2.0, 3.0], [0.5, 1.0, 1.5]), 0.5),
+        (([0.1, 1.0, 2.0], [0.4, 1.9, 4.2]), 2.06387225549),
+        (([-1.0, 0.5, 3.0, 2.0], [-2.5, 1.0, 5.5, 4.4]), 1.98596491228),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("damping", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="damping",
+            units="N s/m",
+            input=dict(zip(("speeds", "forces"), args, strict=True)),
+            message="The slope is wrong.",
+            help="Write down the sum of (f - b v)^2, and ask where it is smallest in b.",
+        )

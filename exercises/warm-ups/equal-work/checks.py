@@ -1,0 +1,28 @@
+"""Checks of `equal-work`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("fair_step")
+@pytest.mark.points(1)
+def test_steps(submission):
+    """Cheap and dear engines get their steps"""
+    cases = [
+        ((0.01, 50, 10), 0.002),
+        ((0.002, 8, 20), 0.005),
+        ((0.005, 30, 30), 0.005),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("fair_step", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="step",
+            units="s",
+            input=dict(zip(("h", "iterations", "other"), args, strict=True)),
+            message="The step of the other engine is wrong.",
+            help="Count the passes that the first engine makes in a second.",
+        )

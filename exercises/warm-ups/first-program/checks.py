@@ -1,0 +1,148 @@
+"""Checks of `first-program`: one for each fault."""
+
+import math
+
+import pytest
+
+from course.grading import kit
+
+ROUNDING = "closed form: only rounding is allowed"
+
+
+@pytest.mark.task("gap")
+@pytest.mark.points(1)
+def test_gap_is_a_number(submission):
+    """The distance of two balls at a sample is a number, and the right one"""
+    first, second = [[0.0, 1.0], [1.5, 1.0]], [[5.0, -2.0], [3.0, -2.0]]
+    for k, expected in ((0, 5.0), (1, 1.5)):
+        kit.expect_close(
+            kit.expect_accepts(
+                lambda k=k: submission.call("gap", first, second, k),
+                "TypeError",
+                input={"k": k},
+                message="The program stops here, with a TypeError.",
+                help="Read the last line of the error, and then the line it points at.",
+            ),
+            expected,
+            rel=1e-9,
+            source=ROUNDING,
+            quantity="gap",
+            units="m",
+            input={"k": k},
+            message="The distance of two balls is wrong.",
+            help="A run is a list of pairs (position, velocity); the distance is between two positions.",
+        )
+
+
+@pytest.mark.task("run")
+@pytest.mark.points(1)
+def test_run_begins_at_the_start(submission):
+    """A run of three steps has four samples, and the first is the start"""
+    states = kit.as_list(submission.call("run", 10.0, 2.0, -9.81, 3), "the run")
+    kit.expect_array(
+        states[0] if states else [],
+        [10.0, 2.0],
+        rel=1e-9,
+        source="the first sample is what was given",
+        quantity="first position and velocity",
+        input={"x": 10.0, "v": 2.0, "n": 3},
+        message="The first sample of a run is not its start.",
+        help="What is in the list before the first step has been taken?",
+    )
+    kit.expect_length(
+        states,
+        4,
+        name="the run",
+        input={"n": 3},
+        message="Three steps do not give four samples.",
+        help="Count the start, and the state after each step.",
+    )
+
+
+@pytest.mark.task("landing_time")
+@pytest.mark.points(1)
+def test_landing_is_where_the_ground_is(submission):
+    """A fall ends at the first sample at or below the ground"""
+    for heights, expected in (([0.5, 0.2, -0.2, -0.7, -1.3], 0.02), ([1.0, 0.6, 0.0, -0.9], 0.02)):
+        kit.expect_close(
+            submission.call("landing_time", heights),
+            expected,
+            rel=1e-9,
+            source=ROUNDING,
+            quantity="time of the landing",
+            units="s",
+            input={"heights": heights},
+            message="The fall does not end at the ground.",
+            help="Which sample is the first whose height is 0 or less?",
+        )
+    kit.expect_true(
+        submission.call("landing_time", [2.0, 1.5]) is None,
+        "A ball that has not reached the ground has a landing time.",
+        help="Give None where no sample is at or below the ground.",
+        input={"heights": [2.0, 1.5]},
+    )
+
+
+@pytest.mark.task("after_contact")
+@pytest.mark.points(1)
+def test_balls_bounce(submission):
+    """Equal balls that meet head-on do not go on as they were"""
+    for before, after in (((2.0, -2.0), [-2.0, 2.0]), ((3.0, 1.0), [1.0, 3.0])):
+        kit.expect_array(
+            submission.call("after_contact", *before),
+            after,
+            rel=1e-9,
+            source="momentum and energy are both kept; masses are equal",
+            quantity="velocities afterwards",
+            units="m/s",
+            input={"v1": before[0], "v2": before[1]},
+            message="The two balls do not collide as equal elastic balls do.",
+            help="Momentum and energy stay as they were. Which two velocities do that, beside the old ones?",
+        )
+
+
+@pytest.mark.task("euler_step")
+@pytest.mark.points(1)
+def test_euler_uses_old_rates(submission):
+    """Explicit Euler moves with the velocity from before the step"""
+    x, v, a, h = 1.0, 0.5, -4.0, 0.1
+    kit.expect_array(
+        submission.call("euler_step", x, v, a, h),
+        [x + h * v, v + h * a],
+        rel=1e-9,
+        source=ROUNDING,
+        quantity="position and velocity",
+        input={"x": x, "v": v, "a": a, "h": h},
+        message="This is not a step of explicit Euler.",
+        help="Compare it with the function below it, line by line.",
+    )
+
+
+@pytest.mark.task("error_at_end")
+@pytest.mark.points(1)
+def test_error_is_taken_at_one_moment(submission):
+    """The exact positions themselves have no error"""
+    for omega, n in ((2.0, 50), (3.0, 7)):
+        exact = [math.cos(omega * 0.01 * k) for k in range(n + 1)]
+        kit.expect_close(
+            submission.call("error_at_end", exact, omega),
+            0.0,
+            abs=1e-12,
+            source="the positions are exact: rounding of a cosine, some 1e-16",
+            quantity="error",
+            units="m",
+            input={"omega": omega, "samples": n + 1},
+            message="Exact positions are said to have an error.",
+            help="The first position belongs to t = 0. To which time does the last of four belong?",
+        )
+    kit.expect_close(
+        submission.call("error_at_end", [1.0, math.cos(0.02) + 0.25], 2.0),
+        0.25,
+        rel=1e-9,
+        source=ROUNDING,
+        quantity="error",
+        units="m",
+        input={"omega": 2.0, "samples": 2},
+        message="A position that is off by a quarter of a metre has another error.",
+        help="Take the size of the difference between the last position and the exact one.",
+    )

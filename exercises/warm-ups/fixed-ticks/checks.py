@@ -1,0 +1,29 @@
+"""Checks of `fixed-ticks`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("ticks")
+@pytest.mark.points(1)
+def test_frames(submission):
+    """Short and long frames give the right steps and the right rest"""
+    cases = [
+        ((0.025, 0.01, 0.006), [3, 0.001]),
+        ((0.004, 0.01, 0.003), [0, 0.007]),
+        ((0.1, 0.007, 0.0045), [14, 0.0065]),
+    ]
+    for args, expected in cases:
+        kit.expect_array(
+            submission.call("ticks", *args),
+            expected,
+            rel=1e-9,
+            abs=1e-12,
+            source="closed form; absolute 1e-12 s for a rest near zero",
+            quantity="steps and time left",
+            units="1",
+            input=dict(zip(("frame", "h", "left"), args, strict=True)),
+            message="Steps or rest of a frame are wrong.",
+            help="What goes into the account must come out as steps or stay in it.",
+        )

@@ -1,0 +1,52 @@
+"""Checks of `floor-bounce`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("after_floor")
+@pytest.mark.points(1)
+def test_on_the_way_down(submission):
+    """A falling ball leaves with e times its speed"""
+    cases = [
+        ((-3.0, 0.8), 2.4),
+        ((-0.25, 0.5), 0.125),
+        ((-2.0, 0.3), 0.6),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("after_floor", *args),
+            expected,
+            rel=1e-9,
+            abs=1e-12,
+            source="closed form; absolute 1e-12 m/s where it is zero",
+            quantity="velocity afterwards",
+            units="m/s",
+            input=dict(zip(("v", "e"), args, strict=True)),
+            message="The velocity after a bounce is wrong.",
+            help=("Restitution is the speed after over the speed before, and the direction turns round."),
+        )
+
+
+@pytest.mark.task("after_floor")
+@pytest.mark.points(1)
+def test_on_the_way_up(submission):
+    """A rising or resting ball is left alone"""
+    cases = [
+        ((2.0, 0.8), 2.0),
+        ((0.5, 0.3), 0.5),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("after_floor", *args),
+            expected,
+            rel=1e-9,
+            abs=1e-12,
+            source="closed form; absolute 1e-12 m/s where it is zero",
+            quantity="velocity afterwards",
+            units="m/s",
+            input=dict(zip(("v", "e"), args, strict=True)),
+            message="A ball that was already rising has another velocity now.",
+            help="Ask first whether the ball is moving into the floor.",
+        )

@@ -1,0 +1,28 @@
+"""Checks of `how-sure`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("standard_error")
+@pytest.mark.points(1)
+def test_samples(submission):
+    """Samples of two, four and nine values"""
+    cases = [
+        (([1.0, 3.0],), 1.0),
+        (([2.0, 4.0, 4.0, 6.0],), 0.816496580928),
+        (([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],), 0.0484322104838),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("standard_error", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="standard error",
+            units="1",
+            input=dict(zip(("values",), args, strict=True)),
+            message="The standard error is wrong.",
+            help="First the scatter of one value, then that of the mean.",
+        )

@@ -1,0 +1,28 @@
+"""Checks of `let-it-go`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("angular_acceleration")
+@pytest.mark.points(1)
+def test_accelerations(submission):
+    """With and without the motor, level and raised"""
+    cases = [
+        ((0.0, 2.0, 1.0, 0.0, 9.81), -14.715),
+        ((12.0, 2.0, 1.0, 0.3, 9.81), 3.94222356252),
+        ((-1.0, 0.5, 0.6, -1.0, 1.62), -18.8548910054),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("angular_acceleration", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="angular acceleration",
+            units="rad/s^2",
+            input=dict(zip(("torque", "m", "l", "angle", "g"), args, strict=True)),
+            message="The angular acceleration is wrong.",
+            help="Add the torques first, then divide by the moment of inertia about the end.",
+        )

@@ -1,0 +1,28 @@
+"""Checks of `one-step-ahead`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("step_ahead")
+@pytest.mark.points(1)
+def test_steps(submission):
+    """Steps forwards from three states are right"""
+    cases = [
+        ((0.0, 2.0, -9.81, 0.1), [0.2, 1.019]),
+        ((1.5, -0.5, 3.0, 0.25), [1.375, 0.25]),
+        ((10.0, 1.0, 1.0, 1.0), [11.0, 2.0]),
+    ]
+    for args, expected in cases:
+        kit.expect_array(
+            submission.call("step_ahead", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="position and velocity",
+            units="1",
+            input=dict(zip(("x", "v", "a", "h"), args, strict=True)),
+            message="The state after a step is wrong.",
+            help="Write down x, v and a before the step, and use only these.",
+        )

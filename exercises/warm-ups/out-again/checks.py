@@ -1,0 +1,51 @@
+"""Checks of `out-again`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("push_out")
+@pytest.mark.points(1)
+def test_deep(submission):
+    """Bodies that are too deep are pushed out"""
+    cases = [
+        ((0.01, 0.01, 0.2, 0.002), 0.16),
+        ((0.05, 0.004, 0.1, 0.01), 1.0),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("push_out", *args),
+            expected,
+            rel=1e-9,
+            abs=1e-12,
+            source="closed form; absolute 1e-12 m/s where it is zero",
+            quantity="separating speed",
+            units="m/s",
+            input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
+            message="The speed that pushes out is wrong.",
+            help="Which distance is to be covered, and in which time?",
+        )
+
+
+@pytest.mark.task("push_out")
+@pytest.mark.points(1)
+def test_within_slop(submission):
+    """Bodies within the slop, or apart, are left alone"""
+    cases = [
+        ((0.001, 0.01, 0.2, 0.002), 0.0),
+        ((-0.03, 0.01, 0.2, 0.002), 0.0),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("push_out", *args),
+            expected,
+            rel=1e-9,
+            abs=1e-12,
+            source="closed form; absolute 1e-12 m/s where it is zero",
+            quantity="separating speed",
+            units="m/s",
+            input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
+            message="Bodies that are not too deep are moved.",
+            help="The speed is never negative: a contact does not pull.",
+        )

@@ -1,0 +1,28 @@
+"""Checks of `too-fast-to-see`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("fastest")
+@pytest.mark.points(1)
+def test_speeds(submission):
+    """Thick and thin walls, large and small balls"""
+    cases = [
+        ((0.1, 0.05, 0.01), 20.0),
+        ((0.02, 0.003, 0.004), 6.5),
+        ((0.5, 0.0, 0.02), 25.0),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("fastest", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="largest speed",
+            units="m/s",
+            input=dict(zip(("thickness", "radius", "h"), args, strict=True)),
+            message="The largest speed is wrong.",
+            help="How far does the ball travel while it overlaps the wall?",
+        )

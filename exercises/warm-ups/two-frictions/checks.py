@@ -1,0 +1,31 @@
+"""Checks of `two-frictions`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("pair_friction")
+@pytest.mark.points(1)
+def test_rules(submission):
+    """Each rule gives its own coefficient"""
+    cases = [
+        ((0.9, 0.1, "product"), 0.09),
+        ((0.9, 0.1, "mean"), 0.5),
+        ((0.9, 0.1, "larger"), 0.9),
+        ((0.2, 0.6, "larger"), 0.6),
+        ((1.2, 0.5, "product"), 0.6),
+        ((0.2, 0.6, "mean"), 0.4),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("pair_friction", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="coefficient",
+            units="1",
+            input=dict(zip(("mu1", "mu2", "rule"), args, strict=True)),
+            message="The coefficient of a pair is wrong.",
+            help="Take the rule by its word.",
+        )

@@ -1,0 +1,51 @@
+"""Checks of `which-line-first`."""
+
+import math
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("swing")
+@pytest.mark.points(1)
+def test_energy_stays(submission):
+    """The energy stays near where it began, however long it swings"""
+    k, m = 4.0, 1.0
+    h = 0.1 * math.sqrt(m / k)
+    for n in (20, 200, 2000, 20000):
+        x, v = kit.as_vector(submission.call("swing", 1.0, 0.5, k, m, h, n), 2, "position and velocity")
+        energy = (0.5 * m * v**2 + 0.5 * k * x**2) / (0.5 * m * 0.5**2 + 0.5 * k)
+        kit.expect_bounded(
+            energy,
+            low=0.9,
+            high=1.1,
+            source="with a step of a tenth of sqrt(m/k) the mended loop stays within 8 % of where it began",
+            quantity="energy over the energy at the start",
+            input={"k": k, "m": m, "h": h, "n": n},
+            message="The energy of the swing does not stay where it began.",
+            help="Do one step on paper. Which line uses a value that the other has renewed?",
+        )
+
+
+@pytest.mark.task("swing")
+@pytest.mark.points(1)
+@pytest.mark.requires("energy_stays")
+def test_quarter(submission):
+    """Let go at rest, the mass crosses the middle after a quarter of the period"""
+    k, m = 9.0, 2.0
+    omega = math.sqrt(k / m)
+    n = 1000
+    h = 0.5 * math.pi / omega / n
+    x, v = kit.as_vector(submission.call("swing", 0.3, 0.0, k, m, h, n), 2, "position and velocity")
+    kit.expect_array(
+        [x, v / omega],
+        [0.0, -0.3],
+        abs=0.001,
+        source="0.3 cos(omega t); a loop of first order is off by 0.3 h omega / 2, about 0.0003",
+        quantity="position, and velocity over omega",
+        units="m",
+        input={"k": k, "m": m, "h": h, "n": n},
+        message="After a quarter of a period the mass is not where a mass on a spring would be.",
+        help="Keep the force -k x and the two sums; only the order of things is to change.",
+    )

@@ -1,0 +1,28 @@
+"""Checks of `worst-drift`."""
+
+import pytest
+
+from course.grading import kit
+
+
+@pytest.mark.task("worst_drift")
+@pytest.mark.points(1)
+def test_drifts(submission):
+    """Energies that rise, fall, come back and are negative"""
+    cases = [
+        (([2.0, 2.2, 1.7, 2.1],), 0.15),
+        (([-5.0, -4.0, -5.5, -5.0],), 0.2),
+        (([10.0, 10.0, 9.0, 8.5],), 0.15),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("worst_drift", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="worst drift",
+            units="1",
+            input=dict(zip(("energies",), args, strict=True)),
+            message="The worst drift is wrong.",
+            help="Which of the values is furthest from the first?",
+        )

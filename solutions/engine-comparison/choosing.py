@@ -1,0 +1,187 @@
+"""``choose_engine``, right or with slips in it: for questions that are drawn, and what a diagnosis knows."""
+
+from __future__ import annotations
+
+import math
+import operator
+
+_OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": operator.eq}
+
+
+def meets(report, need):
+    """A value that is there and stands to the required one as the operator says."""
+    value = report.get(need["key"])
+    return value is not None and bool(_OPERATORS[need["op"]](value, need["value"]))
+
+
+def choose(reports, needs, *, met=meets, enough=all, cost=1.0, none=None):
+    """The choice.
+
+    Args:
+        met: whether a report meets one requirement.
+        enough: of the answers for all requirements, whether the engine fits: all, any.
+        cost: 1 takes the cheapest, -1 the dearest, 0 the first.
+        none: what is returned where none fits.
+    """
+    fitting = [name for name, report in reports.items() if enough([met(report, need) for need in needs])]
+    return min(fitting, key=lambda name: cost * reports[name]["cost"], default=none)
+
+
+# -- the same questions in other words ----------------------------------------------------------------------
+
+
+def names(rng, count):
+    """Names that mean nothing."""
+    letters = "bcdfghklmnprstvz"
+    made = set()
+    while len(made) < count:
+        made.add("".join(rng.choice(list(letters)) + rng.choice(list("aeiou")) for _ in range(3)))
+    return [str(name) for name in rng.permutation(sorted(made))]
+
+
+def retold(rng, questions):
+    """Questions (reports, needs, answer) with other names, another order, and costs in another currency."""
+    return [_retold(rng, *question) for question in questions]
+
+
+def _retold(rng, reports, needs, answer):
+    other = dict(zip(reports, names(rng, len(reports)), strict=True))
+    rate = float(rng.uniform(0.5, 3.0))
+    shuffled = [str(name) for name in rng.permutation(list(reports))]
+    return (
+        {other[name]: {**reports[name], "cost": rate * reports[name]["cost"]} for name in shuffled},
+        [needs[i] for i in rng.permutation(len(needs))],
+        None if answer is None else other[answer],
+    )
+
+
+# -- slips in one requirement ------------------------------------------------------------------------------
+
+
+def _missing(report, need):
+    return report.get(need["key"]) is None
+
+
+def _missing_is_zero(report, need):
+    return meets({**report, need["key"]: report.get(need["key"]) or 0}, need)
+
+
+def _strictly(report, need):
+    return meets(report, need) and (need["op"] == "==" or report[need["key"]] != need["value"])
+
+
+def _nearly(report, need):
+    if need["op"] != "==" or isinstance(need["value"], bool) or _missing(report, need):
+        return meets(report, need)
+    return math.isclose(report[need["key"]], need["value"], rel_tol=0.02)
+
+
+def _with_operators(**others):
+    """Operators read as others; "" takes no notice of it."""
+
+    def met(report, need):
+        op = others.get({"<=": "le", ">=": "ge", "==": "eq"}[need["op"]], need["op"])
+        return not _missing(report, need) if not op else meets(report, {**need, "op": op})
+
+    return met
+
+
+#: code: the same slip in several forms
+METS = {
+    "IGNORES_MISSING": (
+        lambda report, need: _missing(report, need) or meets(report, need),
+        lambda report, need: need["key"] not in report or meets(report, need),
+        lambda report, need: (need["key"] in report and report[need["key"]] is None) or meets(report, need),
+        _missing_is_zero,
+    ),
+    "ZERO_TAKEN_FOR_MISSING": (lambda report, need: bool(report.get(need["key"])) and meets(report, need),),
+    "STRICT_COMPARISON": (_strictly,),
+    "EQUALITY_ROUGH": (_nearly,),
+    "OPERATOR_CONFUSED": (
+        _with_operators(le=">=", ge="<="),
+        _with_operators(le="<=", ge="<=", eq="<="),
+        _with_operators(le=">=", ge=">=", eq=">="),
+        _with_operators(le="==", ge="==", eq="=="),
+        _with_operators(eq="<="),
+        _with_operators(eq=">="),
+    ),
+    "OPERATOR_IGNORED": (_with_operators(eq=""), _with_operators(le=""), _with_operators(ge="")),
+}
+
+
+# -- slips in the rest -------------------------------------------------------------------------------------
+
+
+def _cheapest_first(reports, needs, met=meets):
+    name = choose(reports, [])
+    return name if name is not None and all(met(reports[name], need) for need in needs) else None
+
+
+def _most_met(reports, needs, met=meets):
+    if not reports:
+        return None
+    return min(reports, key=lambda n: (-sum(met(reports[n], need) for need in needs), reports[n]["cost"]))
+
+
+def _alphabetical(reports, needs, met=meets):
+    return min((n for n, r in reports.items() if all(met(r, need) for need in needs)), default=None)
+
+
+def _one_of(which):
+    return lambda reports, needs, met=meets: choose(reports, needs[which], met=met)
+
+
+def _reports(reports, needs, met=meets):
+    name = choose(reports, needs, met=met)
+    return None if name is None else reports[name]
+
+
+def _loud(reports, needs, met=meets):
+    name = choose(reports, needs, met=met)
+    if name is None:
+        raise ValueError("none fits")
+    return name
+
+
+def _told(form):
+    return lambda reports, needs, met=meets: form(choose(reports, needs, met=met), reports)
+
+
+def _all_that_fit(reports, needs, met=meets):
+    fitting = [n for n, r in reports.items() if all(met(r, need) for need in needs)]
+    return sorted(fitting, key=lambda n: reports[n]["cost"])
+
+
+#: code: (reports, needs, met) -> choice, in several forms
+CHOICES = {
+    "REQUIREMENTS_IGNORED": (lambda reports, needs, met=meets: choose(reports, []),),
+    "COST_BEFORE_REQUIREMENTS": (_cheapest_first,),
+    "COST_REVERSED": (lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=-1.0),),
+    "COST_IGNORED": (
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=0.0),
+        lambda reports, needs, met=meets: choose(dict(reversed(reports.items())), needs, met=met, cost=0.0),
+    ),
+    "DEPENDS_ON_NAMES": (_alphabetical,),
+    "ANY_INSTEAD_OF_ALL": (
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, enough=any),
+        _most_met,
+    ),
+    "FIRST_REQUIREMENT_ONLY": (_one_of(slice(1)), _one_of(slice(-1, None))),
+    "NEVER_CHOOSES": (lambda reports, needs, met=meets: None,),
+    "NOTHING_FITS": (
+        lambda reports, needs, met=meets: choose(reports, needs, met=met) or choose(reports, []),
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, none=""),
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, none="None"),
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, none="none"),
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, none=False),
+        _loud,
+    ),
+    "NOT_A_NAME": (
+        _reports,
+        _all_that_fit,
+        _told(lambda name, reports: None if name is None else (name, reports[name]["cost"])),
+        _told(lambda name, reports: None if name is None else [name]),
+        _told(lambda name, reports: None if name is None else reports[name]["cost"]),
+        _told(lambda name, reports: None if name is None else list(reports).index(name)),
+    ),
+}

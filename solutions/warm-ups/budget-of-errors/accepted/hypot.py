@@ -1,0 +1,5 @@
+"""With hypot."""
+
+
+def total_error(errors):
+    return math.hypot(*errors)

@@ -1,0 +1,5 @@
+"""Takes the largest."""
+
+
+def total_error(errors):
+    return max(errors)

@@ -1,0 +1,5 @@
+"""As it stands in the file."""
+
+
+def steps_in(duration, h):
+    return int(duration / h)

@@ -1,0 +1,5 @@
+"""Cuts off before rounding."""
+
+
+def reading(distance, resolution, limit):
+    return round(min(distance, limit) / resolution) * resolution

@@ -1,0 +1,5 @@
+"""Gives the counts."""
+
+
+def reading(distance, resolution, limit):
+    return min(round(distance / resolution), limit)

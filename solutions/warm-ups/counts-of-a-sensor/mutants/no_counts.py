@@ -1,0 +1,5 @@
+"""Forgets the counts."""
+
+
+def reading(distance, resolution, limit):
+    return min(distance, limit)

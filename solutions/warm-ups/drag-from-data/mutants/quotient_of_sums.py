@@ -1,0 +1,5 @@
+"""Divides the sums."""
+
+
+def damping(speeds, forces):
+    return sum(forces) / sum(speeds)

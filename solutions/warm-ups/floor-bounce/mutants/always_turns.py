@@ -1,0 +1,5 @@
+"""Turns every velocity round."""
+
+
+def after_floor(v, e):
+    return -e * v

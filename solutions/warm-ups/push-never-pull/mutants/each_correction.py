@@ -1,0 +1,5 @@
+"""Cuts off every negative correction."""
+
+
+def applied(total, wanted):
+    return max(wanted, 0.0)

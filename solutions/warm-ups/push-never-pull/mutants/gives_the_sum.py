@@ -1,0 +1,5 @@
+"""Gives the new sum."""
+
+
+def applied(total, wanted):
+    return max(total + wanted, 0.0)

@@ -1,0 +1,5 @@
+"""Counts one doubt."""
+
+
+def distance_in_doubts(simulated, doubt_s, measured, doubt_m):
+    return abs(simulated - measured) / doubt_m

@@ -1,0 +1,5 @@
+"""Takes the ball as a point."""
+
+
+def fastest(thickness, radius, h):
+    return thickness / h

@@ -1,0 +1,5 @@
+"""Adds the radius once."""
+
+
+def fastest(thickness, radius, h):
+    return (thickness + radius) / h

@@ -1,0 +1,112 @@
+"""What CONTRIBUTING.md shows an author works: every example is run, and every name of the kit has one."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.grading import kit
+from course.scoring.reporting import report_of
+from course.scoring.session import GradingSession
+from course.scoring.submission import Submission
+from course.scoring.verdict import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.scoring.verdict import CheckResult
+
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+FUNCTIONS = ("double", "doublings", "describe", "step", "push", "strength", "table")
+#: Gives what none of the checks wants, whatever it is asked.
+WRONG = "\n".join(
+    f"def {name}(*args):\n    return {'args[0] * args[0]' if name == 'double' else 'None'}\n"
+    for name in FUNCTIONS
+)
+
+
+def blocks(kind: str) -> list[str]:
+    """The blocks of Python of one kind, in order."""
+    return re.findall(rf"^```python {kind}\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+
+
+def checks() -> str:
+    """The examples as a file of checks, each with the markers that the page leaves out."""
+    parts = ["import numpy as np\nimport pytest\n\nfrom course.grading import kit\n", *blocks("top")]
+    parts += [block.replace('@pytest.mark.requires("other_check")', "#") for block in blocks("check")]
+    for number, body in enumerate(blocks("example")):
+        parts.append(
+            f'@pytest.mark.task("double")\n@pytest.mark.points(1)\n'
+            f'def test_example_{number}(submission):\n    """Example {number}"""\n'
+            + textwrap.indent(body, "    ")
+        )
+    return "\n\n".join(parts)
+
+
+@pytest.fixture(scope="module")
+def growth(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Catalog]:
+    """A course with the exercise that the page is about."""
+    root = tmp_path_factory.mktemp("growth")
+    shutil.copytree(ROOT / "tests" / "fixtures" / "mini_course", root, dirs_exist_ok=True)
+    folder = root / "exercises" / "growth"
+    shutil.copytree(root / "exercises" / "halving", folder)
+    (folder / "checks.py").write_text(checks())
+    (folder / "diagnosis.py").write_text("from course.grading import kit\n\n" + blocks("diagnosis")[0])
+    (folder / "report.py").write_text("from course.grading import kit\n\n" + blocks("report")[0])
+    (folder / "exercise.toml").write_text(
+        'format_version = 1\nid = "growth"\ntitle = "Growth"\nmodule = "growth.py"\norder = 9\n'
+        'lesson = "half-as-much"\nsummary = "It grows."\n[[task]]\nid = "double"\ntitle = "D"\npoints = 9\n'
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COURSE_CONTENT", str(root))
+        yield Catalog()
+
+
+def graded(catalog: Catalog, source: str) -> dict[str, CheckResult]:
+    exercise = catalog.exercise("growth")
+    with GradingSession(exercise, catalog, scope="public") as session:
+        verdict = session.grade(Submission({exercise.module: source.encode()}))
+    return {check.id: check for check in verdict.checks}
+
+
+def test_every_example_passes_on_the_submission_that_the_page_shows(growth: Catalog) -> None:
+    found = graded(growth, blocks("submission")[0])
+    assert len(found) == 1 + len(blocks("example"))
+    assert {name: check.message for name, check in found.items() if check.status is not Status.PASS} == {}
+
+
+def test_every_example_can_fail_and_the_diagnosis_is_found(growth: Catalog) -> None:
+    found = graded(growth, WRONG)
+    assert [name for name, check in found.items() if check.status is Status.PASS] == []
+    assert [name for name, check in found.items() if check.status is Status.GRADER_ERROR] == []
+    assert found["double_of_three"].diagnosis == "SQUARES_INSTEAD"
+
+
+def test_the_report_shows_both_sections(growth: Catalog) -> None:
+    source = Submission({"growth.py": blocks("submission")[0].encode()})
+    made = report_of(growth.exercise("growth"), growth, source)
+    assert [section.title for section in made.sections] == ["Once", "Often"]
+    assert made.sections[0].rows == (("1.5", "3"),)
+
+
+def test_every_name_of_the_kit_is_on_the_page() -> None:
+    code = "\n".join(re.findall(r"^```python \w+\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL))
+    named = set(re.findall(r"kit\.(\w+)", TEXT))
+    assert named - set(kit.__all__) == set()
+    assert set(kit.__all__) - named == set()
+    # What is used with others is told in a sentence; whatever stands alone has an example that is run.
+    told = {"Words", "fail", "finding_for", "in_range", "known_answers", "reference", "sibling", "words"}
+    types = {name for name in kit.__all__ if name[0].isupper()} - {
+        "Diagnosis",
+        "Problem",
+        "Report",
+        "Section",
+    }
+    assert set(kit.__all__) - set(re.findall(r"kit\.(\w+)", code)) <= told | types

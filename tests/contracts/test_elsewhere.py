@@ -1,0 +1,138 @@
+"""At home on other systems: without what only POSIX has, with other encodings, paths and consoles."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+MINI_COURSE = ROOT / "tests" / "fixtures" / "mini_course"
+ELSEWHERE = Path(__file__).with_name("elsewhere.py")
+
+
+def run(folder, *words, encoding="utf-8", program=(str(ELSEWHERE), "course"), **environment):
+    """A command line in a folder, in a process without POSIX; its output as a console would decode it."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("LC_", "PYTHON"))}
+    ran = subprocess.run(
+        [sys.executable, *program, *words],
+        cwd=folder,
+        env={**kept, "COURSE_CONTENT": str(MINI_COURSE), "PYTHONPATH": str(ROOT), **environment},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        check=False,
+    )
+    out, err = ran.stdout.decode(encoding), ran.stderr.decode(encoding)
+    assert ran.returncode != 70, err
+    assert "Traceback" not in err, err
+    return ran.returncode, out, err
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory):
+    """A workspace in a folder with a space in its name; the exercise is solved."""
+    root = tmp_path_factory.mktemp("else where") / "my course"
+    assert run(root.parent, "init", str(root))[0] == 0
+    assert run(root, "start", "doubling")[0] == 0
+    solved = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_bytes()
+    (root / "doubling" / "doubling.py").write_bytes(solved)
+    return root
+
+
+def test_lessons_are_listed_without_posix(workspace):
+    code, out, _ = run(workspace, "lessons", "--json")
+    assert code == 0
+    assert len(json.loads(out)["lessons"]) == 2
+
+
+def test_a_check_runs_at_the_lowest_level_without_posix(workspace):
+    code, out, err = run(workspace, "check", "doubling", "--json")
+    assert code == 0, err
+    assert json.loads(out)["ok"] is True
+
+
+def test_a_function_that_hangs_or_dies_costs_its_checks_without_posix(workspace, tmp_path):
+    (tmp_path / "a b").mkdir()
+    root = tmp_path / "a b"
+    run(root, "init")
+    run(root, "start", "doubling")
+    source = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_text("utf-8")
+    source += "\ndef double(x):\n    import os\n    os._exit(3)\n"
+    (root / "doubling" / "doubling.py").write_text(source, "utf-8")
+    code, out, err = run(root, "check", "doubling", "--json")
+    assert code == 1, err
+    states = {(check["task"], check["status"]) for check in json.loads(out)["checks"]}
+    assert ("double", "crash") in states
+    assert ("doublings", "pass") in states
+
+
+def test_handing_in_works_without_posix(workspace, tmp_path):
+    target = tmp_path / "for you.zip"
+    code, out, err = run(workspace, "submit", "-o", str(target), "--json")
+    assert code == 0, err
+    assert target.is_file()
+    assert json.loads(out)["ok"] is True
+
+
+def test_the_quiz_is_taken_without_posix(tmp_path):
+    assert run(tmp_path, "init", COURSE_CONTENT="")[0] == 0
+    code, out, err = run(tmp_path, "quiz", "take", "--questions", "--json", COURSE_CONTENT="")
+    assert code == 0, err
+    assert len(json.loads(out)["questions"]) == 5
+
+
+def test_a_fault_report_and_the_doctor_work_without_posix(workspace, tmp_path):
+    code, _, err = run(tmp_path, "bug")
+    assert code == 0, err
+    text = (tmp_path / "course-bug.txt").read_text("utf-8")
+    assert "protection: L1" in text
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "latin-1"])
+def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding):
+    """A character that it cannot show is a question mark, never the end of the program."""
+    program = ("-m", "course")
+    content = {"COURSE_CONTENT": ""}
+    code, out, _ = run(
+        tmp_path, "lesson", "why-simulate", "--plain", program=program, encoding=encoding,
+        PYTHONIOENCODING=encoding, PYTHONUTF8="0", LC_ALL="C", **content,
+    )  # fmt: skip
+    assert code == 0
+    assert "pilot" in out
+    # JSON is UTF-8 everywhere: it is read by programs.
+    code, out, _ = run(
+        tmp_path, "lesson", "why-simulate", "--json", program=program, PYTHONIOENCODING=encoding,
+        PYTHONUTF8="0", LC_ALL="C", **content,
+    )  # fmt: skip
+    assert json.loads(out)["id"] == "why-simulate"
+
+
+def test_files_are_utf_8_whatever_the_locale_says(tmp_path):
+    """Everything written and read names its encoding: a locale without UTF-8 changes nothing."""
+    root = tmp_path / "é à"
+    root.mkdir()
+    strict = {"PYTHONUTF8": "0", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONWARNDEFAULTENCODING": "1"}
+    program = ("-W", "error::EncodingWarning", "-m", "course")
+    assert run(root, "init", "--with", "github,vscode", program=program, encoding="latin-1", **strict)[0] == 0
+    assert run(root, "start", "doubling", program=program, encoding="latin-1", **strict)[0] == 0
+    assert run(root, "bug", program=program, encoding="latin-1", **strict)[0] == 0
+
+
+@pytest.mark.parametrize("variable", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
+def test_a_console_without_colour_gets_none(workspace, variable):
+    _, out, _ = run(workspace, "lessons", program=("-m", "course"), **variable)
+    assert "\x1b" not in out
+
+
+def test_the_workflow_for_other_systems_is_one():
+    found = yaml.safe_load((ROOT / ".github" / "workflows" / "systems.yml").read_text("utf-8"))
+    job = found["jobs"]["test"]
+    assert job["strategy"]["matrix"]["system"] == ["windows-latest", "macos-latest"]
+    assert any("pytest" in step.get("run", "") for step in job["steps"])
+    for step in job["steps"]:
+        assert ("uses" in step) is not ("run" in step)

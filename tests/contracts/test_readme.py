@@ -1,0 +1,47 @@
+"""What the README promises at first sight: its pictures, its four lines, its length."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from course.cli.author.pictures import PICTURES
+from course.cli.frame.app import run
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_no_picture_is_stale(capsys):
+    """`course author pictures` makes them anew."""
+    assert run(["author", "pictures", "--check"]) == 0, capsys.readouterr().out
+
+
+def test_the_pictures_of_the_readme_are_those_that_are_made():
+    shown = re.findall(r"(?:src=\"|\]\()(docs/pictures/[^\")]+)", README)
+    assert sorted(shown) == sorted(f"docs/pictures/{name}" for name in PICTURES)
+    assert all((ROOT / path).is_file() for path in shown)
+
+
+def test_the_picture_of_a_diagnosis_shows_the_finding_and_the_line():
+    words = re.sub(r"<[^>]+>", " ", (ROOT / "docs/pictures/diagnosis.svg").read_text(encoding="utf-8"))
+    words = " ".join(words.replace("&#160;", " ").split())
+    for said in ("steps of semi-implicit Euler", "EULER_IS_SEMI_IMPLICIT", "x_next = x + h * v_next"):
+        assert said in words
+
+
+def test_the_links_of_the_readme_lead_somewhere():
+    for target in re.findall(r"\]\(([^)#:]+)\)", README):
+        assert (ROOT / target).exists(), target
+
+
+@pytest.mark.parametrize("command", re.findall(r"^course ([a-z-]+(?: [a-z]+)?)", README, flags=re.MULTILINE))
+def test_a_command_of_the_readme_exists(command, capsys):
+    first, _, second = command.partition(" ")
+    from course.cli.frame.registry import COMMANDS
+
+    assert first in COMMANDS
+    if second and COMMANDS[first].is_group:
+        assert run([first, second, "--help"]) == 0, capsys.readouterr().err

@@ -1,0 +1,207 @@
+"""A class in which every fifth file is hostile: the others get what they would have got without them.
+
+    COURSE_CLASS_OF=1000 pytest -m soak -n 0 -s tests/e2e/test_hostile_class.py
+
+``COURSE_CLASS_OF`` is the size of the class, 60 unless said otherwise; of 1,000, 800 are honest and every
+file of tests/attacks is handed in at least once. A smaller class gets as many of them as there is room for,
+from all over the corpus. What was measured is printed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.contracts.levels import require_level
+from tests.e2e.processes import below, left_running, stored
+
+ROOT = Path(__file__).resolve().parents[2]
+ATTACKS = ROOT / "tests" / "attacks"
+ARENA = ATTACKS / "arena"
+MODULE = "arena.py"
+MODEL = (ARENA / "solutions" / "arena" / MODULE).read_bytes()
+WRONG = (ATTACKS / "wrong_arena.py").read_bytes()
+#: Honest mistakes, so that the honest scores are not all alike.
+MISTAKES = (
+    b"",
+    b"",
+    b"\n\ndef compose(f, g, x):\n    return g(f(x))\n",
+    b"\n\ndef draw(rng, n):\n    return [0.5] * n\n",
+)
+SIZE = int(os.environ.get("COURSE_CLASS_OF", "60"))
+#: Memory of coordinator and graders in the last quarter of a run, in units of the second. `class_run.py`
+#: allows a class of right and wrong answers 5 %; what a grader holds for a hostile file comes on top.
+GROWTH = 1.10
+#: The first hundred submissions fill caches that then stay: they are to be over before the second quarter.
+FILLED = 400
+#: Bytes of temporary files at any time. What a worker writes at L3 is in a file system of its own; here is
+#: what coordinator and graders need: a copy of the content, and that of the worker's programs.
+TEMPORARY = 64 << 20
+
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux"),
+]
+
+
+@dataclass
+class Watched:
+    """A run, and what it took over time."""
+
+    code: int
+    results: dict[str, dict[str, Any]]
+    seconds: float
+    memory: list[int] = field(default_factory=list)
+    temporary: list[int] = field(default_factory=list)
+
+    def quarters(self) -> tuple[float, float]:
+        """Bytes of memory in the second quarter of the run, and in the last."""
+        quarter = max(1, len(self.memory) // 4)
+        return statistics.median(self.memory[quarter : 2 * quarter]), statistics.median(
+            self.memory[-quarter:]
+        )
+
+    def scores(self) -> dict[str, Any]:
+        """What each honest student got, check by check."""
+        return {
+            name: (
+                line["state"],
+                line["score"],
+                [(check["id"], check["status"], check["points"]) for check in line["checks"]],
+            )
+            for name, line in self.results.items()
+            if name.endswith("-honest")
+        }
+
+
+def hostile_files() -> list[Path]:
+    """Every attack that is kept, in one order."""
+    return [path for path in sorted(ATTACKS.glob("*.py")) if not path.name.startswith("wrong_")]
+
+
+def make_class(folder: Path, size: int, *, hostile: bool) -> None:
+    """Every fifth student is hostile, or left out; the corpus is gone through evenly."""
+    attacks = hostile_files()
+    most = max(len(attacks), size // 5)
+    for number in range(size):
+        if number % 5 < 4:
+            name, source = f"{number:04}-honest", MODEL + MISTAKES[number % len(MISTAKES)]
+        else:
+            path = attacks[number // 5 * most // (size // 5) % len(attacks)]
+            name, source = f"{number:04}-{path.stem}", WRONG + b"\n\n" + path.read_bytes()
+        if hostile or number % 5 < 4:
+            place = folder / name
+            place.mkdir(parents=True)
+            (place / MODULE).write_bytes(source + b"\n# %d\n" % number)
+
+
+def resident(pid: int) -> int:
+    """Bytes that a process and the trusted ones below it hold; workers have a limit of their own."""
+    total = 0
+    for child in (pid, *(child for child, (_, line) in below(pid).items() if "course_worker" not in line)):
+        with contextlib.suppress(OSError, IndexError):
+            total += int(Path(f"/proc/{child}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return total
+
+
+def grade(folder: Path, out: Path, *options: str) -> Watched:
+    """One run, looked at every half second."""
+    scratch = out.parent / f"scratch-{out.name}"
+    scratch.mkdir()
+    command = [
+        sys.executable,
+        "-m",
+        "course",
+        "grade",
+        "run",
+        str(folder),
+        "--exercise",
+        "arena",
+        "--out",
+        str(out),
+    ]
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "TMPDIR": str(scratch),
+        "COURSE_CONTENT": str(ARENA),
+    }
+    start = time.monotonic()
+    with (out.parent / f"{out.name}.txt").open("wb") as printed:
+        run = subprocess.Popen(
+            [*command, "--timeout", "2", "--seed", "11", "--quiet", *options],
+            env=environment,
+            stdout=printed,
+            stderr=printed,
+        )
+        memory, temporary = [], []
+        while run.poll() is None:
+            memory.append(resident(run.pid))
+            temporary.append(stored(scratch))
+            time.sleep(0.5)
+    lines = (out / "results.jsonl").read_text("utf-8").splitlines()
+    results = {line["student"]: line for line in map(json.loads, lines)}
+    assert not list(scratch.iterdir()), "a run leaves no temporary file behind"
+    assert not left_running(out.parent), "a run leaves no process behind"
+    return Watched(run.returncode, results, time.monotonic() - start, memory, temporary)
+
+
+def tell(name: str, run: Watched) -> None:
+    """One line of what was measured."""
+    early, late = run.quarters()
+    print(
+        f"{name}: {len(run.results)} results in {run.seconds:.0f} s, exit {run.code}; coordinator and"
+        f" graders hold {early / 1e6:.0f} MB in the second quarter, {late / 1e6:.0f} MB in the last and"
+        f" {max(run.memory) / 1e6:.0f} MB at most; temporary files {max(run.temporary) / 1e6:.1f} MB at most"
+    )
+
+
+def compare(tmp_path: Path, size: int, *options: str) -> None:
+    """Grade the honest alone and then among the hostile, and hold the one against the other."""
+    make_class(tmp_path / "honest", size, hostile=False)
+    make_class(tmp_path / "class", size, hostile=True)
+    alone = grade(tmp_path / "honest", tmp_path / "alone", *options)
+    tell("honest alone", alone)
+    among = grade(tmp_path / "class", tmp_path / "among", *options)
+    tell("among the hostile", among)
+
+    assert alone.code == 0
+    ungradable = [name for name, line in among.results.items() if line["state"] == "ungradable"]
+    assert among.code == (6 if ungradable else 0)
+    assert ungradable or size < len(hostile_files()), "a larger class has one that cannot be graded"
+    assert among.results.keys() == {place.name for place in (tmp_path / "class").iterdir()}
+    assert len(alone.scores()) == size // 5 * 4
+    assert among.scores() == alone.scores()
+    assert len({line["score"] for name, line in alone.results.items()}) > 1, "honest scores that differ"
+    for name, line in among.results.items():
+        assert line["state"] != "grader_error", name
+        assert "honest" in name or line["score"] <= 2, f"{name} is worth two points"
+    if size >= FILLED:
+        early, late = among.quarters()
+        assert late <= GROWTH * early
+    assert max(among.temporary) <= TEMPORARY
+
+
+def test_the_honest_get_what_they_would_have_got_without_the_hostile(tmp_path: Path) -> None:
+    require_level("L3")
+    compare(tmp_path, SIZE, "-j", "2")
+
+
+@pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("distributed", "cryptography")),
+    reason="needs the extra `cluster`: distributed and cryptography are not installed",
+)
+def test_so_they_do_on_a_cluster_of_two(tmp_path: Path) -> None:
+    require_level("L3")
+    compare(tmp_path, SIZE, "--local-cluster", "2")

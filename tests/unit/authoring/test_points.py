@@ -1,0 +1,62 @@
+"""Points and counts of an exercise follow from its checks."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.exercises.points import write_points
+from course.catalog.load import Catalog
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+TOML = "exercises/doubling/exercise.toml"
+
+
+def built(mini: Path) -> str:
+    written = write_points(Catalog(), Catalog().exercise("doubling"))
+    assert written == mini / TOML
+    return written.read_text()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("points = 4", "points = 7"),
+        ("hidden_checks = 2", "hidden_checks = 1"),
+        ("hidden_points = 5", "hidden_points = 2.5"),
+    ],
+)
+def test_a_number_that_is_old_is_written_anew(mini: Path, old: str, new: str) -> None:
+    path = mini / TOML
+    right = path.read_text()
+    path.write_text(right.replace(old, new + "  # why"))
+    assert built(mini) == right.replace(old, old + "  # why")
+    assert write_points(Catalog(), Catalog().exercise("doubling")) is None
+
+
+def test_counts_that_were_left_out_are_put_above_the_tasks(mini: Path) -> None:
+    path = mini / TOML
+    right = path.read_text()
+    path.write_text(re.sub(r"hidden_\w+ = .*\n", "", right))
+    assert built(mini) == right
+
+
+def test_a_marker_that_changes_changes_the_points_of_its_task(mini: Path) -> None:
+    checks = mini / "graders" / "doubling" / "checks.py"
+    checks.write_text(checks.read_text().replace("points(3)", "points(3.1)"))
+    text = built(mini)
+    assert "hidden_points = 5.1\n" in text
+    assert "points = 6.1\n" in text
+    assert Catalog().exercise("doubling").max_points == pytest.approx(10.1, rel=1e-12)
+
+
+def test_a_task_without_points_keeps_what_is_written(mini: Path) -> None:
+    """Zero could not be loaded again; the audit says what is missing."""
+    for folder in ("exercises", "graders"):
+        path = mini / folder / "doubling" / "checks.py"
+        path.write_text(path.read_text().replace('task("doublings")', 'task("double")'))
+    assert re.findall(r"^points = (.*)", built(mini), re.MULTILINE) == ["10", "6"]

@@ -1,0 +1,150 @@
+"""Warm-ups: what the scaffold writes passes the audit once it is filled, and the audit misses nothing."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.audit import audit
+from course.authoring.exercises.build import build
+from course.authoring.scaffold import Function, new_warm_up
+from course.catalog.load import Catalog
+from course.errors import ContentError, UsageError
+from course.scoring.explain.table import read_table
+from course.scoring.explain.words import read_words
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+WORDS = {
+    "exercise.toml": ["Tripling", "the-way-back", "Three times.", "Three times a number"],
+    "README.md": ["Tripling", "It is about three.", "gives three times `x`.", "Numbers must agree."],
+    "tripling.py": ["Tripling.", "Three times ``x``."],
+    "hints.toml": ["What is once more than twice?", "Return 3 * x."],
+    "checks.py": ["Three times one is three", "", "exact", "It is not three times the number.", "Count."],
+    "questions.py": [""],
+    "diagnoses.toml": [],
+}
+WRONG = {"DOUBLES": "2 * x", "ADDS_THREE": "3 + x", "CUBES": "x**3"}
+
+
+@pytest.fixture
+def tripling(mini: Path) -> Path:
+    """A warm-up of the mini course with every blank filled, as an author would."""
+    new_warm_up(Catalog(), "tripling", [Function.parse("triple(x)")], lesson="half-as-much")
+    student, solutions = mini / "exercises/warm-ups/tripling", mini / "solutions/warm-ups/tripling"
+    for name, words in WORDS.items():
+        fill(student / name, words)
+    checks = (student / "checks.py").read_text()
+    (student / "checks.py").write_text(
+        checks.replace("expected = 1.0", "expected = 3.0").replace("  # \n", "\n")
+    )
+    tables = [
+        f'[diagnosis.{code}]\nlooks_like = "It is {rule}."\nadvice = "Mend it."'
+        for code, rule in WRONG.items()
+    ]
+    (student / "diagnoses.toml").write_text("format_version = 1\n\n" + "\n\n".join(tables) + "\n")
+    (solutions / "tripling.py").write_text('"""Tripling."""\n\n\ndef triple(x):\n    return 3 * x\n')
+    for number, rule in ((1, "x + x + x"), (2, "sum([x] * 3)")):
+        (solutions / f"accepted/unusual_{number}.py").write_text(
+            f'"""Adds."""\n\n\ndef triple(x):\n    return {rule}\n'
+        )
+    entries = (solutions / "mutants.toml").read_text()
+    for number, (code, rule) in enumerate(WRONG.items(), 1):
+        (solutions / f"mutants/triple_wrong_{number}.py").write_text(
+            f'"""{code}."""\n\n\ndef triple(x):\n    return {rule}\n'
+        )
+        for word in ("It is right.", code):
+            entries = re.sub(r"<<FILL IN[^>]*>>", word, entries, count=1)
+    (solutions / "mutants.toml").write_text(entries)
+    rebuilt()
+    return student
+
+
+def fill(path: Path, words: list[str]) -> None:
+    text = path.read_text()
+    for word in words:
+        text = re.sub(r"<<FILL IN[^>]*>>", lambda _, word=word: word, text, count=1)
+    path.write_text(text)
+
+
+def rebuilt() -> None:
+    catalog = Catalog()
+    build(catalog, catalog.exercise("tripling"))
+    read_table.cache_clear()
+    read_words.cache_clear()
+
+
+def problems() -> list[str]:
+    return [f"{problem.message}" for problem in audit(Catalog(), "tripling").problems]
+
+
+def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Path) -> None:
+    report = audit(Catalog(), "tripling")
+    assert [f"{p.where} {p.message} {p.fix}" for p in report.problems] == []
+    assert report.graded == 2 + 2 + 3
+    catalog = Catalog()
+    assert catalog.exercise_ids() == ("doubling", "halving"), "the exercises are what they were"
+    assert [one.id for one in catalog.warm_ups("half-as-much")] == ["tripling"]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "said"),
+    [
+        ("exercise.toml", "the-way-back", "nowhere", "has no section 'nowhere'"),
+        ("hints.toml", '"What is once more than twice?", ', "", "has 1 hints, and needs 2"),
+        ("README.md", "# Tripling", "Tripling", "the title is missing"),
+        ("diagnoses.toml", "[diagnosis.CUBES]", "[diagnosis.FOURTH]", "no words for CUBES"),
+    ],
+)
+def test_the_audit_sees_what_a_warm_up_lacks(
+    tripling: Path, file: str, old: str, new: str, said: str
+) -> None:
+    text = (
+        " ".join((tripling / file).read_text().split("\n    "))
+        if file == "hints.toml"
+        else (tripling / file).read_text()
+    )
+    assert old in text
+    (tripling / file).write_text(text.replace(old, new))
+    read_words.cache_clear()
+    assert any(said in message for message in problems()), problems()
+
+
+@pytest.mark.parametrize(
+    ("folder", "said"),
+    [
+        ("accepted", "accepted variants: 1, and an exercise of this size has at least 2"),
+        ("mutants", "mutants: 2, and an exercise of this size has at least 3"),
+    ],
+)
+def test_the_audit_counts_the_programs_of_a_warm_up(
+    tripling: Path, mini: Path, folder: str, said: str
+) -> None:
+    path = sorted((mini / "solutions/warm-ups/tripling" / folder).iterdir())[-1]
+    path.unlink()
+    entries = mini / "solutions/warm-ups/tripling/mutants.toml"
+    if folder == "mutants":
+        entries.write_text(entries.read_text().rpartition("[[mutant]]")[0])
+    rebuilt()
+    assert any(said in message for message in problems())
+
+
+def test_a_stale_table_is_refused(tripling: Path) -> None:
+    path = tripling / "questions.py"
+    path.write_text(path.read_text() + "\n#: Another thought.\n")
+    assert any("made from other questions" in message for message in problems())
+
+
+def test_a_warm_up_lies_with_the_warm_ups(tripling: Path) -> None:
+    path = tripling / "exercise.toml"
+    path.write_text(path.read_text().replace('kind = "warm-up"\n', ""))
+    with pytest.raises(ContentError, match="`kind` is exercise, and the folder lies in warm-ups"):
+        Catalog().exercise("tripling")
+
+
+def test_no_exercise_and_warm_up_share_an_id(mini: Path) -> None:
+    with pytest.raises(UsageError):
+        new_warm_up(Catalog(), "halving", lesson="half-as-much")

@@ -1,0 +1,197 @@
+"""Findings as annotations and as lines, read back as GitHub's runner and an editor read them."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+import yaml
+
+from course.cli.work.annotations import github
+
+#: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
+DATA = (("%0D", "\r"), ("%0A", "\n"), ("%25", "%"))
+PROPERTY = (("%0D", "\r"), ("%0A", "\n"), ("%3A", ":"), ("%2C", ","), ("%25", "%"))
+
+
+def unescaped(text, pairs):
+    for replacement, token in pairs:
+        text = text.replace(replacement, token)
+    return text
+
+
+def parse(line):
+    """A workflow command as ``ActionCommand.TryParseV2`` takes it apart; None if it is none."""
+    line = line.lstrip()
+    if not line.startswith("::") or "::" not in line[2:]:
+        return None
+    info, _, data = line[2:].partition("::")
+    name, _, rest = info.partition(" ")
+    pairs = (item.split("=", 1) for item in rest.strip().split(",") if item)
+    return name, {key: unescaped(value, PROPERTY) for key, value in pairs}, unescaped(data, DATA)
+
+
+def annotations(out):
+    return [found for line in out.splitlines() if (found := parse(line))]
+
+
+@pytest.mark.parametrize(
+    ("file", "title", "message"),
+    [
+        ("a/b.py", "plain", "plain"),
+        ("a, b/c:d.py", "50 % off: a, b = c::d", "100 %\nof\r\nit :: ::error::x, y=z"),
+        ("C:\\a, b\\c.py", "a drive", "C:\\a"),
+        ("%2C.py", "%0A and %250A", "%25 %3A"),
+        ("é.py", "α = β", "½"),
+    ],
+)
+def test_what_is_escaped_comes_back(file, title, message):
+    line = github("error", file, 7, title, message)
+    assert line.endswith("\n")
+    assert len(line.splitlines()) == 1
+    assert parse(line.removesuffix("\n")) == ("error", {"file": file, "line": "7", "title": title}, message)
+
+
+def test_a_failed_check_is_an_annotation_at_its_function(course, write, workspace):
+    write("RIGHT", "wrong")
+    ran = course("check", "--format", "github")
+    assert ran.code == 1
+    ((level, where, message),) = annotations(ran.out)
+    assert (level, where["file"], where["line"]) == ("error", "doubling/doubling.py", "5")
+    assert "doublings_works" in where["title"]
+    assert message.startswith("It is not right.\nWrite RIGHT.\n")
+    assert "\x1b" not in ran.out
+
+
+def test_paths_are_from_the_top_of_the_repository(course, write, workspace, monkeypatch):
+    write("wrong", "RIGHT")
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(workspace.parent))
+    ((_, where, _),) = annotations(course("check", "--format", "github").out)
+    assert where["file"] == "my course é/doubling/doubling.py"
+
+
+def test_everything_right_is_no_annotation(course, write):
+    write("RIGHT", "RIGHT")
+    ran = course("check", "--all", "--format", "github")
+    assert ran.code == 0
+    assert not annotations(ran.out)
+
+
+def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
+    write("UNREADABLE", "RIGHT", extra="def broken(:\n    pass\n")
+    for words in (("check",), ("check", "--all")):
+        ran = course(*words, "--format", "github")
+        assert ran.code == 3
+        ((level, where, message),) = annotations(ran.out)
+        assert (level, where["line"], message) == ("error", "7", "Line 1 cannot be read.\nLook at line 1.")
+
+
+def test_json_stays_one_object_beside_annotations(course, write):
+    write("wrong", "wrong")
+    ran = course("check", "--format", "github", "--json")
+    assert ran.json["schema"] == "course.check/1"
+    assert len(annotations(ran.err)) == 2
+
+
+def test_an_unknown_format_is_refused(course, write):
+    assert course("check", "--format", "xml").code == 2
+
+
+def test_a_line_in_a_notebook_is_that_of_its_text():
+    from types import SimpleNamespace
+
+    from course.cli.work.annotations import _line_of
+
+    text = '{"cells": [\n  {"source": [\n    "def double(x):\\n",\n    "    return x\\n"\n]}]}'
+    work = SimpleNamespace(notebook=object(), data=text.encode())
+    assert _line_of(work, SimpleNamespace(task="double", traceback="nb.py:9 in double")) == 3
+    assert _line_of(work, SimpleNamespace(task="doublings", traceback=None)) == 1
+
+
+def test_a_line_that_raised_goes_before_the_one_that_defines():
+    from types import SimpleNamespace
+
+    from course.cli.work.annotations import _line_of
+
+    work = SimpleNamespace(notebook=None, data=b"def double(x):\n    return x / 0\n")
+    trace = "doubling.py:2 in double\n    return x / 0"
+    assert _line_of(work, SimpleNamespace(task="double", traceback=trace)) == 2
+
+
+# -- course init --with ------------------------------------------------------------------------------------
+
+
+def test_init_writes_what_is_asked_for(course, tmp_path):
+    ran = course("init", "mine", "--with", "github,devcontainer,vscode", "--json")
+    assert ran.code == 0
+    root = tmp_path / "mine"
+    assert [file["path"] for file in ran.json["files"]] == [
+        str(root / name)
+        for name in (".github/workflows/course.yml", ".devcontainer/devcontainer.json", ".vscode/tasks.json")
+    ]
+    job = yaml.safe_load((root / ".github/workflows/course.yml").read_text("utf-8"))["jobs"]["check"]
+    runs = [step["run"] for step in job["steps"] if "run" in step]
+    assert runs == ["python -m pip install wheels/*.whl", "course check --all --format github"]
+    container = json.loads((root / ".devcontainer/devcontainer.json").read_text("utf-8"))
+    assert container["postCreateCommand"] == "python -m pip install wheels/*.whl"
+
+
+@pytest.mark.parametrize("wanted", ["https://example.org/a b.whl#sha256=1", "it's \"quoted\": $HOME, 'x'"])
+def test_a_requirement_reaches_pip_as_it_is(course, tmp_path, wanted):
+    assert course("init", "mine", "--with", "github,devcontainer", "--requirement", wanted).code == 0
+    text = (tmp_path / "mine/.github/workflows/course.yml").read_text("utf-8")
+    install = yaml.safe_load(text)["jobs"]["check"]["steps"][2]
+    assert (install["run"], install["env"]) == ('python -m pip install "$COURSE"', {"COURSE": wanted})
+    container = json.loads((tmp_path / "mine/.devcontainer/devcontainer.json").read_text("utf-8"))
+    assert container["postCreateCommand"] == ["python", "-m", "pip", "install", wanted]
+
+
+@pytest.mark.parametrize("wanted", ["--index-url=x", "a\nb", "${{ secrets.X }}"])
+def test_what_is_no_requirement_is_refused_before_anything_is_written(course, tmp_path, wanted):
+    assert course("init", "mine", "--with", "github", f"--requirement={wanted}").code == 2
+    assert not (tmp_path / "mine").exists()
+
+
+def test_nothing_is_replaced_without_a_copy(course, workspace):
+    path = workspace / ".vscode" / "tasks.json"
+    path.parent.mkdir()
+    path.write_text("mine")
+    ran = course("init", "--with", "vscode", "--json")
+    (file,) = ran.json["files"]
+    with open(file["backup"]["backup"], encoding="utf-8") as kept:  # noqa: PTH123 - a path from a reply
+        assert kept.read() == "mine"
+    again = course("init", "--with", "vscode", "--json").json["files"]
+    assert again[0]["backup"] is None
+
+
+def test_an_unknown_kind_is_refused_before_anything_is_written(course, tmp_path):
+    assert course("init", "mine", "--with", "github,emacs").code == 2
+    assert not (tmp_path / "mine").exists()
+
+
+def test_the_editor_s_task_finds_what_the_check_prints(course, write, workspace):
+    course("init", "--with", "vscode")
+    task = json.loads((workspace / ".vscode" / "tasks.json").read_text("utf-8"))["tasks"][0]
+    write("wrong", "RIGHT")
+    assert task["command"] == "course"
+    ran = course(*task["args"])
+    pattern = task["problemMatcher"]["pattern"]
+    found = [match for line in ran.out.splitlines() if (match := re.match(pattern["regexp"], line))]
+    (match,) = found
+    drive = re.match(pattern["regexp"], "C:/my course/a.py:12: error: off by 1:2: no")
+    assert (drive[pattern["file"]], drive[pattern["line"]]) == ("C:/my course/a.py", "12")
+    file, line = match[pattern["file"]], match[pattern["line"]]
+    assert (file, line, match[pattern["severity"]]) == ("doubling/doubling.py", "1", "error")
+    assert "It is not right." in match[pattern["message"]]
+
+
+def test_a_checkout_without_the_record_is_checked(course, write, workspace):
+    """A repository need not hold .course."""
+    import shutil
+
+    write("wrong", "RIGHT")
+    shutil.rmtree(workspace / ".course")
+    ran = course("check", "--all", "--format", "github")
+    assert ran.code == 1
+    assert len(annotations(ran.out)) == 1

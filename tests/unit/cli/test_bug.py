@@ -1,0 +1,105 @@
+"""``course bug``: versions, levels and the last traceback, and nothing that says whose they are."""
+
+from __future__ import annotations
+
+import os
+import platform
+import tempfile
+from pathlib import Path
+
+import pytest
+
+USER, HOST = "planted.person", "planted-laptop"
+
+
+@pytest.fixture
+def somebody(monkeypatch, tmp_path):
+    """A user, a home and a machine with names that must not come out; the folder of temporary files."""
+    home = tmp_path / "homes" / USER
+    (home / "work").mkdir(parents=True)
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setenv("USERPROFILE", str(home))
+    for name in ("USER", "LOGNAME", "USERNAME"):
+        monkeypatch.setenv(name, USER)
+    monkeypatch.setattr(platform, "node", lambda: f"{HOST}.example.org")
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    return home, temporary
+
+
+def crash_in(course, monkeypatch, message):
+    """Have a command of the course fail by a fault of its own."""
+    from course.cli.work import doctor
+
+    def break_(*_, **__):
+        raise RuntimeError(message)
+
+    monkeypatch.setattr(doctor, "load_catalog", break_)
+    ran = course("doctor", "-C", ".")
+    assert ran.code == 70
+
+
+def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
+    home, temporary = somebody
+    windows = f"C:\\Users\\{USER}\\x.py"
+    machines = f"{HOST} or {HOST.upper()}.EXAMPLE.ORG"
+    said = f"no {home / 'work' / 'x.py'} nor {windows!r} on {machines} of {USER.title()}"
+    with monkeypatch.context() as broken:
+        crash_in(course, broken, said)
+    assert list(temporary.glob("course-crash-*.txt"))
+    ran = course("bug", "--json")
+    assert ran.code == 0
+    assert ran.json["traceback"] is True
+    text = Path(ran.json["file"]["path"]).read_text("utf-8")
+    lowered = text.lower()
+    for secret in (USER, HOST, str(home), str(tmp_path)):
+        assert secret.lower() not in lowered, text
+    assert "RuntimeError" in text
+    assert "~/work/x.py".replace("/", os.sep) in text
+    assert "<course>" in text  # frames are still told apart
+    assert "doctor.py" in text
+
+
+def test_a_report_has_versions_and_the_level(course, somebody):
+    from course import __version__
+
+    ran = course("bug", "-o", "it.txt")
+    text = Path("it.txt").read_text("utf-8")
+    assert f"course {__version__}, Python {platform.python_version()}" in text
+    assert "protection: L" in text
+    assert "msgspec" in text
+    assert "No crash of the course was found" in text
+    assert "it.txt" in ran.out
+
+
+def test_what_was_typed_is_left_out(course, somebody):
+    _, temporary = somebody
+    (temporary / "course-crash-1.txt").write_text(
+        "course 1\ncommand: ['course', 'grade', 'override', 'Anna Student']\n\nTraceback\n"
+    )
+    course("bug")
+    text = Path("course-bug.txt").read_text("utf-8")
+    assert "Anna" not in text
+    assert "Traceback" in text
+
+
+def test_the_newest_crash_counts_and_a_link_is_none(course, somebody, tmp_path):
+    _, temporary = somebody
+    for number, when in ((1, 1_000.0), (2, 3_000.0), (3, 2_000.0)):
+        path = temporary / f"course-crash-{number}.txt"
+        path.write_text(f"crash number {number}")
+        os.utime(path, (when, when))
+    (tmp_path / "other").write_text("somebody else's")
+    (temporary / "course-crash-4.txt").symlink_to(tmp_path / "other")
+    course("bug")
+    text = Path("course-bug.txt").read_text("utf-8")
+    assert "crash number 2" in text
+    assert "somebody else's" not in text
+
+
+def test_a_second_report_keeps_the_first(course, somebody, tmp_path):
+    Path("course-bug.txt").write_text("mine")
+    course("bug")
+    (kept,) = tmp_path.glob("course-bug.old-*.txt")
+    assert kept.read_text() == "mine"

@@ -1,0 +1,122 @@
+"""`course grade assign|log|salvage`, and what `--dry-run` and `--resume` say before a score changes."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.grading.running import batch
+from tests.unit.grading.conftest import MINI
+from tests.unit.grading.test_run import right
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SOURCE = "def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
+
+
+@pytest.fixture
+def here(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A class of three, graded by stand-ins: one right name, one wrong name, one in nobody's sight."""
+    monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders: right(entries, terms))
+    shutil.copytree(MINI, tmp_path / "content")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "content"))
+    for student, name in (("ada", "doubling.py"), ("bob", "hw.py"), ("cy", "notes.txt")):
+        (tmp_path / "class" / student).mkdir(parents=True)
+        (tmp_path / "class" / student / name).write_text(SOURCE)
+    ran = course("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--json")
+    assert ran.code == 6, ran.err
+    return tmp_path
+
+
+def book(here: Path) -> bytes:
+    return (here / "out" / "gradebook.sqlite").read_bytes()
+
+
+def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -> None:
+    before = book(here)
+    listed = course("grade", "assign", "out", "--json").json
+    assert listed["schema"] == "course.grade-assign/1"
+    assert listed["unsettled"] == [
+        {
+            "student": "bob", "exercise": "doubling", "reason": "no_file",
+            "files": [{"file": "hw.py", "defines": ["double", "doublings"], "proposed": True}],
+        }
+    ]  # fmt: skip
+    assert "hw.py: defines double, doublings; proposed" in course("grade", "assign", "out").out
+    tried = course("grade", "assign", "out", "--accept-names", "--dry-run", "--json").json
+    assert [(one["student"], one["score_before"], one["score_after"]) for one in tried["assigned"]] == [
+        ("bob", 0.0, 10.0)
+    ]
+    assert book(here) == before
+    ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
+    assert ran.code == 0, ran.err
+    assert "bob doubling: ungradable -> graded, 10 of 10; from hw.py" in ran.out
+    log = course("grade", "log", "out", "--json").json
+    assert [run["kind"] for run in log["runs"]] == ["run", "assign"]
+    (change,) = log["changes"]
+    assert (change["kind"], change["student"], change["reason"]) == ("assign", "bob", "by mail")
+    assert change["who"]
+    assert "by mail" in course("grade", "log", "out", "bob").out
+    assert "by mail" in course("grade", "explain", "out", "bob", "doubling").out
+    for words, code in (
+        (("bob",), "usage"), (("bob", "x.py", "--accept-names"), "usage"),
+        (("bob", "class/bob/hw.py"), "no_reason"),
+        (("nobody", "hw.py", "--reason", "x"), "student_not_found"),
+        (("cy", "nowhere.py", "--reason", "x"), "file_not_found"),
+    ):  # fmt: skip
+        assert course("grade", "assign", "out", *words, "--json").json["error"]["code"] == code
+
+
+def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) -> None:
+    before = book(here)
+    ran = course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x", "--dry-run")
+    assert "3 of 10 counts" in ran.out
+    (here / "late.toml").write_text(
+        'format_version = 1\npoints_per_day = 1\ntrust = ["list"]\n'
+        '[[deadline]]\nexercise = "*"\ndue = 2026-01-01T00:00:00Z\n'
+    )
+    (here / "times.csv").write_text("student,exercise,submitted_at\nada,doubling,2026-01-01T12:00:00Z\n")
+    words = ("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
+    told = course(*words, "--dry-run", "--json").json
+    assert told["moved"] == [{"student": "ada", "exercise": "doubling", "before": 10.0, "after": 9.0}]
+    assert book(here) == before
+    assert "1 score changed." in course(*words, "--reason", "the rules").out
+    (change,) = course("grade", "log", "out", "--json").json["changes"]
+    assert (change["kind"], change["reason"], change["before"]) == (
+        "late", "the rules", '[["ada","doubling",10.0]]',
+    )  # fmt: skip
+
+
+def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course, here: Path) -> None:
+    checks = here / "content" / "graders" / "doubling" / "checks.py"
+    checks.write_text(checks.read_text() + "# edited\n")
+    words = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    told = json.loads(course(*words, "--json").out.splitlines()[-1])
+    assert (told["edited"], told["already_graded"], told["would_change"]) == (["doubling"], 3, [])
+    assert "Nobody's score was changed by that." in course(*words).out
+    runs = course("grade", "log", "out", "--json").json["runs"]
+    assert [run["kind"] for run in runs] == ["run"]
+    assert course("grade", "rerun", "out", "--against", "1", "--dry-run").code == 0
+    refused = course("grade", "rerun", "out", "--against", "nothing", "--dry-run", "--json")
+    assert (refused.code, refused.json["error"]["code"]) == (5, "snapshot_not_found")
+
+
+def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -> None:
+    assert course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x").code == 0
+    damaged = bytes(4096) + book(here)[4096:]
+    (here / "out" / "gradebook.sqlite").write_bytes(damaged)
+    assert "course grade salvage" in course("grade", "explain", "out", "ada", "doubling").err
+    tried = course("grade", "salvage", "out", "--to", "new", "--dry-run", "--json")
+    assert (tried.code, tried.json["rows"]["overrides"], tried.json["lost"]) == (0, 1, [])
+    assert not (here / "new").exists()
+    assert course("grade", "salvage", "out", "--to", "new").code == 0
+    assert book(here) == damaged
+    found = course("grade", "explain", "new", "ada", "doubling", "--json").json
+    assert (found["score"], found["raw_score"]) == (3.0, 10.0)
+    assert course("grade", "salvage", "out", "--to", "new", "--json").json["error"]["code"] == "out_exists"
+    assert course("grade", "salvage", "nowhere", "--to", "newer").code == 5
+    assert not (here / "newer").exists()

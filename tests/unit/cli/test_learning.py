@@ -1,0 +1,102 @@
+"""``course progress``: predictions, mistakes made and mended, what to read again."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from course.cli.frame.here import load_catalog
+from course.progress.store import Store
+from course.reading.parts import read_script
+
+MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+ASKED = "## Once\n\n> **Predict.** What is twice five?\n\n> **Answer.** Ten.\n"
+
+
+@pytest.fixture
+def asking(course, workspace, monkeypatch, tmp_path_factory):
+    """The command line on a mini course with a prediction, in a workspace; and the question."""
+    folder = tmp_path_factory.mktemp("content") / "mini"
+    shutil.copytree(MINI, folder)
+    lesson = folder / "lessons" / "twice-as-much.md"
+    lesson.write_text(lesson.read_text().replace("## Once\n", ASKED))
+    monkeypatch.setenv("COURSE_CONTENT", str(folder))
+    (question,) = read_script(load_catalog().lesson("twice-as-much")).questions
+    return course, question
+
+
+def say(workspace, question, **data):
+    Store(workspace / ".course" / "progress.sqlite").append(
+        "prediction", "twice-as-much", {"key": question.key, "number": 1, **data}
+    )
+
+
+def test_a_wrong_prediction_is_shown_with_its_section_to_read_again(asking, workspace):
+    course, question = asking
+    say(workspace, question, text="eleven")
+    say(workspace, question, judged="wrong")
+    body = course("progress", "--json").json
+    (said,) = body["predictions"]["each"]
+    assert (said["said"], said["judged"], said["section"]) == ("eleven", "wrong", "twice-as-much#once")
+    assert "twice five" in said["question"]
+    assert body["predictions"]["by_lesson"][0]["wrong"] == 1
+    (place,) = body["revisit"]
+    assert (place["section"], place["title"]) == ("twice-as-much#once", "Once")
+    shown = course("progress", "--plain").out
+    assert "Predictions: 1 made, 0 skipped\n  twice-as-much: 1 wrong\n" in shown
+    assert "  Once (twice-as-much): a prediction was wrong\n" in shown
+
+
+def test_a_right_prediction_sends_nobody_back(asking, workspace):
+    course, question = asking
+    say(workspace, question, text="ten")
+    say(workspace, question, judged="right")
+    body = course("progress", "--json").json
+    assert body["predictions"]["all"]["right"] == 1
+    assert body["revisit"] == []
+
+
+def test_a_question_that_the_lesson_asks_no_more_still_counts(asking, workspace):
+    course, _ = asking
+    store = Store(workspace / ".course" / "progress.sqlite")
+    store.append("prediction", "twice-as-much", {"key": "gone", "number": 9, "text": "x"})
+    (said,) = course("progress", "--json").json["predictions"]["each"]
+    assert (said["question"], said["section"], said["judged"]) == ("", "", None)
+
+
+def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, workspace, write):
+    write("wrong", "RIGHT")
+    course("check")
+    body = course("progress", "--json").json
+    (mistake,) = body["mistakes"]
+    assert (mistake["diagnosis"], mistake["task"], mistake["mended_at"]) == ("NOT_RIGHT", "double", None)
+    assert mistake["read"] == "twice-as-much#once"
+    assert body["revisit"][0]["why"] == ["double in doubling: NOT_RIGHT"]
+    write("RIGHT", "RIGHT")
+    course("check")
+    body = course("progress", "--json").json
+    assert body["mistakes"][0]["mended_at"] > mistake["last_seen"]
+    assert body["revisit"] == []
+    assert "Mistakes: 1 made, 1 mended\n" in course("progress", "--plain").out
+
+
+def test_who_did_nothing_yet_reads_nothing_about_it(course, workspace):
+    shown = course("progress", "--plain").out
+    assert not any(word in shown for word in ("Predictions", "Mistakes", "To read again"))
+
+
+@pytest.mark.parametrize("columns", [40, 80, 120])
+def test_a_screen_cuts_no_line(asking, workspace, write, monkeypatch, columns):
+    course, question = asking
+    say(workspace, question, text="eleven")
+    say(workspace, question, judged="wrong")
+    write("wrong", "wrong")
+    course("check")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", str(columns))
+    shown = course("progress").out
+    assert max(map(len, shown.splitlines())) <= columns + len("\x1b[1m\x1b[0m")
+    assert "NOT_RIGHT" in shown

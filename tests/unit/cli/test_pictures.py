@@ -1,0 +1,142 @@
+"""Figures on a terminal: which way, and that what is sent is the figure."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from rich.console import Console
+
+from course.cli.frame.pictures import InlinePicture, picture
+from course.figures.drawing.described import Panel, Plot, Series
+from course.figures.drawing.plots import draw, render
+from course.figures.terminal import in_cells
+
+PLOT = Plot(
+    title="A line",
+    panels=(Panel("time / s", "height / m", (Series("", [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]),)),),
+)
+
+
+def terminal(**given):
+    given = {"force_terminal": True, "color_system": "truecolor", "width": 60} | given
+    return Console(file=io.StringIO(), **given)
+
+
+def make():
+    return draw(PLOT)
+
+
+def test_kitty_s_bytes_are_the_figure():
+    console = terminal()
+    console.print(picture(console, {"KITTY_WINDOW_ID": "1"}, make, 60))
+    chunks = re.findall(r"\x1b_G[^;]*;([^\x1b]*)\x1b\\", console.file.getvalue())
+    assert len(chunks) > 1
+    same(base64.b64decode("".join(chunks)))
+
+
+def test_iterm_s_bytes_are_the_figure():
+    console = terminal()
+    console.print(picture(console, {"TERM_PROGRAM": "iTerm.app"}, make, 60))
+    (data,) = re.findall(r"\x1b\]1337;File=[^:]*:([^\x07]*)\x07", console.file.getvalue())
+    same(base64.b64decode(data))
+
+
+def same(sent):
+    """The pixels that were sent are those of the file that a report writes."""
+    assert np.array_equal(imread(io.BytesIO(sent)), imread(io.BytesIO(render(PLOT))))
+
+
+def test_half_blocks_are_the_figure():
+    console = terminal()
+    console.print(picture(console, {}, make, 60))
+    drawn = in_cells(make, 60)
+    upper, lower = np.zeros((drawn.rows, 60, 3)), np.zeros((drawn.rows, 60, 3))
+    blocks = np.zeros((drawn.rows, 60), bool)
+    for row, line in enumerate(console.file.getvalue().splitlines()):
+        for column, (letter, ink, paper) in enumerate(cells(line)):
+            blocks[row, column] = letter == "▀"
+            upper[row, column], lower[row, column] = ink, paper
+    assert blocks.mean() > 0.8  # the rest are letters
+    assert np.array_equal(upper[blocks], drawn.pixels[0::2][blocks])
+    assert np.array_equal(lower[blocks], drawn.pixels[1::2][blocks])
+
+
+def cells(line):
+    """(letter, ink, paper) of each cell of a line in 24-bit colour."""
+    ink = paper = (0, 0, 0)
+    for code, letter in re.findall(r"\x1b\[([0-9;]*)m|(.)", line):
+        if letter:
+            yield letter, ink, paper
+            continue
+        if found := re.search(r"38;2;(\d+);(\d+);(\d+)", code):
+            ink = tuple(map(int, found.groups()))
+        if found := re.search(r"48;2;(\d+);(\d+);(\d+)", code):
+            paper = tuple(map(int, found.groups()))
+
+
+@pytest.mark.parametrize("width", [40, 80, 100])
+def test_a_picture_is_as_wide_as_asked_and_says_what_the_figure_says(width):
+    console = terminal(width=width)
+    console.print(picture(console, {}, make, width))
+    lines = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in console.file.getvalue().splitlines()]
+    assert {len(line) for line in lines} == {width}
+    assert "A line" in lines[0]
+    assert any("time / s" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"no_color": True}, {"color_system": "standard"}, {"force_terminal": False}],
+    ids=["NO_COLOR", "16 colours", "no terminal"],
+)
+def test_where_nothing_can_be_seen_nothing_is_drawn(given):
+    def never():
+        raise AssertionError("drawn for nobody")
+
+    assert picture(terminal(**given), {}, never, 60) is None
+
+
+def test_a_terminal_without_letters_beyond_ascii_gets_no_half_blocks():
+    ascii_only = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    console = Console(file=ascii_only, force_terminal=True, color_system="truecolor", width=60)
+    assert picture(console, {}, make, 60) is None
+
+
+def test_a_protocol_wins_over_half_blocks():
+    assert isinstance(picture(terminal(), {"TERM": "xterm-kitty"}, make, 60), InlinePicture)
+
+
+@pytest.fixture
+def coloured(monkeypatch):
+    """A terminal with colours."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("COLORTERM", "truecolor")
+    monkeypatch.delenv("KITTY_WINDOW_ID", raising=False)
+    monkeypatch.delenv("TERM_PROGRAM", raising=False)
+
+
+def test_a_simulation_is_drawn_on_a_terminal_and_only_there(course, coloured, monkeypatch):
+    assert "▀" in course("sim", "run", "projectile").out
+    for words in (("--plain",), ("--quiet",), ("--json",)):
+        ran = course("sim", "run", "projectile", *words)
+        assert "▀" not in ran.out + ran.err
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "▀" not in course("sim", "run", "projectile").out
+
+
+def test_a_report_is_drawn_on_a_terminal_and_described_besides(course, workspace, coloured):
+    assert course("start", "doubling").code in {0, 1}
+    (workspace / "doubling" / "doubling.py").write_text(
+        "import numpy as np\n\n\ndef double(x):\n    return 2 * x\n\n\n"
+        "def doublings(x, n):\n    return x * 2.0 ** np.arange(n + 1)\n"
+    )
+    shown = course("report", "doubling").out
+    assert "▀" in shown
+    assert "Figure: Five points" in shown
+    assert "▀" not in course("report", "doubling", "--plain").out

@@ -1,0 +1,164 @@
+"""Warm-ups in the reader: in their place, started, checked, mended and done without leaving it."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.authoring.exercises.variants import solution_path
+from course.catalog import blocks as b
+from course.catalog.load import Catalog
+from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.practice import Practice
+from course.progress.workspace import Workspace
+from course.reading.parts import read_script, words_of
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+    from pathlib import Path
+
+LESSON, TASK = "numerical-integration", "which-line-first"
+
+
+@pytest.fixture(scope="module")
+def catalog() -> Catalog:
+    return Catalog()
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, catalog: Catalog) -> Workspace:
+    return Workspace.create(tmp_path / "mine", catalog.course_id, catalog.version)
+
+
+def doing(
+    catalog: Catalog, workspace: Workspace | None, journey: Callable[[ReaderApp, Any], Awaitable[None]]
+) -> ReaderApp:
+    """Open the lesson at its warm-up, do what ``journey`` does, leave."""
+    practice = Practice(catalog, workspace)
+    app = ReaderApp(catalog, LESSON, practice=practice)
+
+    async def drive() -> None:
+        async with app.run_test(size=(80, 24)) as pilot:
+            await settled(app, pilot)
+            blocks = app.progress.script.blocks
+            index = next(i for i, one in enumerate(blocks) if isinstance(one, b.WarmUp) and one.id == TASK)
+            app._chosen(f"block:{index}")
+            await pilot.pause()
+            await journey(app, pilot)
+
+    try:
+        asyncio.run(drive())
+    finally:
+        practice.close()
+    return app
+
+
+async def settled(app: ReaderApp, pilot: Any) -> None:
+    for _ in range(200):
+        await pilot.pause(0.02)
+        if app.page.book is not None and app.page.book.whole:
+            return
+    pytest.fail("the lesson was never laid out")
+
+
+def screen(app: ReaderApp) -> str:
+    height = app.size.height
+    return "\n".join("".join(s.text for s in app.page.render_line(y)).rstrip() for y in range(height))
+
+
+async def answered(app: ReaderApp, pilot: Any) -> None:
+    """Until nothing is being checked."""
+    assert app._practice is not None
+    for _ in range(3000):
+        await pilot.pause(0.02)
+        if not app._practice.of(TASK).busy:
+            await pilot.pause(0.1)
+            return
+    pytest.fail("the check never ended")
+
+
+def test_a_warm_up_stands_at_the_end_of_its_section(catalog: Catalog) -> None:
+    script = read_script(catalog.lesson(LESSON), catalog.warm_ups(LESSON))
+    bare = read_script(catalog.lesson(LESSON))
+    tasks = [(i, one) for i, one in enumerate(script.blocks) if isinstance(one, b.WarmUp)]
+    assert [one.id for _, one in tasks] == [one.id for one in catalog.warm_ups(LESSON)]
+    for index, task in tasks:
+        section = script.section_at(index)
+        assert section is not None
+        assert section.slug == catalog.exercise(task.id).after
+        assert index + 1 == section.end
+    assert [cell.key for cell in script.cells] == [cell.key for cell in bare.cells]
+    assert [one.key for one in script.questions] == [one.key for one in bare.questions]
+    assert [one for one in script.blocks if not isinstance(one, b.WarmUp)] == list(bare.blocks)
+    assert "without end" in words_of(tasks[1][1]), "search finds it"
+
+
+def test_no_prediction_keeps_a_warm_up_closed(catalog: Catalog) -> None:
+    for lesson in catalog.lesson_ids():
+        script = read_script(catalog.lesson(lesson), catalog.warm_ups(lesson))
+        closed = [
+            one.id
+            for index, one in enumerate(script.blocks)
+            if isinstance(one, b.WarmUp) and script.question_over(index) is not None
+        ]
+        assert closed == [], lesson
+
+
+def test_one_is_started_checked_mended_and_done_in_its_place(catalog: Catalog, workspace: Workspace) -> None:
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        assert "Which line comes first?" in screen(app)
+        assert "Enter puts its file into your workspace" in screen(app)
+        await pilot.press("enter")
+        await pilot.pause()
+        path = workspace.root / "warm-ups" / TASK / "which_line_first.py"
+        assert path.is_file()
+        await pilot.press("r")
+        await answered(app, pilot)
+        assert "every step adds energy" in screen(app)
+        # Saved by an editor of the student's: checked without a key.
+        path.write_bytes(solution_path(catalog, catalog.exercise(TASK)).read_bytes())
+        await pilot.pause(0.6)
+        await answered(app, pilot)
+        assert "Done: every check passes." in screen(app)
+
+    doing(catalog, workspace, journey)
+    passed = [event.data["all_pass"] for event in workspace.store.events("check", TASK)]
+    assert passed == [False, True]
+    assert [event.subject for event in workspace.store.events("start")] == [TASK]
+
+
+def test_its_file_is_changed_in_the_reader_too(catalog: Catalog, workspace: Workspace) -> None:
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("e")
+        await pilot.pause(0.2)
+        await pilot.press("#", "escape")
+        await pilot.pause(0.2)
+
+    doing(catalog, workspace, journey)
+    assert (workspace.root / "warm-ups" / TASK / "which_line_first.py").read_text().startswith("#")
+
+
+def test_what_is_done_is_remembered(catalog: Catalog, workspace: Workspace) -> None:
+    workspace.store.append("check", TASK, {"all_pass": True})
+
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        assert "5 minutes, done" in screen(app)
+        await pilot.press("t")
+        await pilot.pause(0.2)
+        await pilot.press("escape", "G")
+        await pilot.pause(0.2)
+        assert "2 warm-ups are left" in screen(app)
+
+    doing(catalog, workspace, journey)
+
+
+def test_outside_of_a_workspace_it_says_what_is_needed(catalog: Catalog) -> None:
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        assert "course init my-course" in screen(app)
+        await pilot.press("r", "e", "enter")
+        await pilot.pause()
+        assert "Make a workspace first" in screen(app)
+
+    doing(catalog, None, journey)

@@ -1,0 +1,160 @@
+"""Warm-ups on the command line: listed by lesson, started, checked, counted; never among the exercises."""
+
+from __future__ import annotations
+
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.grading.intake.students import read_class
+
+MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+
+
+@pytest.fixture
+def warm(course, workspace, monkeypatch, tmp_path_factory):
+    """The command line on a mini course with two warm-ups, in a workspace."""
+    folder = tmp_path_factory.mktemp("content") / "mini"
+    shutil.copytree(MINI, folder)
+    for order, name in enumerate(("adding", "taking"), 1):
+        add(folder / "exercises" / "warm-ups" / name, name, order)
+    monkeypatch.setenv("COURSE_CONTENT", str(folder))
+    return course
+
+
+def add(folder: Path, name: str, order: int) -> None:
+    folder.mkdir(parents=True)
+    (folder / "exercise.toml").write_text(
+        f'format_version = 1\nkind = "warm-up"\nid = "{name}"\ntitle = "One thing {name}"\n'
+        f'module = "{name}.py"\nlesson = "twice-as-much"\norder = {order}\nminutes = 5\nsummary = "Short."\n'
+        '[[task]]\nid = "first"\ntitle = "The first"\npoints = 1\n'
+        '[[task]]\nid = "second"\ntitle = "The second"\npoints = 1\n'
+    )
+    (folder / "README.md").write_text(f"# {name}\n\n`first(x)` gives one thing, `second(x)` another.\n")
+    (folder / f"{name}.py").write_text(
+        '"""Two."""\n\n\ndef first(x):\n    return x\n\n\ndef second(x):\n    return x\n'
+    )
+    (folder / "checks.py").write_text("")
+    hints = "".join(
+        f'[[task]]\nid = "{task}"\nhints = ["Think.", "Write RIGHT."]\n' for task in ("first", "second")
+    )
+    (folder / "hints.toml").write_text(f"format_version = 1\n{hints}")
+
+
+def write(workspace: Path, name: str, first: str, second: str) -> None:
+    text = f"def first(x):\n    return {first!r}\n\n\ndef second(x):\n    return {second!r}\n"
+    (workspace / "warm-ups" / name / f"{name}.py").write_text(text)
+
+
+def test_all_are_listed_by_lesson_with_what_is_done(warm, workspace):
+    body = warm("warmup", "--json").json
+    assert [(one["id"], one["state"]) for one in body["warm_ups"]] == [("adding", "new"), ("taking", "new")]
+    assert body["next"]["command"] == "course warmup adding"
+    warm("warmup", "adding")
+    write(workspace, "adding", "RIGHT", "RIGHT")
+    warm("check", "adding")
+    said = warm("warmup")
+    assert "1 of 2 done" in said.out
+    assert "done: One thing adding (adding), 5 min" in said.out
+    assert warm("warmup", "--json").json["next"]["command"] == "course warmup taking"
+
+
+def test_one_is_started_with_its_text_and_lies_with_the_others(warm, workspace):
+    said = warm("warmup", "adding")
+    assert "first(x) gives one thing" in said.out
+    assert (workspace / "warm-ups" / "adding" / "adding.py").is_file()
+    assert (workspace / "warm-ups" / "adding" / "README.md").is_file()
+    assert warm("warmup", "adding", "--json").json["files"][0]["action"] == "kept"
+
+
+def test_it_is_checked_as_an_exercise_is_and_without_points(warm, workspace):
+    warm("start", "adding")
+    write(workspace, "adding", "RIGHT", "wrong")
+    said = warm("warmup", "adding", "--check")
+    assert said.code == 1
+    assert "1 of 2 checks passes." in said.out
+    assert "points" not in said.out
+    assert "score" not in said.out
+    assert warm("check", "warm-ups/adding/adding.py", "--json").json["exercise"] == "adding"
+    write(workspace, "adding", "RIGHT", "RIGHT")
+    done = warm("check", "adding")
+    assert "this warm-up is done" in done.out
+    assert "course warmup taking" in done.err + done.out
+
+
+def test_one_thing_at_a_time_is_told(warm, workspace):
+    warm("start", "adding")
+    write(workspace, "adding", "wrong", "also wrong")
+    assert warm("check", "adding").out.count("Write RIGHT.") == 1
+    assert "--verbose shows all" in warm("check", "adding").out + warm("check", "adding").err
+
+
+def test_hints_are_due_after_an_attempt(warm, workspace):
+    warm("start", "adding")
+    write(workspace, "adding", "wrong", "wrong")
+    warm("check", "adding")
+    assert warm("hint", "adding", "--json").json["hint"] == "Think."
+
+
+def test_the_folder_one_is_in_says_which(warm, workspace, monkeypatch):
+    warm("start", "taking")
+    warm("start", "adding")
+    monkeypatch.chdir(workspace / "warm-ups" / "taking")
+    assert warm("check", "--json").json["exercise"] == "taking"
+
+
+def test_progress_counts_them_and_check_all_leaves_them_alone(warm, workspace):
+    warm("start", "adding")
+    write(workspace, "adding", "RIGHT", "RIGHT")
+    warm("check", "adding")
+    body = warm("progress", "--json").json
+    assert [one["state"] for one in body["warm_ups"]] == ["done", "new"]
+    assert [one["id"] for one in body["exercises"]] == ["doubling", "halving"]
+    assert "1 of 2 done" in warm("progress").out
+    warm("start", "doubling")
+    assert [one["exercise"] for one in warm("check", "--all", "--json").json["results"]] == ["doubling"]
+
+
+def test_a_course_without_warm_ups_does_not_speak_of_them(course, workspace):
+    assert "arm-up" not in course("progress").out
+    assert "no warm-ups" in course("warmup").out
+
+
+def test_an_exercise_is_no_warm_up(warm):
+    assert warm("warmup", "doubling", "--json").json["error"]["code"] == "not_a_warm_up"
+
+
+def test_reset_update_and_diff_know_where_it_lies(warm, workspace):
+    warm("start", "adding")
+    write(workspace, "adding", "mine", "mine")
+    assert "def first" in warm("diff", "adding").out
+    assert warm("reset", "adding", "--yes").code == 0
+    assert "return x" in (workspace / "warm-ups/adding/adding.py").read_text()
+    assert str(workspace / "warm-ups/adding/adding.py") in {
+        c["path"] for c in warm("update", "--json").json["changes"]
+    }
+
+
+def test_they_are_handed_in_only_when_asked_for(warm, workspace, tmp_path_factory):
+    warm("start", "adding")
+    warm("start", "doubling")
+    write(workspace, "adding", "RIGHT", "RIGHT")
+    (workspace / "doubling" / "doubling.py").write_text("def double(x):\n    return 'RIGHT'\n")
+    folder = tmp_path_factory.mktemp("class")
+    for student, more in (("ada", ["--warm-ups"]), ("bob", [])):
+        (folder / student).mkdir()
+        assert warm("submit", "-o", str(folder / student / "mine.zip"), *more).code == 0
+    inside = [set(zipfile.ZipFile(folder / name / "mine.zip").namelist()) for name in ("ada", "bob")]
+    assert "warm-ups/adding/adding.py" in inside[0]
+    assert inside[0] - inside[1] == {"warm-ups/adding/adding.py"}
+    loose = folder / "cem" / "warm-ups" / "adding"
+    loose.mkdir(parents=True)
+    shutil.copy(workspace / "warm-ups/adding/adding.py", loose)
+    asked = [Catalog().exercise("adding")]
+    found = {
+        entry.student: entry.submission is not None for entry in read_class(folder, asked, required=True)
+    }
+    assert found == {"ada": True, "bob": False, "cem": True}

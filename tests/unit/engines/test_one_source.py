@@ -1,0 +1,181 @@
+"""No number about an engine is typed: each is computed from the measurements that ship, or is no measurement.
+
+Cells, inline values and the tables of docs/engines.md are computed, and tests of their own compare them. Here
+is what is left: sentences that name an engine and hold a number with a unit, in words or in figures.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from course.engines import reference, settings
+from course.engines.findings import chaos, same_algorithm
+from course.engines.registry import ENGINES
+from course.engines.results import DEFAULT, TUNED
+from course.engines.scenarios import SCENARIOS
+from course.figures import engines as drawn
+from course.physics.contact_models import SoftConvex, drop
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = (
+    "course/lessons/engines.md",
+    "course/lessons/how-contact-is-solved.md",
+    "quiz/which-engine.toml",
+    "exercises/engine-comparison/README.md",
+    "exercises/engine-comparison/hints.toml",
+    "solutions/engine-comparison/README.md",
+    "docs/engines.md",
+    "README.md",
+)
+
+_NAME = "engines?|pymunk|Chipmunk|MuJoCo|MJX|ODE|Bullet|PyBullet|Rapier|PhysX|DART|Box2D|Jolt"
+_ENGINE = re.compile(rf"\b(?:{_NAME})\b")
+_DIGITS = r"\d[\d,]*(?:\.\d+)?"
+_WORDS = "half|third|quarter|tenth|hundredths?|two|three|four|five|six|seven|eight|nine|ten|hundred|thousand"
+_UNIT = "%|mm|cm|km|m|m/s|ms|s|kg|Hz|x|times|digits|per cent|millimetres?|centimetres?|metres?|seconds?"
+_MEASURED = re.compile(rf"(?<![\w.])(?:{_DIGITS}|{_WORDS}) (?:of an? )?(?:{_UNIT})(?![\w/])")
+#: What is computed or quoted: code, tables made by a script, inline values, formulas, links, front matter.
+_COMPUTED = (
+    r"(?ms)^```.*?^```$",
+    r"(?s)<!-- made: .*?<!-- end -->",
+    r"(?ms)\A\+\+\+.*?^\+\+\+$",
+    r"(?s)\n## Sources\n.*",
+    r"\[[^\]]*\]\(<?=.*?\)(?=[\s.,;:%)]|$)",
+    r"\$[^$]*\$",
+    r"\]\([^)]*\)",
+    r"Bullet (?:2\.84|3)\b|PhysX 5\.3",
+)
+
+
+def typed(page: str) -> set[str]:
+    """Numbers with a unit in sentences that name an engine."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for pattern in _COMPUTED:
+        text = re.sub(pattern, "Bullet" if "Bullet" in pattern else "", text)
+    sentences = re.split(r"(?<=[.!?])\s+|\n\s*\n|\n(?=[-|>#])", text)
+    return {
+        found[0]
+        for sentence in sentences
+        if _ENGINE.search(sentence)
+        for found in _MEASURED.finditer(" ".join(sentence.split()))
+    }
+
+
+def _default(engine: str, key: str) -> str:
+    (one,) = [option for option in settings.options_of(engine).option if option.key == key]
+    return one.default
+
+
+def _rests_mm() -> float:
+    gaps, _ = drop(SoftConvex(), 0.0, 0.0, h=0.01, n=300)
+    return -1000 * gaps[-1]
+
+
+def _row(engine: str, scenario: str, setting=TUNED):
+    return reference.row(engine, scenario, setting)
+
+
+def _rests_mm() -> float:
+    gaps, _ = drop(SoftConvex(), 0.0, 0.0, h=0.01, n=300)
+    return -1000 * gaps[-1]
+
+
+_LESSON, _CONTACT, _QUIZ, _DOCS = PAGES[0], PAGES[1], PAGES[2], PAGES[6]
+
+#: What is no number of an engine: the sizes of a test, said where the test is set, and ways of speaking.
+GIVEN = {
+    (_CONTACT, "1 m"),
+    (_CONTACT, "two seconds"),
+    (_QUIZ, "four times"),
+    (_QUIZ, "ten times"),
+    (_QUIZ, "ten seconds"),
+    (_QUIZ, "three digits"),
+    ("exercises/engine-comparison/README.md", "ten seconds"),
+    ("exercises/engine-comparison/README.md", "60 s"),
+    ("exercises/engine-comparison/README.md", "0.01 m/s"),
+    ("solutions/engine-comparison/README.md", "2 m/s"),
+    # Box2D's and Unity's defaults, and pymunk's slop in the question: the lesson names their documentation.
+    (_CONTACT, "1 m/s"),
+    (_CONTACT, "2 m/s"),
+    (_CONTACT, "1 mm"),
+}
+#: What is one, and what it is checked against.
+HOLDS = {
+    (_LESSON, "2 m/s"): lambda: _default("physx", "bounce_threshold") == "2 m/s",
+    (_LESSON, "10 %"): lambda: drawn.LARGE == 10.0,
+    (_LESSON, "67 ms"): lambda: round(_row("rapier", "long-step").value) == 67,
+    (_LESSON, "hundredths of a millimetre"): lambda: 0.005 < _row("physx", "stack").highest < 0.05,
+    (_CONTACT, "0.37 millimetres"): lambda: round(_rests_mm(), 2) == 0.37,
+    (_QUIZ, "0.5 %"): lambda: round(_row("mujoco", "free-fall").value, 2) == 0.5,
+    ("exercises/engine-comparison/README.md", "0.25 m"): lambda: SCENARIOS["bounce"].truth == 0.25,
+    (_DOCS, "two metres"): lambda: _row("physx", "thin-wall").options == {"contact_offset": 2.0},
+}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_number_beside_an_engine_is_computed_or_checked_here(page: str) -> None:
+    assert typed(page) == {number for where, number in {*GIVEN, *HOLDS} if where == page}
+
+
+@pytest.mark.parametrize(("page", "number"), HOLDS)
+def test_what_is_typed_beside_an_engine_holds(page: str, number: str) -> None:
+    assert HOLDS[page, number]()
+
+
+def test_where_nothing_is_set_well_set_is_as_it_comes() -> None:
+    """The tables say "the same" there."""
+    for engine in ENGINES:
+        for scenario in SCENARIOS:
+            if (engine, scenario) == ("pymunk", "diagonal") or _row(engine, scenario).options:
+                continue
+            tuned, default = _row(engine, scenario), _row(engine, scenario, DEFAULT)
+            if scenario == "boxes":  # a rate is another one each time
+                assert abs(tuned.value - default.value) <= max(tuned.spread, default.spread), engine
+            else:
+                assert (tuned.value, tuned.samples) == (default.value, default.samples), (engine, scenario)
+
+
+def test_what_the_page_on_engines_says_in_words_is_in_the_measurements() -> None:
+    rows = reference.load().rows
+    # "MuJoCo with its default integrator, Bullet 3 well set and DART end ... with the same energy"
+    (same,) = same_algorithm(rows).split("start by start, in ")[1:]
+    for name in ("MuJoCo", "Bullet 3", "DART"):
+        assert name in same
+    # "PhysX well set follows in single precision"
+    ends = {e: _row(e, "double-pendulum").details["at_the_end_percent"] for e in ("dart", "physx")}
+    assert ends["dart"] == pytest.approx(ends["physx"], rel=0.02)
+    # "A ball does not bounce (MuJoCo), a pendulum stops (PhysX), a fall is short (Bullet 3)"
+    assert _row("mujoco", "bounce", DEFAULT).value == 0.0 < _row("mujoco", "bounce").value
+    assert _row("physx", "double-pendulum", DEFAULT).value > 50
+    assert _row("physx", "double-pendulum").value < 10
+    assert _row("pybullet", "free-fall", DEFAULT).value < 0 < _row("pybullet", "free-fall").value
+    # "Bullet 3 has a switch, and with it off the energy is kept"
+    assert _row("pybullet", "clash").options["contact_erp"] == 0.0
+    assert abs(_row("pybullet", "clash").value) < 1e-3
+    # "two degrees of the start decide whether the energy has grown or shrunk"
+    assert min(ends["dart"]) < 0 < max(ends["dart"])
+    assert "between -" in chaos(rows)
+    # "a thin wall stops slow ones only" in what sweeps no ball
+    for engine in ("mujoco", "ode", "dart", "pymunk"):
+        assert _row(engine, "thin-wall").value < 50, engine
+    # "friction is a pyramid, stronger along the diagonal"
+    for engine in ("ode", "dart"):
+        assert _row(engine, "diagonal").value == pytest.approx(2**0.5, rel=0.01)
+
+
+def test_what_the_solution_says_of_four_engines_is_in_the_measurements() -> None:
+    four = ("ode", "bullet", "physx", "mujoco")
+    # Bullet: "a double pendulum swings on in it with the least change of energy of the four" ...
+    change = {engine: _row(engine, "double-pendulum", DEFAULT).value for engine in four}
+    assert min(change, key=change.get) == "bullet"
+    # ... "a rebound depends on where in a step the ball lands, a clash gains energy, a box slides too slowly"
+    assert _row("bullet", "bounce").highest > 2 * _row("bullet", "bounce").lowest
+    assert _row("bullet", "clash").value > 0 > _row("bullet", "slide").value
+    # PhysX: "slow bodies do not bounce; well set, its sliding and its collisions were exact"
+    assert _row("physx", "small-drop", DEFAULT).value < 0.01
+    assert abs(_row("physx", "slide").value) < 1e-3 > abs(_row("physx", "clash").value)
+    # MuJoCo: "well set, it lost no energy worth measuring on a pendulum"
+    assert _row("mujoco", "double-pendulum").value < 1e-3

@@ -1,0 +1,190 @@
+"""A class of 150 as each platform hands it out: nobody refused, everybody enrolled in one row, all settled.
+
+Of the 150, 9 handed in nothing, 12 handed in under another name or in another folder (of which 5 are taken
+without a question), 2 typed text in place of a file, and 2 are anonymous. Graders are stood in for.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import zipfile
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.grading.exports.formats import export
+from course.grading.exports.selection import ExportOptions
+from course.grading.results.roster import read_roster
+from course.grading.running import run
+from course.grading.running.assign import assign, proposals, unsettled
+from course.grading.running.run import RunOptions, grade_class, open_results
+from course.scoring.terms import Terms
+from tests.unit.grading.test_roster import rows
+from tests.unit.grading.test_run import right
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+
+SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
+EVERYBODY = range(1, 151)
+NOTHING, TEXT, ANONYMOUS = range(1, 10), (20, 21), (30, 31)
+NAMES = ("Ada Lovelace", "Bob O'Neil", "Zoë Müller", "Grace Hopper", "李 明")
+
+
+def zipped(*names: str) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name in names:
+            archive.writestr(name, SOURCE if name.endswith(".py") else b"")
+    return buffer.getvalue()
+
+
+#: Student -> what is handed in instead of ``doubling.py``; the last five are taken without a question.
+ODD: dict[int, tuple[str, bytes]] = {
+    40: ("homework3.py", SOURCE),
+    41: ("my solution.py", SOURCE),
+    42: ("dubling.py", SOURCE),
+    43: ("work.zip", zipped("src/hw.py", "docs/notes.txt")),
+    44: ("work.zip", zipped("week3/doubling.py", "week2/notes.txt")),
+    45: ("final.PY", SOURCE),
+    46: ("solution.ipynb", json.dumps({
+        "nbformat": 4, "nbformat_minor": 5, "metadata": {},
+        "cells": [{"cell_type": "code", "source": SOURCE.decode(), "metadata": {}, "outputs": []}],
+    }).encode()),
+    47: ("doubling (2).py", SOURCE),
+    48: ("doubling(1).py", SOURCE),
+    49: ("Doubling.py", SOURCE),
+    50: ("work.zip", zipped("homework/doubling.py", "homework/notes.txt")),
+    51: ("work.zip", zipped("mine\\doubling\\doubling.py", "mine\\notes.txt")),
+}  # fmt: skip
+TO_SETTLE = 7
+
+
+def name(number: int) -> str:
+    return f"{NAMES[number % len(NAMES)]} {number}"
+
+
+def canvas_name(number: int) -> str:
+    return "".join(letter for letter in name(number).casefold() if letter.isalnum())
+
+
+def put(path: Path, content: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+def handed_in(number: int) -> tuple[str, bytes]:
+    return ODD.get(number, ("doubling.py", SOURCE))
+
+
+def lay_folders(folder: Path) -> list[list[str]]:
+    for number in EVERYBODY:
+        if number in TEXT:
+            put(folder / f"s{number}" / "answer.txt", b"I would double it")
+        elif number not in NOTHING:
+            file, content = handed_in(number)
+            put(folder / f"s{number}" / file, content)
+    return [["student", "name"], *([f"s{number}", name(number)] for number in EVERYBODY)]
+
+
+def moodle_roster() -> list[list[str]]:
+    headings = ["Identifier", "Full name", "Email address", "Grade", "Last modified (grade)"]
+    people = [[f"Participant {n}", name(n), f"{n}@x.org", "", "-"] for n in EVERYBODY]
+    return [headings, *people]
+
+
+def lay_moodle(folder: Path, *, flat: bool = False) -> list[list[str]]:
+    for number in EVERYBODY:
+        who = "Participant" if number in ANONYMOUS else name(number)
+        if number in TEXT:
+            put(folder / f"{who}_{number}_assignsubmission_onlinetext" / "onlinetext.html", b"<p>x</p>")
+        elif number not in NOTHING:
+            file, content = handed_in(number)
+            put(folder / f"{who}_{number}_assignsubmission_file{'_' if flat else '/'}{file}", content)
+    return moodle_roster()
+
+
+def lay_canvas(folder: Path) -> list[list[str]]:
+    for number in EVERYBODY:
+        who = f"{canvas_name(number)}_{number}"
+        if number in TEXT:
+            put(folder / f"{who}_{'text' if number == TEXT[0] else 'link'}.html", b"<p>x</p>")
+        elif number not in NOTHING:
+            who = f"anon_Ab3d{number % 10}" if number in ANONYMOUS else who
+            file, content = handed_in(number)
+            put(folder / f"{who}_9{number}_{file}", content)
+    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section"]
+    return [headings, *([name(n), str(n), f"S{n}", f"l{n}", "A"] for n in EVERYBODY)]
+
+
+def lay_gradescope(folder: Path) -> list[list[str]]:
+    told = []
+    for number in EVERYBODY:
+        if number in NOTHING:
+            continue
+        file, content = ("answer.txt", b"x") if number in TEXT else handed_in(number)
+        put(folder / f"submission_{number}" / file, content)
+        sid = "" if number in ANONYMOUS else f"    :sid: S{number}\n"
+        shown = "" if number in ANONYMOUS else f"    :name: {name(number)}\n"
+        told.append(f"submission_{number}:\n  :submitters:\n  - :email: {number}@x.org\n{shown}{sid}")
+    put(folder / "submission_metadata.yml", "".join(told).encode())
+    headings = ["Name", "SID", "Email", "Role"]
+    return [headings, *([name(n), f"S{n}", f"{n}@x.org", "Student"] for n in EVERYBODY)]
+
+
+LAYOUTS = {
+    "folders": lay_folders,
+    "moodle": lay_moodle,
+    "moodle, files in one folder": lambda folder: lay_moodle(folder, flat=True),
+    "canvas": lay_canvas,
+    "gradescope": lay_gradescope,
+}
+#: Canvas says of anonymous work not whose it is: those two are rows of their own, and their owners missing.
+UNKNOWN = {"canvas": len(ANONYMOUS)}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
+    tmp_path: Path, catalog: Catalog, layout: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
+    if layout == "gradescope":
+        pytest.importorskip("yaml")
+    table = LAYOUTS[layout](tmp_path / "class")
+    with (tmp_path / "roster.csv").open("w", encoding="utf-8", newline="") as handle:
+        csv.writer(handle).writerows(table)
+    files = sorted(tmp_path.glob("class/**/*"))
+    roster = read_roster(tmp_path / "roster.csv")
+    assert len(roster.people) == 150
+    out, unknown = tmp_path / "out", UNKNOWN.get(layout, 0)
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
+    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=right)
+    assert summary.unrecognised == []
+    assert (len(summary.missing), len(summary.strangers)) == (len(NOTHING) + unknown, unknown)
+    assert summary.states == {"graded": 150 - 9 - TO_SETTLE - 2, "ungradable": TO_SETTLE + 2}
+    assert Counter(row.code for row in summary.troubled) == {"no_file": TO_SETTLE + 2}
+    with open_results(out, writing=True) as results:
+        assert len(unsettled(results)) == TO_SETTLE
+        assign(results, catalog, proposals(results), "the only file there is", grade=right)
+        assert unsettled(results) == []
+    found = rows(out / "grades.csv")
+    assert len(found) == 150 + unknown
+    assert len({row["name"] for row in found.values() if row["name"]}) == 150
+    assert Counter(row["state"] for row in found.values()) == {
+        "graded": 150 - 9 - 2, "missing": 9 + unknown, "ungradable": 2,
+    }  # fmt: skip
+    assert sorted(tmp_path.glob("class/**/*")) == files, "nothing was renamed"
+    platform = {"canvas": "canvas", "gradescope": "gradescope"}.get(layout, "moodle-worksheet")
+    if layout != "folders":
+        sheet = tmp_path / "roster.csv" if platform == "moodle-worksheet" else None
+        how = ExportOptions((), {"doubling": "4711"}, True, "blank", True, sheet)
+        with open_results(out) as results:
+            written = export(results, platform, out, tmp_path / "export", how)
+        given = {"canvas": 150, "gradescope": 141, "moodle-worksheet": 141}[platform]
+        assert written.rows == given + (0 if platform != "gradescope" else 9)
+        assert written.unmatched == sorted(summary.strangers)

@@ -1,0 +1,237 @@
+"""Graders frozen per run: what judges is what was there when the run began, whatever is edited meanwhile."""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.errors import IntegrityError, InternalError, NotFoundError
+from course.grading.gradebook.book import Gradebook
+from course.grading.results.effective import Results
+from course.grading.running.batch import start_grader
+from course.grading.running.grader import Config
+from course.grading.running.rerun import RerunOptions, rerun
+from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.snapshot import Snapshot, frozen, in_use
+from course.scoring.terms import Terms
+from course.scoring.version import grader_version
+from tests.unit.grading.conftest import MINI
+from tests.unit.grading.test_run import make_class, right
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+ROOT = Path(__file__).resolve().parents[3]
+#: In a hidden check of ``double``: so edited, nobody passes it.
+DUE, EDITED = "-34.5,", "-35.5,"
+
+
+@pytest.fixture
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Catalog:
+    """A copy of the miniature course that may be edited."""
+    shutil.copytree(MINI, tmp_path / "content")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "content"))
+    return Catalog()
+
+
+def edit(course: Catalog) -> None:
+    assert course.content.graders is not None
+    checks = course.content.graders / "doubling" / "checks.py"
+    text = checks.read_text("utf-8")
+    assert DUE in text
+    checks.write_text(text.replace(DUE, EDITED), "utf-8")
+
+
+def graders() -> list[int]:
+    found: list[str] = []
+    for task in Path(f"/proc/{os.getpid()}/task").iterdir():
+        children = (task / "children").read_text().split()
+        found += [pid for pid in children if b"running.grader" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+    return [int(pid) for pid in found]
+
+
+def options(**more: Any) -> RunOptions:
+    return RunOptions(exercises=("doubling",), terms=Terms(level="L1"), seed=3, **more)
+
+
+def outcomes(out: Path) -> dict[str, Any]:
+    with Gradebook(out / "gradebook.sqlite") as book:
+        return {
+            result.key.student: (
+                result.key.grader_version,
+                result.verdict.score,
+                [(check.id, check.status, check.points) for check in result.verdict.checks],
+            )
+            for result in book.results()
+        }
+
+
+def changed(out: Path, course: Catalog, **how: Any) -> list[tuple[str, float | None, float | None]]:
+    with open_results(out) as results:
+        done = rerun(results, course, RerunOptions(dry_run=True, level="L1", **how))
+    return [(change.student, change.raw_before, change.raw_after) for change in done.changes]
+
+
+def judged_while_edited(
+    tmp_path: Path, course: Catalog, solution: bytes, disturb: Callable[[], None], students: int
+) -> None:
+    """Edit a check when the first result is in: all are judged as before, by what their graders say."""
+    make_class(tmp_path / "class", solution, students)
+    version = grader_version(course.exercise("doubling"), course)
+    seen: list[str] = []
+
+    def report(item: Any, *_: object) -> None:
+        seen.append(item.student)
+        if len(seen) == 1:
+            edit(course)
+            disturb()
+
+    out = tmp_path / "out"
+    summary = grade_class(tmp_path / "class", out, course, options(), report)
+    assert summary.states["graded"] == students
+    now = grader_version(course.exercise("doubling"), course)
+    assert now != version
+    first = outcomes(out)
+    assert {judged_by for judged_by, _, _ in first.values()} == {version}
+    assert {score for _, score, _ in first.values()} == {10.0, 6.0}
+    # What the edit would change is said, and nothing is changed by saying it.
+    would = changed(out, course)
+    assert sorted(would) == sorted(
+        (student, score, score - 2.0) for student, (_, score, _) in first.items() if score == 10.0
+    )
+    assert outcomes(out) == first
+    # Changed at last, and made again from the snapshot of the first run: the same to the point.
+    with open_results(out, writing=True) as results:
+        done = rerun(results, course, RerunOptions(level="L1"))
+    assert len(done.changes) == len(would)
+    assert {judged_by for judged_by, _, _ in outcomes(out).values()} == {now}
+    with open_results(out, writing=True) as results:
+        again = rerun(results, course, RerunOptions(level="L1", against="1"))
+    assert again.graders == summary.graders
+    assert outcomes(out) == first
+    with Gradebook(out / "gradebook.sqlite") as book:
+        kept = [(run.kind, run.options["snapshot"] == summary.graders) for run in book.runs()]
+    assert kept == [("run", True), ("rerun", False), ("rerun", True)]
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="finds graders in /proc")
+def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
+    tmp_path: Path, course: Catalog, solution: bytes
+) -> None:
+    killed: list[int] = []
+
+    def disturb() -> None:
+        for pid in graders():
+            os.kill(pid, signal.SIGKILL)
+            killed.append(pid)
+
+    judged_while_edited(tmp_path, course, solution, disturb, 4)
+    assert killed
+
+
+@pytest.mark.soak
+def test_an_edit_alone_changes_nothing_in_a_run(tmp_path: Path, course: Catalog, solution: bytes) -> None:
+    judged_while_edited(tmp_path, course, solution, lambda: None, 40)
+
+
+def test_resuming_after_an_edit_grades_the_rest_as_the_run_began_and_says_what_was_edited(
+    tmp_path: Path, course: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 3)
+    out = tmp_path / "out"
+    first = grade_class(tmp_path / "class", out, course, options(), lambda *_: None, grade=right)
+    before = outcomes(out)
+    edit(course)
+    make_class(tmp_path / "more", solution, 5)
+    reported: list[str] = []
+    again = grade_class(
+        tmp_path / "more", out, course, options(resume=True),
+        lambda item, *_: reported.append(item.student), grade=right,
+    )  # fmt: skip
+    assert reported == ["student-003", "student-004"]
+    assert again.graders == first.graders
+    assert again.edited == ["doubling"]
+    after = outcomes(out)
+    assert {name: after[name] for name in before} == before
+    assert len({version for version, _, _ in after.values()}) == 1
+    with open_results(out) as results, pytest.raises(NotFoundError, match="no graders"):
+        rerun(results, course, RerunOptions(dry_run=True, against="9"))
+
+
+def test_a_snapshot_is_known_by_what_is_in_it(tmp_path: Path, course: Catalog) -> None:
+    one = Snapshot.take(course.content)
+    assert Snapshot.take(course.content).sha256 == one.sha256
+    assert Snapshot.of(one.packed, one.sha256) == one
+    with frozen(one) as graders_then:
+        version = graders_then.version("doubling")
+        assert version == grader_version(course.exercise("doubling"), course)
+        assert in_use(one.sha256) is graders_then
+        edit(course)
+        assert graders_then.version("doubling") == version
+    assert in_use(one.sha256) is None
+    assert not graders_then.folder.exists()
+    other = Snapshot.take(course.content)
+    assert other.sha256 != one.sha256
+    for packed in (other.packed, b"", one.packed[:-50], b"PK" + one.packed[2:100]):
+        with pytest.raises(IntegrityError):
+            Snapshot.of(packed, one.sha256)
+    with pytest.raises(InternalError, match="not unpacked"):
+        start_grader(Config(Terms(graders=one.sha256), 0))
+
+
+def test_an_old_pyc_is_never_taken_for_an_edited_file(tmp_path: Path, course: Catalog) -> None:
+    """A compiled file comes along only where its source has long been as it is."""
+    with frozen(Snapshot.take(course.content)) as graders_then:
+        for path in (graders_then.folder / "course").rglob("*.py"):
+            compiled = path.parent / "__pycache__"
+            if compiled.is_dir() and list(compiled.glob(f"{path.stem}.cpython*.pyc")):
+                original = ROOT / path.relative_to(graders_then.folder)
+                assert path.read_bytes() == original.read_bytes()
+                assert int(path.stat().st_mtime) == int(original.stat().st_mtime)
+
+
+def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course: Catalog) -> None:
+    """Not at the top and not in a function: a module that is missing would be found out by some student."""
+    with frozen(Snapshot.take(course.content)) as graders_then:
+        missing = []
+        for path in (graders_then.folder / "course").rglob("*.py"):
+            for node in ast.walk(_without_types(ast.parse(path.read_bytes()))):
+                for name in _imported(node):
+                    target = graders_then.folder / name.replace(".", "/")
+                    if not (target.with_suffix(".py").is_file() or target.is_dir()):
+                        missing.append(f"{path.name}: {name}")
+        assert missing == []
+
+
+def _without_types(tree: ast.Module) -> ast.Module:
+    class Drop(ast.NodeTransformer):
+        def visit_If(self, node: ast.If) -> Any:
+            is_types = isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+            return None if is_types else self.generic_visit(node)
+
+    return Drop().visit(tree)
+
+
+def _imported(node: ast.AST) -> list[str]:
+    if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+        return [node.module] if node.module.split(".")[0] == "course" else []
+    if isinstance(node, ast.Import):
+        return [item.name for item in node.names if item.name.split(".")[0] == "course"]
+    return []
+
+
+def test_the_gradebook_keeps_the_same_graders_once(tmp_path: Path, course: Catalog) -> None:
+    with Gradebook(tmp_path / "g.sqlite", create=True) as book:
+        for _ in range(2):
+            one = Snapshot.take(course.content)
+            book.keep_snapshot(one.sha256, one.packed)
+        assert book.snapshot(one.sha256) == one.packed
+        assert book.snapshot("0" * 64) is None
+        assert Results(book).book is book

@@ -1,0 +1,287 @@
+"""Whose file it is: taken without a question, proposed, or settled by an instructor; nothing in silence."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.errors import MissingCapabilityError, NotFoundError, UngradableError, UsageError
+from course.grading.exports.formats import export
+from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook.book import Gradebook
+from course.grading.intake.students import Entry, read_class
+from course.grading.intake.triage import Candidate, found_for
+from course.grading.results.override import override
+from course.grading.running.assign import assign, named, proposals, unsettled
+from course.grading.running.run import RunOptions, grade_class, open_results, previewed
+from course.scoring.terms import Terms
+from tests.unit.grading.test_run import right
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise
+
+SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
+OTHER = SOURCE + b"# the second try\n"
+NOTEBOOK = json.dumps(
+    {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [
+        {"cell_type": "code", "source": SOURCE.decode(), "metadata": {}, "outputs": []}
+    ]}
+).encode()  # fmt: skip
+
+
+def zipped(**members: bytes) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(zipfile.ZipInfo(name), content)
+    return buffer.getvalue()
+
+
+def lay(folder: Path, **files: bytes) -> None:
+    for name, content in files.items():
+        path = folder / "ada" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+def read(folder: Path, doubling: Exercise, *, required: bool = True) -> Entry:
+    (entry,) = read_class(folder, [doubling], required=required)
+    return entry
+
+
+#: What is taken without a question -> what the result says of it.
+TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
+    "its very name": ({"doubling.py": SOURCE}, ""),
+    "letter case": ({"Doubling.PY": SOURCE}, "Doubling.PY was taken for doubling.py."),
+    "a browser's number": ({"doubling (2).py": SOURCE}, "doubling (2).py was taken for doubling.py."),
+    "without a space": ({"doubling(2).py": SOURCE}, "doubling(2).py was taken for doubling.py."),
+    "with a dash": ({"doubling-1.py": SOURCE}, "doubling-1.py was taken for doubling.py."),
+    "a notebook's": ({"Doubling (1).ipynb": NOTEBOOK}, "Doubling (1).ipynb was taken for doubling.py."),
+    "two copies": (
+        {"doubling.py": SOURCE, "doubling (1).py": SOURCE},
+        "These are the same file: doubling.py, doubling (1).py.",
+    ),
+    "a copy in the folder": (
+        {"doubling.py": SOURCE, "doubling/doubling.py": SOURCE},
+        "These are the same file: doubling.py, doubling/doubling.py.",
+    ),
+    "a copy in a zip": (
+        {"doubling.py": SOURCE, "all.zip": zipped(**{"doubling/doubling.py": SOURCE})},
+        "These are the same file: doubling.py, all.zip.",
+    ),
+    "one folder around all": (
+        {"all.zip": zipped(**{"homework/doubling.py": SOURCE, "homework/notes.txt": b""})},
+        "Everything in all.zip lies in the folder homework, which was passed over.",
+    ),
+    "two folders around all": (
+        {"all.zip": zipped(**{"a/b/doubling/doubling.py": SOURCE})},
+        "Everything in all.zip lies in the folder a/b, which was passed over.",
+    ),
+    "backslashes": (
+        {"all.zip": zipped(**{"doubling\\doubling.py": SOURCE, "x\\notes.txt": b""})},
+        "all.zip has backslashes in its paths; they were taken for folders.",
+    ),
+    "another spelling in a zip": (
+        {"all.zip": zipped(**{"Doubling (1).py": SOURCE})}, "Doubling (1).py was taken for doubling.py."
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", TAKEN)
+def test_what_is_meant_beyond_doubt_is_taken_and_said(tmp_path: Path, doubling: Exercise, how: str) -> None:
+    files, said = TAKEN[how]
+    lay(tmp_path, **files)
+    entry = read(tmp_path, doubling)
+    assert entry.submission is not None, entry.problem
+    assert entry.submission.files["doubling.py"].strip() == SOURCE.strip()
+    assert list(entry.notes) == ([said] if said else [])
+
+
+#: What is asked about -> the code, and the one match there is.
+ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
+    "another name": ({"homework.py": SOURCE}, "no_file", "homework.py"),
+    "another folder": ({"week 3/doubling.py": SOURCE}, "no_file", "week 3/doubling.py"),
+    "in a zip, another name": (
+        {"all.zip": zipped(**{"src/hw.py": SOURCE, "readme.txt": b""})}, "no_file", "all.zip/src/hw.py"
+    ),
+    "a notebook": ({"Homework 3.ipynb": NOTEBOOK}, "no_file", "Homework 3.ipynb"),
+    "the better of two": ({"a.py": SOURCE, "b.py": b"def double(x): return x\n"}, "no_file", "a.py"),
+    "copies of one": ({"a.py": SOURCE, "b.py": SOURCE}, "no_file", "a.py"),
+    "a slip in the name": ({"dubling.py": b"def double(:\n"}, "no_file", "dubling.py"),
+    "two as good": ({"a.py": SOURCE, "b.py": OTHER}, "no_file", None),
+    "neither defines any": ({"a.py": b"x = 1\n", "b.py": b"y = 1\n"}, "no_file", None),
+    "a second version": ({"doubling.py": SOURCE, "doubling (1).py": OTHER}, "ambiguous_files", None),
+    "of which one is nothing": (
+        {"doubling.py": b"x = 1\n", "doubling (1).py": OTHER}, "ambiguous_files", "doubling (1).py"
+    ),
+    "in file and zip": (
+        {"doubling.py": SOURCE, "a.zip": zipped(**{"doubling.py": OTHER})}, "ambiguous_files", None
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", ASKED)
+def test_what_is_in_doubt_is_listed_with_the_one_match_there_is(
+    tmp_path: Path, doubling: Exercise, how: str
+) -> None:
+    files, code, match = ASKED[how]
+    lay(tmp_path, **files)
+    entry = read(tmp_path, doubling)
+    assert entry.submission is None
+    assert entry.problem is not None
+    assert entry.problem.code == code
+    assert entry.found is not None
+    proposed = [one.name for one in entry.found.candidates if one.proposed]
+    assert proposed == ([match] if match else [])
+
+
+def test_a_second_version_is_never_passed_over_in_silence(tmp_path: Path, doubling: Exercise) -> None:
+    lay(tmp_path, **{"doubling.py": SOURCE, "old/doubling_v2.py": OTHER, "plots.py": b"import math\n"})
+    entry = read(tmp_path, doubling)
+    assert entry.submission is not None
+    (note,) = entry.notes
+    assert note == "Also there, and not graded: old/doubling_v2.py (defines double, doublings)."
+
+
+def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    lay(tmp_path, **{"hw.py": SOURCE})
+    entry = read(tmp_path, doubling, required=False)
+    assert entry.problem is not None
+    assert "There is hw.py (defines double, doublings)." in entry.problem.message
+    (tmp_path / "ada" / "hw.py").write_bytes(b"def something(): pass\n")
+    assert read(tmp_path, doubling, required=False).problem is None
+
+
+def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: Exercise) -> None:
+    lay(
+        tmp_path,
+        **{
+            "deep.py": b"(" * 200_000, "null.py": b"\0" * 1000, "bad.zip": b"PK\x03\x04",
+            "big.py": b"#" * (8 << 20), "list.ipynb": b"[]", "hw.py": SOURCE,
+            "latin.py": b"# \xe9\ndef double(x): return x\n",
+        },
+    )  # fmt: skip
+    (tmp_path / "ada" / "link.py").symlink_to("/etc/passwd")
+    (tmp_path / "ada" / "loop").symlink_to(tmp_path / "ada")
+    entry = read(tmp_path, doubling)
+    assert entry.problem is not None
+    assert entry.problem.code == "refused_archive", "a damaged archive is reported before anything is guessed"
+    (tmp_path / "ada" / "bad.zip").unlink()
+    entry = read(tmp_path, doubling)
+    assert entry.found is not None
+    assert [one.name for one in entry.found.candidates if one.proposed] == ["hw.py"]
+    assert "link.py" not in {one.name for one in entry.found.candidates}
+
+
+def test_one_file_is_proposed_where_its_functions_are(catalog: Catalog) -> None:
+    files = [Candidate("x.py", "x.py", sha256="1", defines=("double", "doublings", "halve"))]
+    assert found_for(catalog.exercise("doubling"), files, asked=False)[0].proposed
+
+
+def graded(tmp_path: Path, catalog: Catalog, **more: Any) -> Any:
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, **more)
+    return grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+
+
+def counts(out: Path) -> dict[str, tuple[str, float | None]]:
+    with open_results(out) as results:
+        return {item.student: (item.verdict.state, item.score) for item in results.all()}
+
+
+def test_what_is_assigned_is_graded_at_once_written_down_and_stays(tmp_path: Path, catalog: Catalog) -> None:
+    for student, files in (
+        ("ada", {"hw.py": SOURCE}),
+        ("bob", {"doubling.py": SOURCE, "doubling (1).py": OTHER}),
+        ("cy", {"doubling.py": SOURCE}),
+    ):
+        for name, content in files.items():
+            path = tmp_path / "class" / student / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+    out = tmp_path / "out"
+    summary = graded(tmp_path, catalog)
+    assert summary.unsettled == 2
+    before = sorted(path.name for path in (tmp_path / "class").rglob("*"))
+    with open_results(out) as results:
+        assert [(item.student, item.found.reason) for item in unsettled(results)] == [
+            ("ada", "no_file"), ("bob", "ambiguous_files"),
+        ]  # fmt: skip
+        with pytest.raises(
+            MissingCapabilityError, match=r"'ada' doubling .no_file., 'bob' doubling"
+        ) as caught:
+            export(results, "gradescope", out, tmp_path / "x", ExportOptions())
+        assert caught.value.code == "unseen_zeros"
+        export(results, "gradescope", out, tmp_path / "x", ExportOptions(zeros=True))
+    with previewed(out) as results:
+        (done,) = assign(results, catalog, proposals(results), "her file", grade=right)
+        assert (done.before and done.before.score, done.after.score) == (0.0, 10.0)
+    assert counts(out)["ada"] == ("ungradable", 0.0), "a preview keeps nothing"
+    with open_results(out, writing=True) as results:
+        with pytest.raises(UsageError, match="reason"):
+            assign(results, catalog, proposals(results), " ", grade=right)
+        assign(results, catalog, proposals(results), "her file", grade=right)
+        chosen = named(results, "bob", "doubling (1).py", None)
+        assign(results, catalog, [chosen], "by mail", grade=right)
+        assert unsettled(results) == []
+    assert counts(out) == {"ada": ("graded", 10.0), "bob": ("graded", 10.0), "cy": ("graded", 10.0)}
+    assert sorted(path.name for path in (tmp_path / "class").rglob("*")) == before, "nothing was renamed"
+    with Gradebook(out / "gradebook.sqlite") as book:
+        ada, bob = book.journal("ada", "doubling")[0], book.journal("bob")[0]
+        assert (ada.kind, ada.reason, bob.reason) == ("assign", "her file", "by mail")
+        assert ada.who
+        assert ada.at
+        assert json.loads(ada.before)["reason"] == "no_file"
+        assert json.loads(bob.after)["file"] == "doubling (1).py"
+        assert book.history("bob", "doubling")[-1].verdict.warnings == (
+            "Graded from doubling (1).py, assigned by the instructor: by mail",
+        )
+    again = graded(tmp_path, catalog, resume=True)
+    assert (again.already, again.exit_code, again.unsettled) == (3, 0, 0)
+    # A file under its right name is a new submission, and counts.
+    (tmp_path / "class" / "ada" / "doubling.py").write_bytes(OTHER)
+    (tmp_path / "class" / "ada" / "hw.py").unlink()
+    assert graded(tmp_path, catalog, resume=True).already == 2
+    with open_results(out) as results:
+        assert len(results.book.history("ada", "doubling")) == 3
+
+
+def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, catalog: Catalog) -> None:
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    (tmp_path / "mail.zip").write_bytes(zipped(**{"all/my work.py": SOURCE, "all/other.py": OTHER}))
+    graded(tmp_path, catalog)
+    with open_results(tmp_path / "out", writing=True) as results:
+        with pytest.raises(NotFoundError, match="no student"):
+            named(results, "nobody", "x.py", None)
+        with pytest.raises(NotFoundError, match="no exercise"):
+            named(results, "ada", "x.py", "halving")
+        with pytest.raises(NotFoundError, match="no file"):
+            named(results, "ada", "nowhere.py", None)
+        wrong = named(results, "ada", f"{tmp_path}/mail.zip/none.py", None)
+        with pytest.raises(UngradableError, match="holds no"):
+            assign(results, catalog, [wrong], "by mail", grade=right)
+        one = named(results, "ada", f"{tmp_path}/mail.zip/all/my work.py", None)
+        assert one.member == "all/my work.py"
+        assign(results, catalog, [one], "by mail", grade=right)
+    assert counts(tmp_path / "out") == {"ada": ("graded", 10.0)}
+
+
+def test_a_score_by_hand_settles_it_too(tmp_path: Path, catalog: Catalog) -> None:
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    (tmp_path / "class" / "ada" / "hw.py").write_bytes(SOURCE)
+    graded(tmp_path, catalog)
+    with open_results(tmp_path / "out", writing=True) as results:
+        override(results, "ada", "doubling", 0.0, "not her work")
+    with open_results(tmp_path / "out") as results:
+        assert unsettled(results) == []
+        export(results, "gradescope", tmp_path / "out", tmp_path / "x", ExportOptions())
+        (told,) = results.book.journal("ada")
+        assert (told.kind, told.before, told.reason) == ("override", "0, ungradable", "not her work")

@@ -1,0 +1,139 @@
+"""Moodle's grading worksheet, read, filled in, and read back by Moodle's rules."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from course.errors import UsageError
+from course.grading.exports.formats import export
+from course.grading.exports.selection import ExportOptions
+from course.grading.results.roster import read_roster
+from course.grading.running.run import RunOptions, grade_class, open_results
+from course.scoring.terms import Terms
+from tests.unit.grading.test_run import right
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+
+HEADINGS = [
+    "Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade", "Grade can be changed",
+    "Last modified (submission)", "Last modified (grade)", "Feedback comments",
+]  # fmt: skip
+SHEET = [
+    ["Participant 101", "Ada Lovelace", "ada@x.org", "Submitted", "", "100.00", "Yes", "-", "-", ""],
+    ["Participant 102", "=Bob", "bob@x.org", "No submission", "", "100.00", "Yes", "-", "-", "See me, Bob"],
+    ["Participant 103", "Grace Hopper", "g@x.org", "Submitted", "7", "100.00", "No", "-", "-", "Done"],
+    ["Participant 104", "Cy É", "cy@x.org", "Submitted", "", "100.00", "Yes", "-", "Sunday, 1 March", ""],
+]
+
+
+def write(path: Path, rows: list[list[str]], headings: list[str] = HEADINGS) -> Path:
+    text = io.StringIO(newline="")
+    csv.writer(text).writerows([headings, *rows])
+    path.write_bytes(text.getvalue().encode())
+    return path
+
+
+def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, str]]:
+    """Grades and feedback that Moodle takes out of a worksheet, after its own reader.
+
+    mod/assign/feedback/offline: the three columns must be there; a row is found by what follows the word
+    "Participant"; a grade that is empty, out of range or locked is left; feedback is taken as it is.
+    """
+    rows = list(csv.DictReader(io.StringIO(path.read_bytes().decode("utf-8"), newline="")))
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(rows[0])
+    found: dict[str, tuple[float | None, str]] = {}
+    for row in rows:
+        number = row["Identifier"][len("Participant ") :]
+        text = row["Grade"].strip().replace(",", ".")
+        grade = float(text) if text else None
+        valid = grade is not None and 0 <= grade <= most
+        locked = row.get("Grade can be changed") == "No"
+        found[number] = (grade if valid and not locked else None, row.get("Feedback comments", ""))
+    return found
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path:
+    folder = tmp_path_factory.mktemp("moodle")
+    for name in ("Ada Lovelace_101", "Grace Hopper_103", "Cy É_104"):
+        place = folder / "class" / f"{name}_assignsubmission_file"
+        place.mkdir(parents=True)
+        module = "doubling.py" if name != "Cy É_104" else "hw.py"
+        (place / module).write_text("def double(x):\n    return 2 * x\n")
+    roster = read_roster(write(folder / "sheet.csv", SHEET))
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
+    summary = grade_class(folder / "class", folder / "out", catalog, options, lambda *_: None, grade=right)
+    assert summary.missing == ["=Bob_102"]
+    return folder / "out"
+
+
+def filled(out: Path, sheet: Path, to: Path, **more: Any) -> Any:
+    with open_results(out) as results:
+        options = ExportOptions(worksheet=sheet, zeros=True, **more)
+        return export(results, "moodle-worksheet", out, to, options)
+
+
+def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path: Path, out: Path) -> None:
+    sheet = write(tmp_path / "sheet.csv", SHEET)
+    written = filled(out, sheet, tmp_path / "back.csv")
+    assert (written.rows, written.paths) == (2, [tmp_path / "back.csv"])
+    assert any("cannot be changed" in note for note in written.notes)
+    rows = list(csv.reader(io.StringIO((tmp_path / "back.csv").read_bytes().decode(), newline="")))
+    assert rows[0] == HEADINGS
+    for before, after in zip(SHEET, rows[1:], strict=True):
+        kept = [at for at in range(len(HEADINGS)) if HEADINGS[at] not in {"Grade", "Feedback comments"}]
+        assert [after[at] for at in kept] == [before[at] for at in kept]
+    assert rows[2] == SHEET[1], "who is missing keeps the teacher's feedback"
+    assert rows[3] == SHEET[2]
+    taken = taken_by_moodle(tmp_path / "back.csv", 100.0)
+    assert {number: grade for number, (grade, _) in taken.items()} == {
+        "101": 100.0, "102": None, "103": None, "104": 0.0,
+    }  # fmt: skip
+    assert taken["101"][1].startswith("10 of 10 points.")
+    assert "There is no doubling.py" in taken["104"][1]
+    # Read back as a roster: the same people.
+    assert read_roster(tmp_path / "back.csv").people == read_roster(sheet).people
+
+
+def test_missing_work_is_a_zero_only_as_told(tmp_path: Path, out: Path) -> None:
+    sheet = write(tmp_path / "sheet.csv", SHEET)
+    filled(out, sheet, tmp_path / "zero.csv", missing="zero")
+    assert taken_by_moodle(tmp_path / "zero.csv", 100.0)["102"][0] == 0.0
+
+
+def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path: Path, out: Path) -> None:
+    at = HEADINGS.index("Maximum Grade")
+    sheet = write(tmp_path / "s.csv", [[*row[:at], "12,50", *row[at + 1 :]] for row in SHEET])
+    filled(out, sheet, tmp_path / "back.csv")
+    assert "12,5" in (tmp_path / "back.csv").read_text()
+    assert taken_by_moodle(tmp_path / "back.csv", 12.5)["101"][0] == 12.5
+
+
+def test_an_anonymous_worksheet_calls_its_rows_as_the_download_calls_its_folders(tmp_path: Path) -> None:
+    rows = [[row[0], *row[3:]] for row in SHEET]
+    people = read_roster(write(tmp_path / "s.csv", rows, [HEADINGS[0], *HEADINGS[3:]])).people
+    assert [person.student for person in people] == [f"Participant_{number}" for number in range(101, 105)]
+
+
+@pytest.mark.parametrize(
+    ("headings", "rows", "words"),
+    [
+        ([*HEADINGS[:8], "Changed", "Feedback comments"], SHEET, "no column 'Last modified (grade)'"),
+        (HEADINGS, [[*SHEET[0][:5], "Scale", *SHEET[0][6:]]], "maximum grade is 'Scale'"),
+        (HEADINGS, [SHEET[0][:-1]], "another number of cells"),
+    ],
+)
+def test_what_moodle_would_not_take_back_is_refused(
+    tmp_path: Path, out: Path, headings: list[str], rows: list[list[str]], words: str
+) -> None:
+    sheet = write(tmp_path / "s.csv", rows, headings)
+    with pytest.raises(UsageError, match=words.replace("(", r"\(").replace(")", r"\)")):
+        filled(out, sheet, tmp_path / "back.csv", partial=True)
+    assert not (tmp_path / "back.csv").exists()

@@ -1,0 +1,186 @@
+"""What lives in a cell, without a page: messages come from another thread, as ipykernel 7 hands them on."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+
+pytest.importorskip("anywidget")
+
+from course.catalog.load import Catalog
+from course.cli.frame import app
+from course.errors import NotFoundError
+from course.notebooks.predict_widget import Predict
+from course.notebooks.predicting import predict
+from course.notebooks.sandbox import Film, play
+from course.notebooks.take_widget import Take
+from course.notebooks.taking import Taken, take
+from course.notebooks.widget import Sandbox
+from course.progress.workspace import Workspace
+from course.reading.parts import read_script
+from course.reading.record import InProgress
+
+#: In s; a frame takes a few ms, and a machine may be busy.
+PATIENCE = 60
+
+
+def said_by_a_page(widget: Any, *messages: dict[str, Any]) -> None:
+    """Messages as a kernel hands them on from a subshell: on a thread without a loop."""
+    troubles: list[BaseException] = []
+
+    def say() -> None:
+        try:
+            for message in messages:
+                widget._handle_custom_msg(message, [])
+        except BaseException as error:
+            troubles.append(error)
+
+    thread = Thread(target=say)
+    thread.start()
+    thread.join()
+    assert not troubles
+
+
+def test_a_world_in_a_cell_moves_when_a_page_on_another_thread_says_so() -> None:
+    async def cell() -> tuple[float, list[str]]:
+        widget = play("head-on")
+        assert isinstance(widget, Sandbox)
+        kinds: list[str] = []
+
+        def send(message: dict[str, Any], buffers: Any = None) -> None:
+            kinds.append(message["kind"])
+            if message["kind"] == "numbers":
+                said_by_a_page(widget, {"kind": "seen"})
+
+        widget.send = send
+        run = {"kind": "request", "text": '{"do": "pause", "on": false}'}
+        said_by_a_page(widget, {"kind": "hello"}, run)
+        async with asyncio.timeout(PATIENCE):
+            while widget.world.t < 0.05:
+                await asyncio.sleep(0.01)
+        moved = widget.world.t
+        widget.close()
+        await asyncio.sleep(0.05)
+        assert widget.session.pages == []
+        return moved, kinds
+
+    moved, kinds = asyncio.run(cell())
+    assert moved > 0
+    assert {"words", "numbers"} <= set(kinds)
+
+
+def test_a_script_gets_a_film_for_there_is_no_loop_to_live_in() -> None:
+    assert isinstance(play("head-on"), Film)
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+    monkeypatch.chdir(tmp_path)
+    assert app.run(("init", "work")) == 0
+    monkeypatch.chdir(tmp_path / "work")
+    return Workspace.find(Path.cwd())
+
+
+def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(workspace: Workspace) -> None:
+    shown: list[tuple[str, bool]] = []
+
+    async def cell() -> None:
+        widget = predict("accuracy", 1)
+        assert isinstance(widget, Predict)
+        widget._open = lambda *, update: shown.append((widget.asked.opened, update))
+        said_by_a_page(widget, {"kind": "hello"})
+        await asyncio.sleep(0.05)
+        assert not shown
+        said_by_a_page(widget, {"kind": "predict", "text": "it *grows* "})
+        said_by_a_page(widget, {"kind": "predict", "text": "something else"})
+        await asyncio.sleep(0.05)
+
+    asyncio.run(cell())
+    text, update = shown[0]
+    assert update
+    assert "You predicted: it \\*grows\\*" in text
+    assert "Answer." in text
+    lesson = Catalog().lesson("accuracy")
+    kept = InProgress(read_script(lesson), workspace.store.events("", "accuracy"))
+    question = kept.script.questions[0]
+    said = kept.prediction(question)
+    assert said is not None
+    assert said.text == "it *grows*"
+    assert len(workspace.store.events("prediction", "accuracy")) == 1
+
+    again = predict("accuracy", 1)  # in a notebook that is opened again, and in the reader
+    assert again.said == "it *grows*"
+    assert again._repr_markdown_() == text
+
+
+def test_without_widgets_the_text_in_the_cell_is_the_prediction(workspace: Workspace) -> None:
+    empty = predict("accuracy", 1, "\n\n")
+    assert empty.said is None
+    assert "Answer." not in empty._repr_markdown_()
+    assert workspace.store.events("prediction") == ()
+    assert "Answer." in predict("accuracy", 1, "\nit grows\n")._repr_markdown_()
+    (event,) = workspace.store.events("prediction")
+    assert (event.subject, event.data["text"]) == ("accuracy", "it grows")
+    with pytest.raises(NotFoundError):
+        predict("accuracy", 99)
+
+
+def test_outside_of_a_workspace_an_answer_opens_and_nothing_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert "Answer." in predict("accuracy", 1, "it grows")._repr_markdown_()
+    assert list(tmp_path.iterdir()) == []
+    assert predict("accuracy", 1).said is None
+
+
+def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
+    workspace: Workspace, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sent: list[dict[str, Any]] = []
+    shown: list[bool] = []
+
+    async def cell(letters: dict[str, str]) -> Take:
+        shown.clear()
+        widget = take()
+        assert isinstance(widget, Take)
+        widget.send = sent.append
+        widget._show = lambda *, update: shown.append(update)
+        said_by_a_page(widget, {"kind": "hello"})
+        right = {one.question: one.key.letter for one in widget.taken.posed}
+        said_by_a_page(widget, {"kind": "answers", "answers": {}})
+        await asyncio.sleep(0.05)
+        assert not shown
+        for _ in range(2):  # handed in twice, it is scored once
+            said_by_a_page(widget, {"kind": "answers", "answers": right | letters})
+        await asyncio.sleep(0.05)
+        return widget
+
+    first = asyncio.run(cell({}))
+    assert first.taken.result is not None
+    assert first.taken.result.passed
+    asked = sent[0]["questions"]
+    assert [one["id"] for one in asked] == [one.question for one in first.taken.posed]
+    assert all(set(option) == {"letter", "text"} for one in asked for option in one["options"])
+    capsys.readouterr()
+    assert app.run(("quiz", "history", "--json")) == 0
+    reply = json.loads(capsys.readouterr().out)
+    assert reply["passed"]
+    (attempt,) = reply["attempts"]
+    assert attempt["seed"] == first.taken.attempt.seed
+    assert attempt["score"] == len(asked)
+
+    name = asked[0]["id"]
+    second = Taken()
+    assert second.attempt.seed != first.taken.attempt.seed  # other questions, as in a terminal
+    wrong = next(choice for choice in second.posed[0].choices if not choice.right)
+    asyncio.run(cell({name: wrong.letter}))  # it goes on with the attempt that was begun
+    app.run(("quiz", "history", "--json"))
+    reply = json.loads(capsys.readouterr().out)
+    assert [one["score"] for one in reply["attempts"]] == [len(asked), len(asked) - 1]
+    assert [one["question"] for one in reply["review"]] == [name]

@@ -1,0 +1,76 @@
+"""Mistakes are read out of runs of checks: first seen, last seen, mended."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+
+from course.progress.history import check_data
+from course.progress.mistakes import mistakes_of
+from course.progress.store import Event
+from course.scoring.verdict import CheckResult, Verdict
+
+START = datetime(2026, 11, 22, 10, tzinfo=UTC)
+
+
+def run(minute: int, *checks: tuple[str, str, str | None], subject: str = "integrators") -> Event:
+    """An event as ``course check`` writes it: (id, status, diagnosis) of each check of one function."""
+    results = tuple(
+        CheckResult(
+            id=name, title=name, task="step", status=status, visibility="public", points=0, max_points=1,
+            diagnosis=diagnosis,
+        )
+        for name, status, diagnosis in checks
+    )  # fmt: skip
+    verdict = Verdict(
+        exercise=subject, scope="public", state="graded", score=0, max_score=1, passed=False, checks=results,
+        isolation="L3",
+    )  # fmt: skip
+    data = check_data(verdict, b"", 0.1, "1")
+    return Event(minute, START + timedelta(minutes=minute), "check", subject, data)
+
+
+def test_a_mistake_has_its_first_and_last_run_and_the_one_that_mended_it():
+    (one,) = mistakes_of(
+        [
+            run(1, ("order", "fail", "SWAPPED"), ("energy", "fail", "SWAPPED")),
+            run(2, ("order", "fail", "SWAPPED"), ("energy", "pass", None)),
+            run(3, ("order", "pass", None), ("energy", "pass", None)),
+            run(4, ("order", "pass", None), ("energy", "pass", None)),
+        ]
+    )
+    assert (one.exercise, one.task, one.diagnosis, one.runs) == ("integrators", "step", "SWAPPED", 2)
+    minutes = [(at - START).seconds // 60 for at in (one.first, one.last, one.mended)]
+    assert minutes == [1, 2, 3]
+
+
+def test_another_failure_of_the_same_check_mends_nothing():
+    first, second = mistakes_of([run(1, ("order", "fail", "SWAPPED")), run(2, ("order", "fail", "SIGN"))])
+    assert first.mended is None
+    assert second.diagnosis == "SIGN"
+
+
+def test_a_mistake_made_again_is_open_again():
+    (one,) = mistakes_of(
+        [
+            run(1, ("order", "fail", "SWAPPED")),
+            run(2, ("order", "pass", None)),
+            run(3, ("order", "fail", "SWAPPED")),
+        ]
+    )
+    assert one.mended is None
+    assert one.runs == 2
+
+
+def test_a_check_of_the_same_name_elsewhere_mends_nothing():
+    events = [run(1, ("order", "fail", "SWAPPED")), run(2, ("order", "pass", None), subject="other")]
+    assert mistakes_of(events)[0].mended is None
+
+
+def test_work_to_do_and_what_follows_from_a_mistake_are_none():
+    codes = ("NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION")
+    assert mistakes_of([run(1, *((code, "fail", code) for code in codes))]) == ()
+
+
+def test_a_check_that_was_skipped_since_mends_nothing():
+    events = [run(1, ("order", "fail", "SWAPPED")), run(2, ("order", "skip", None))]
+    assert mistakes_of(events)[0].mended is None

@@ -1,15 +1,17 @@
-"""Pictures inside a terminal, where the terminal can: the kitty and the iTerm2 protocols, or half blocks.
+"""Pictures inside a terminal, where the terminal can: kitty's and iTerm2's protocols, sixels, or half blocks.
 
 Which terminal it is can only be told from its environment; asking it would mean reading its answer from the
 keyboard. When in doubt the picture is made of half blocks, which need colours and letters beyond ASCII only;
 a wrong guess of a protocol fills the screen with letters.
 
-Sources: kitty's "Terminal graphics protocol"; iTerm2's "Inline Images Protocol" (both read November 2026).
+Sources: kitty's "Terminal graphics protocol"; iTerm2's "Inline Images Protocol" (both read November 2026);
+for sixels, :mod:`course.figures.drawing.sixel`.
 """
 
 from __future__ import annotations
 
 import base64
+import struct
 from typing import TYPE_CHECKING, Literal
 
 from rich.console import Group
@@ -26,7 +28,13 @@ if TYPE_CHECKING:
 
 __all__ = ["InlinePicture", "Protocol", "picture", "protocol_of"]
 
-Protocol = Literal["kitty", "iterm2"]
+Protocol = Literal["kitty", "iterm2", "sixel"]
+
+#: Terminals that show sixels as they are installed. Others have to be told to, and nobody outside can see it.
+_SIXEL_TERMS = ("foot", "mlterm", "contour")
+
+#: Pixels in a letter's width where the terminal does not say: those of the VT340, and of what imitates it.
+_LETTER = 10
 
 #: The kitty protocol takes at most this many bytes of base64 at a time.
 _CHUNK = 4096
@@ -46,6 +54,9 @@ def protocol_of(console: Console, environ: Mapping[str, str]) -> Protocol | None
         return "kitty"
     if program in ("iterm.app", "wezterm") or environ.get("LC_TERMINAL") == "iTerm2":
         return "iterm2"
+    konsole = environ.get("KONSOLE_VERSION", "")
+    if environ.get("TERM", "").startswith(_SIXEL_TERMS) or (konsole.isdigit() and int(konsole) >= 220400):
+        return "sixel"
     return None
 
 
@@ -56,12 +67,14 @@ class InlinePicture:
         png: the file's bytes.
         protocol: how to say it.
         columns: width on the screen; the height follows.
+        letter: pixels in the width of one of them, which only sixels ask for.
     """
 
-    def __init__(self, png: bytes, protocol: Protocol, columns: int) -> None:
+    def __init__(self, png: bytes, protocol: Protocol, columns: int, letter: int = _LETTER) -> None:
         self._png = png
         self._protocol = protocol
         self._columns = columns
+        self._letter = letter
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
         # A control segment has no width and is dropped where there is no terminal.
@@ -70,6 +83,10 @@ class InlinePicture:
 
     def escape_codes(self) -> str:
         """What the terminal is to be sent."""
+        if self._protocol == "sixel":
+            from course.figures.drawing.sixel import sixels
+
+            return sixels(self._png, self._columns * self._letter)
         data = base64.b64encode(self._png).decode("ascii")
         if self._protocol == "iterm2":
             size = f"size={len(self._png)};width={self._columns};preserveAspectRatio=1"
@@ -95,10 +112,23 @@ def picture(
     from course.figures.terminal import in_cells
 
     if protocol is not None:
-        return InlinePicture(file_of(make, "png"), protocol, columns)
+        return InlinePicture(file_of(make, "png"), protocol, columns, _letter_of(console))
     drawn = in_cells(make, columns)
     labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
     return Group(*half_blocks(drawn.pixels.tobytes(), drawn.columns, drawn.rows, labels))
+
+
+def _letter_of(console: Console) -> int:
+    """Pixels in a letter's width, by the terminal's own word."""
+    try:
+        import fcntl
+        import termios
+
+        answer = fcntl.ioctl(console.file.fileno(), termios.TIOCGWINSZ, bytes(8))
+    except (ImportError, OSError):  # not here, or no terminal
+        return _LETTER
+    _, columns, width, _ = struct.unpack("4H", answer)
+    return max(1, width // columns) if width and columns else _LETTER
 
 
 def _has_half_blocks(console: Console) -> bool:

@@ -1,1 +1,1 @@
-"""What every figure is drawn with: the house style, shared plots, the text beside it."""
+"""What every figure is drawn with: the house style, shared plots, the text beside it, sixels."""

@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from PIL import Image
 from rich.console import Console
 
 from course.cli.frame.pictures import InlinePicture, picture
@@ -44,6 +45,59 @@ def test_iterm_s_bytes_are_the_figure():
     console.print(picture(console, {"TERM_PROGRAM": "iTerm.app"}, make, 60))
     (data,) = re.findall(r"\x1b\]1337;File=[^:]*:([^\x07]*)\x07", console.file.getvalue())
     same(base64.b64decode(data))
+
+
+@pytest.mark.parametrize(
+    "environ", [{"TERM": "foot-extra"}, {"KONSOLE_VERSION": "230805"}], ids=["foot", "Konsole"]
+)
+def test_sixels_are_the_figure(environ):
+    console = terminal()
+    console.print(picture(console, environ, make, 60))
+    (sent,) = re.findall(r"\x1bP(.*?)\x1b\\", console.file.getvalue(), re.DOTALL)
+    decoded = from_sixels(sent)
+    assert decoded.shape[1] == 600  # the VT340's ten pixels a letter, since a file has no size
+    figure = (
+        Image.open(io.BytesIO(render(PLOT)))
+        .convert("RGB")
+        .resize(decoded.shape[1::-1], Image.Resampling.LANCZOS)
+    )
+    # 255 colours for the figure's 600 or so, each said in percent: off by 2.55 / 2 alone.
+    assert np.abs(decoded - np.asarray(figure)).mean() < 2
+    assert np.quantile(np.abs(decoded - np.asarray(figure)), 0.99) < 20
+
+
+def from_sixels(sent):
+    """The pixels that a terminal would show, decoded by the manual and not by what encoded them."""
+    head, body = sent.split("q", 1)
+    assert head == "0;1;0"
+    width, height = map(int, re.match(r'"1;1;(\d+);(\d+)', body).groups())
+    pixels = np.full((height + 6, width, 3), -1.0)
+    colours, column, row = {}, 0, 0
+    for token in re.findall(r'"[\d;]+|#\d+(?:;2;\d+;\d+;\d+)?|!\d+.|.', body):
+        if token[0] == '"':
+            continue
+        if token[0] == "#":
+            number, *definition = map(int, token[1:].split(";"))
+            if definition:
+                colours[number] = np.array(definition[1:]) * 2.55
+            ink = colours[number]
+        elif token == "$":
+            column = 0
+        elif token == "-":
+            column, row = 0, row + 6
+        else:
+            count = int(token[1:-1]) if token[0] == "!" else 1
+            for bit in range(6):
+                if ord(token[-1]) - 63 >> bit & 1:
+                    pixels[row + bit, column : column + count] = ink
+            column += count
+    assert (pixels[:height] >= 0).all()  # every pixel was named
+    assert (pixels[height:] < 0).all()
+    return pixels[:height]
+
+
+def test_an_old_konsole_gets_half_blocks():
+    assert not isinstance(picture(terminal(), {"KONSOLE_VERSION": "210801"}, make, 60), InlinePicture)
 
 
 def same(sent):

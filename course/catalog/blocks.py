@@ -265,13 +265,18 @@ class Sources:
 
 
 @dataclass(frozen=True, slots=True)
-class WarmUp:
-    """A small task that stands in a lesson while it is read; ``blocks`` are its text, and no lesson's."""
+class Task:
+    """A warm-up or an exercise that stands in a lesson while it is read.
+
+    Attributes:
+        what: what it is called, such as "exercise".
+        blocks: its own text, which is no lesson's.
+    """
 
     line: int
     id: str
+    what: str
     title: str
-    minutes: int
     blocks: tuple[Block, ...]
 
 
@@ -289,7 +294,7 @@ Block = (
     | Callout
     | CommandList
     | Sources
-    | WarmUp
+    | Task
 )
 
 

@@ -159,6 +159,11 @@ class Catalog:
         chosen = [one for one in found if lesson_id in {None, one.lesson}]
         return tuple(sorted(chosen, key=lambda one: (lessons.get(one.lesson, len(lessons)), one.order)))
 
+    def tasks(self, lesson_id: str) -> tuple[Exercise, ...]:
+        """What is done in a lesson: its warm-ups, and the exercises that it leads to."""
+        led = (self.exercise(name) for name in self.lesson(lesson_id).exercises)
+        return (*self.warm_ups(lesson_id), *(one for one in led if one.lesson == lesson_id))
+
     def exercise(self, exercise_id: str) -> Exercise:
         """One exercise, or one warm-up: their ids differ.
 

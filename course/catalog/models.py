@@ -114,6 +114,12 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return f"{WARM_UPS}/{self.id}" if self.is_warm_up else self.id
 
     @property
+    def given(self) -> tuple[Path, ...]:
+        """The files that a student gets: the README, what else it speaks of, the stub."""
+        found = (Path(self.folder) / name for name in ("README.md", "boxes.py"))
+        return (*(path for path in found if path.is_file()), self.stub_path)
+
+    @property
     def stub_path(self) -> Path:
         return Path(self.folder) / self.module
 

@@ -131,6 +131,11 @@ class Script:
             case _:
                 return True
 
+    def task(self, name: str) -> int:
+        """Index of the block where a warm-up or an exercise is done; of the last one if none is."""
+        found = (i for i, block in enumerate(self.blocks) if isinstance(block, b.Task) and block.id == name)
+        return next(found, len(self.blocks) - 1)
+
     def section_of(self, index: int) -> Section | None:
         """The section (level 2) a block stands in; None before the first."""
         return next((s for s in self.sections if s.level == 2 and s.start <= index < s.end), None)
@@ -146,16 +151,17 @@ class Script:
         return self.lesson.minutes * sum(self.weights[max(index, 0) :]) / total
 
 
-def read_script(lesson: Lesson, warm_ups: Sequence[Exercise] = ()) -> Script:
+def read_script(lesson: Lesson, tasks: Sequence[Exercise] = ()) -> Script:
     """Read a lesson.
 
     Args:
-        warm_ups: to stand in it, each at the end of the section that it follows.
+        tasks: warm-ups and exercises that are done in it, each at the end of the section that it follows, or
+            of the lesson, before its sources.
 
     Raises:
         ContentError: it cannot be read or parsed.
     """
-    blocks = _with_warm_ups(read_blocks(Path(lesson.path)), warm_ups)
+    blocks = _with_tasks(read_blocks(Path(lesson.path)), tasks)
     return Script(
         lesson=lesson,
         blocks=blocks,
@@ -185,24 +191,40 @@ def words_of(block: b.Block) -> str:
                 parts += [b.plain_text(cell) for row in (header, *rows) for cell in row]
             case b.Sources(items=items):
                 parts += [b.plain_text(item) for item in items]
-            case b.WarmUp(title=title, blocks=task):
+            case b.Task(title=title, blocks=task):
                 parts += [title, *map(words_of, task)]
             case _:
                 pass
     return "\n".join(part for part in parts if part)
 
 
-def _with_warm_ups(blocks: tuple[b.Block, ...], warm_ups: Sequence[Exercise]) -> tuple[b.Block, ...]:
-    ends = {section.slug: section.end for section in _sections(blocks)}
+def _with_tasks(blocks: tuple[b.Block, ...], tasks: Sequence[Exercise]) -> tuple[b.Block, ...]:
+    sections = tuple(_sections(blocks))
+    ends = {section.slug: section.end for section in sections}
+    end = next((section.start for section in sections if section.slug == "sources"), len(blocks))
     placed: dict[int, list[b.Block]] = {}
-    for one in warm_ups:
-        task = b.WarmUp(0, one.id, one.title, one.minutes, read_task(one.readme_path))
-        placed.setdefault(ends.get(one.after, len(blocks)), []).append(task)
+    for one in tasks:
+        placed.setdefault(ends.get(one.after, end), []).append(_task(one))
     return tuple(
         each
         for index in range(len(blocks) + 1)
         for each in (*placed.get(index, ()), *blocks[index : index + 1])
     )
+
+
+def _task(exercise: Exercise) -> b.Task:
+    """A warm-up in full. An exercise is longer than its lesson's pages: its README lies beside its file."""
+    if exercise.is_warm_up:
+        what = f"warm-up, {exercise.minutes} minutes"
+        return b.Task(0, exercise.id, what, exercise.title, read_task(exercise.readme_path))
+    asked = tuple((b.Paragraph(0, (b.Text(task.title),)),) for task in exercise.task)
+    readme = f"{exercise.place}/{exercise.readme_path.name}"
+    blocks = (
+        b.Paragraph(0, (b.Text(exercise.summary),)),
+        b.ListBlock(0, None, asked),
+        b.Paragraph(0, (b.Text("How each is judged: "), b.Span("code", (b.Text(readme),)))),
+    )
+    return b.Task(0, exercise.id, "exercise", exercise.title, blocks)
 
 
 def _sections(blocks: tuple[b.Block, ...]) -> Iterator[Section]:

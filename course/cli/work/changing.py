@@ -17,7 +17,6 @@ from course.cli.frame.here import Here
 from course.cli.frame.replies import Backup, Change, Diff, NextStep, Reset, Update
 from course.cli.work.checking import say_which
 from course.cli.work.chosen import asked_for, chosen_work
-from course.cli.work.starting import HANDED_OUT
 from course.errors import UsageError
 from course.progress.workspace import same_text, write_atomically
 
@@ -144,10 +143,8 @@ def _agreed(console: Console, shown: str) -> bool:
 
 def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
     for exercise in (*here.started(), *here.warm_ups_started()):
-        for name in (*HANDED_OUT, exercise.module):
-            source = Path(exercise.folder) / name
-            if source.is_file():
-                yield _update_file(here, exercise, name, source.read_bytes(), dry_run=dry_run)
+        for source in exercise.given:
+            yield _update_file(here, exercise, source.name, source.read_bytes(), dry_run=dry_run)
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:

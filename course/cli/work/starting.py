@@ -20,10 +20,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["HANDED_OUT", "init", "put", "start"]
-
-#: Files of an exercise that a student gets besides the stub, where the exercise has them.
-HANDED_OUT = ("README.md", "boxes.py")
+__all__ = ["init", "put", "start"]
 
 
 def init(
@@ -113,12 +110,9 @@ def start(exercise: OneExercise) -> int:
 def put(console: Console, here: Here, chosen: Exercise) -> tuple[FileReply, ...]:
     """Put the files of an exercise into the workspace where they are not there yet, and say so."""
     files = []
-    for name in (*HANDED_OUT, chosen.module):
-        source = Path(chosen.folder) / name
-        if not source.is_file():
-            continue
-        target = here.workspace.path(chosen.place, name)
-        new = here.workspace.give(chosen.place, name, source.read_bytes())
+    for source in chosen.given:
+        target = here.workspace.path(chosen.place, source.name)
+        new = here.workspace.give(chosen.place, source.name, source.read_bytes())
         files.append(FileReply(path=str(target), action="created" if new else "kept"))
         verb = "created" if new else "is there already and was left as it is"
         console.line(f"{here.workspace.shown(target)} {verb}.")

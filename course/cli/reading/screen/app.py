@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.binding import Binding
 
-from course.cli.reading.screen.telling import contents, exercise_card, keys_table
-from course.cli.reading.screen.warming import WarmUpsApp
+from course.cli.reading.screen.doing import TasksApp
+from course.cli.reading.screen.telling import contents, keys_table
 from course.full_screen import Tell
 from course.reading.pages import Place
 from course.reading.record import InProgress
@@ -22,7 +22,7 @@ __all__ = ["ReaderApp"]
 _JUDGED: dict[str, Judgement] = {"1": "right", "2": "nearly", "3": "wrong"}
 
 
-class ReaderApp(WarmUpsApp):
+class ReaderApp(TasksApp):
     """A lesson to predict, run, practise, follow and search."""
 
     BINDINGS: ClassVar[list[Any]] = [
@@ -125,23 +125,20 @@ class ReaderApp(WarmUpsApp):
             start = next((s.start for s in script.sections if s.slug == slug), None)
             self.open(script.lesson.id, None if start is None else Place(start))
         elif kind == "exercise":
-            self._tell_exercise(rest.partition("#")[0])
+            self._go_to_task(rest.partition("#")[0])
         else:
             self._open_address(target)
 
     def _leave_trail(self) -> None:
         self._trail += ((self.progress.script.lesson.id, self.page.place() or Place()),)
 
-    def _tell_exercise(self, name: str) -> None:
-        command = f"course start {name}"
-
-        def closed(key: str | None) -> None:
-            if key == "c":
-                self.copy_to_clipboard(command)
-                self.say(f"Copied: {command}")
-
-        shown = exercise_card(self.catalog.exercise(name))
-        self.push_screen(Tell(name, shown, "c", "c: copy the command   Escape: back"), closed)
+    def _go_to_task(self, name: str) -> None:
+        """Where a warm-up or an exercise is done: in the lesson that leads to it."""
+        lesson = self.catalog.exercise(name).lesson
+        here = self.progress.script
+        self._leave_trail()
+        script = here if lesson == here.lesson.id else self._script_of(lesson)
+        self.open(lesson, Place(script.task(name)))
 
     def _open_address(self, address: str) -> None:
         """A page of the web, where something can show it; its address in any case."""

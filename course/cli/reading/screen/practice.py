@@ -1,6 +1,6 @@
-"""Warm-ups done while their lesson is read: their files, and what their checks say.
+"""Warm-ups and exercises done while their lesson is read: their files, and what their checks say.
 
-A warm-up is checked and hinted at by the command itself, in a process of its own: the reader stays small, the
+A task is checked and hinted at by the command itself, in a process of its own: the reader stays small, the
 file is the one that an editor has open, and the record is written by the one who writes it everywhere.
 """
 
@@ -32,7 +32,7 @@ _PATIENCE = 120.0
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """How far the student is with one warm-up.
+    """How far the student is with one task.
 
     Attributes:
         file: where it lies, relative to the workspace; empty before it was started.
@@ -50,7 +50,7 @@ class Standing:
 
 
 class Practice:
-    """The warm-ups of a course in one workspace.
+    """The warm-ups and exercises of a course in one workspace.
 
     Args:
         workspace: None outside of one, where nothing can be started.
@@ -74,13 +74,13 @@ class Practice:
         """Whether there is a workspace to work in."""
         return self._workspace is not None
 
-    def of(self, warm_up: str) -> Standing:
+    def of(self, name: str) -> Standing:
         """How far the student is."""
-        if warm_up not in self._standings:
-            self._standings[warm_up] = self._recorded(warm_up)
-        return self._standings[warm_up]
+        if name not in self._standings:
+            self._standings[name] = self._recorded(name)
+        return self._standings[name]
 
-    def start(self, warm_up: str) -> None:
+    def start(self, name: str) -> None:
         """Put its file into the workspace where there is none.
 
         Raises:
@@ -88,18 +88,18 @@ class Practice:
         """
         if self._workspace is None:
             return
-        exercise = self._catalog.exercise(warm_up)
-        for path in (exercise.readme_path, exercise.stub_path):
+        exercise = self._catalog.exercise(name)
+        for path in exercise.given:
             self._workspace.give(exercise.place, path.name, path.read_bytes())
-        self._workspace.store.append("start", warm_up, {"version": self._catalog.version})
-        self._saved[warm_up] = self._stamp(exercise)
-        self._standings[warm_up] = replace(self.of(warm_up), file=f"{exercise.place}/{exercise.module}")
+        self._workspace.store.append("start", name, {"version": self._catalog.version})
+        self._saved[name] = self._stamp(exercise)
+        self._standings[name] = replace(self.of(name), file=f"{exercise.place}/{exercise.module}")
 
-    def source(self, warm_up: str) -> str:
+    def source(self, name: str) -> str:
         """Its file as it is now."""
-        return self._path(self._catalog.exercise(warm_up)).read_text(encoding="utf-8", errors="replace")
+        return self._path(self._catalog.exercise(name)).read_text(encoding="utf-8", errors="replace")
 
-    def write(self, warm_up: str, source: str) -> None:
+    def write(self, name: str, source: str) -> None:
         """Put other code into its file.
 
         Raises:
@@ -107,26 +107,26 @@ class Practice:
         """
         from course.progress.workspace import write_atomically
 
-        exercise = self._catalog.exercise(warm_up)
+        exercise = self._catalog.exercise(name)
         write_atomically(self._path(exercise), source.encode())
-        self._saved[warm_up] = self._stamp(exercise)
+        self._saved[name] = self._stamp(exercise)
 
-    def was_saved(self, warm_up: str) -> bool:
+    def was_saved(self, name: str) -> bool:
         """Whether the file was saved since this was asked last, by an editor of the student's."""
-        if not self.of(warm_up).file:
+        if not self.of(name).file:
             return False
-        stamp = self._stamp(self._catalog.exercise(warm_up))
-        before = self._saved.setdefault(warm_up, stamp)
-        self._saved[warm_up] = stamp
+        stamp = self._stamp(self._catalog.exercise(name))
+        before = self._saved.setdefault(name, stamp)
+        self._saved[name] = stamp
         return stamp not in {before, 0}
 
-    def check(self, warm_up: str) -> bool:
+    def check(self, name: str) -> bool:
         """Check it, as ``course check`` does; False if something is going on already."""
-        return self._run(warm_up, "check", "Checking")
+        return self._run(name, "check", "Checking")
 
-    def hint(self, warm_up: str) -> bool:
+    def hint(self, name: str) -> bool:
         """Ask for the hint that is due, as ``course hint`` does; False if something is going on already."""
-        return self._run(warm_up, "hint", "Asking")
+        return self._run(name, "hint", "Asking")
 
     def close(self) -> None:
         """End what runs."""
@@ -139,35 +139,35 @@ class Practice:
 
     # -- inside ----------------------------------------------------------------------------------------
 
-    def _run(self, warm_up: str, command: str, what: str) -> bool:
+    def _run(self, name: str, command: str, what: str) -> bool:
         if any(one.busy for one in self._standings.values()):
             return False
         if self._pool is None:
             from concurrent.futures import ThreadPoolExecutor
 
             self._pool = ThreadPoolExecutor(1, thread_name_prefix="practice")
-        self._standings[warm_up] = replace(self.of(warm_up), busy=what)
-        self._pool.submit(self._ask, warm_up, command)
+        self._standings[name] = replace(self.of(name), busy=what)
+        self._pool.submit(self._ask, name, command)
         return True
 
-    def _ask(self, warm_up: str, command: str) -> None:
+    def _ask(self, name: str, command: str) -> None:
         """In the pool's thread: the command's answer."""
-        reply = self._reply(warm_up, command)
-        now = replace(self._standings[warm_up], busy="")
+        reply = self._reply(name, command)
+        now = replace(self._standings[name], busy="")
         if command == "hint" and "error" not in reply:
             hint = reply.get("hint")
             now = replace(now, hint=f"Hint: {hint}" if hint else str(reply.get("message", "")))
         else:
             now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")))
-        self._standings[warm_up] = now
+        self._standings[name] = now
         if not self._closed:
-            self.changed(warm_up)
+            self.changed(name)
 
-    def _reply(self, warm_up: str, command: str) -> dict[str, Any]:
+    def _reply(self, name: str, command: str) -> dict[str, Any]:
         assert self._workspace is not None
         line = [sys.executable, "-P", "-m", "course", "-C", str(self._workspace.root)]
         with subprocess.Popen(
-            [*line, command, warm_up, "--json"],
+            [*line, command, name, "--json"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -177,18 +177,18 @@ class Practice:
                 reply: dict[str, Any] = msgspec.json.decode(said)
             except (subprocess.TimeoutExpired, msgspec.DecodeError):
                 self._process.kill()
-                problem = {"message": f"`course {command} {warm_up}` gave no answer.", "help": ""}
+                problem = {"message": f"`course {command} {name}` gave no answer.", "help": ""}
                 reply = {"error": problem}
         self._process = None
         return reply
 
-    def _recorded(self, warm_up: str) -> Standing:
-        """What the workspace knows of a warm-up."""
+    def _recorded(self, name: str) -> Standing:
+        """What the workspace knows of a task."""
         if self._workspace is None:
             return Standing()
-        exercise = self._catalog.exercise(warm_up)
+        exercise = self._catalog.exercise(name)
         try:
-            events = self._workspace.store.events("check", warm_up)
+            events = self._workspace.store.events("check", name)
         except CourseError:
             events = ()
         there = self._path(exercise).is_file()

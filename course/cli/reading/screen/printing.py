@@ -47,7 +47,7 @@ class Item:
     Attributes:
         row: within its block.
         block: index of the block.
-        target: where a link leads; the id of a figure or a warm-up.
+        target: where a link leads; the id of a figure or a task.
         number: tells the links of a block apart.
     """
 
@@ -75,7 +75,7 @@ class ScreenPrinter(FancyPrinter):
         width: columns there are.
         busy: the key of the cell that runs, with what to say of it; empty if none does.
         picture: a figure's lines for a width: blank while it is being drawn, none if it stays described.
-        practice: how far the student is with warm-ups; None where there is nothing to work in.
+        practice: how far the student is with warm-ups and exercises; None where there is nothing to work in.
     """
 
     def __init__(
@@ -184,7 +184,7 @@ class ScreenPrinter(FancyPrinter):
         if not isinstance(block, b.CodeCell) or not block.hidden:
             if isinstance(block, b.CodeCell):
                 return [Item("cell", index, 1)]
-            if isinstance(block, b.Figure | b.WarmUp):
+            if isinstance(block, b.Figure | b.Task):
                 return [Item("figure" if isinstance(block, b.Figure) else "task", index, 1, block.id)]
             if self._said(index) is not None:
                 return [Item("answer", index, 1)]
@@ -213,14 +213,14 @@ class ScreenPrinter(FancyPrinter):
         return None
 
     def _block(self, block: b.Block) -> RenderableType | None:
-        return self._task(block) if isinstance(block, b.WarmUp) else super()._block(block)
+        return self._task(block) if isinstance(block, b.Task) else super()._block(block)
 
-    def _task(self, task: b.WarmUp) -> RenderableType:
-        """A warm-up: its text, and how far the student is with it."""
+    def _task(self, task: b.Task) -> RenderableType:
+        """A warm-up or an exercise: its text, and how far the student is with it."""
         now = self._practice.of(task.id) if self._practice is not None else Standing()
         done = ", done" if now.done else ""
         shown: list[RenderableType] = [
-            self._rule(f"warm-up, {task.minutes} minutes{done}"),
+            self._rule(f"{task.what}{done}"),
             Text(task.title, style="bold"),
         ]
         for block in task.blocks:

@@ -54,7 +54,7 @@ class LessonApp(FullScreenApp):
         events: what is recorded about a lesson.
         write: called with each new event: kind, subject, data.
         pictures: draws figures for this terminal; None to describe them.
-        practice: the warm-ups in the student's workspace.
+        practice: the warm-ups and exercises in the student's workspace.
 
     Attributes:
         progress: the lesson that is open.
@@ -133,8 +133,8 @@ class LessonApp(FullScreenApp):
         self._lay_out(place or progress.place)
 
     def _script_of(self, lesson_id: str) -> Script:
-        """A lesson with its warm-ups in their places."""
-        return read_script(self.catalog.lesson(lesson_id), self.catalog.warm_ups(lesson_id))
+        """A lesson with its warm-ups and exercises in their places."""
+        return read_script(self.catalog.lesson(lesson_id), self.catalog.tasks(lesson_id))
 
     def on_resize(self, event: Resize) -> None:
         """Reflow; the line at the top stays."""

@@ -1,4 +1,4 @@
-"""How far the student is with a warm-up, in lines below its text."""
+"""How far the student is with a warm-up or an exercise, in lines below its text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text
     """What to do next, or what the last check said: the first thing that is wrong, and how many are.
 
     Args:
-        name: id of the warm-up.
+        name: its id.
         possible: there is a workspace to work in.
     """
     if not possible:

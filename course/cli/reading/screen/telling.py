@@ -1,4 +1,4 @@
-"""What the reader tells beside the lesson: the keys, an exercise, contents, the place, what is next."""
+"""What the reader tells beside the lesson: the keys, contents, the place, what is next."""
 
 from __future__ import annotations
 
@@ -8,22 +8,19 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from course.catalog.blocks import WarmUp
+from course.catalog.blocks import Task
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rich.console import RenderableType
-
     from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
     from course.cli.reading.screen.practice import Practice
     from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
     from course.reading.pages import Layout
     from course.reading.parts import Script
     from course.reading.record import InProgress
 
-__all__ = ["contents", "exercise_card", "keys_table", "position", "shortened", "tail"]
+__all__ = ["contents", "keys_table", "position", "shortened", "tail"]
 
 _SHORT_OF = "…"
 
@@ -33,13 +30,13 @@ _HELP = (
     ("↓ ↑, j k, the wheel", "a line on or back"),
     ("g G, Home End", "the first screen, the last"),
     ("Tab, Shift-Tab", "the next thing that keys act on: a prediction, a cell, a figure, a link"),
-    ("Enter", "predict; run the cell; start or check the warm-up; open the figure; follow the link"),
+    ("Enter", "predict; run the cell; start or check the task; open the figure; follow the link"),
     ("s", "skip a prediction; that is kept, too"),
     ("1 2 3", "below an answer: you were right, nearly right, wrong"),
-    ("r", "run the cell, and before it what it needs; check the warm-up"),
+    ("r", "run the cell, and before it what it needs; check the warm-up or the exercise"),
     ("Ctrl-C", "stop the cell that runs; else leave. Your place is kept"),
-    ("e", "change the cell or the warm-up's file; Ctrl-R there runs or checks it"),
-    ("h", "the hint that is due at a warm-up; elsewhere these keys"),
+    ("e", "change the cell or the task's file; Ctrl-R there runs or checks it"),
+    ("h", "the hint that is due at a task; elsewhere these keys"),
     ("u", "the lesson's own code again"),
     ("c", "copy the cell, or a command, to the clipboard of your terminal"),
     ("w", "write the cell into a file here"),
@@ -62,20 +59,6 @@ def keys_table(width: int) -> Table:
     return grid
 
 
-def exercise_card(exercise: Exercise) -> list[RenderableType]:
-    """What an exercise is about and how it is begun."""
-    start, watch = f"course start {exercise.id}", f"course watch {exercise.id}"
-    return [
-        Text(exercise.title, style="bold"),
-        Text(exercise.summary),
-        Text(""),
-        *(Text(f"• {task.title}") for task in exercise.task),
-        Text(""),
-        Text.assemble(("$ ", "dim"), (start, "bold cyan"), "   puts the file and its README here"),
-        Text.assemble(("$ ", "dim"), (watch, "bold cyan"), "   checks it at every save"),
-    ]
-
-
 def contents(
     catalog: Catalog, progress: InProgress, here: int, is_read: Callable[[str], bool], practice: Practice
 ) -> tuple[list[tuple[str, str]], str]:
@@ -84,7 +67,7 @@ def contents(
     Args:
         here: index of the block at the top of the screen.
         is_read: whether a lesson was read.
-        practice: how far the student is with warm-ups.
+        practice: how far the student is with warm-ups and exercises.
 
     Returns:
         (key, what to show) of each, and the key of where the reader is.
@@ -100,9 +83,9 @@ def contents(
         if section.start <= here and section.level == 2:
             at = f"block:{section.start}"
         for index, block in enumerate(script.blocks):
-            if isinstance(block, WarmUp) and script.section_at(index) == section:
+            if isinstance(block, Task) and script.section_at(index) == section:
                 mark = "✓" if practice.of(block.id).done else " "
-                options.append((f"block:{index}", f"{mark}   warm-up: {block.title}"))
+                options.append((f"block:{index}", f"{mark}   {block.what.partition(',')[0]}: {block.title}"))
     options.append(("", ""))
     for number, name in enumerate(catalog.lesson_ids(), start=1):
         words = f"{'✓' if is_read(name) else ' '} {number}. {catalog.lesson(name).title}"
@@ -134,7 +117,7 @@ def tail(printer: ScreenPrinter, catalog: Catalog, progress: InProgress, practic
     count = sum(progress.prediction(q) is None for q in script.questions)
     if count:
         shown.append(Text(f"{count} prediction{'s are' if count != 1 else ' is'} still open: t shows where."))
-    tasks = [block for block in script.blocks if isinstance(block, WarmUp)]
+    tasks = [block for block in script.blocks if isinstance(block, Task) and block.what != "exercise"]
     left = sum(not practice.of(task.id).done for task in tasks) if practice.possible else 0
     if left:
         shown.append(Text(f"{left} warm-up{'s are' if left != 1 else ' is'} left: t shows where."))

@@ -1,4 +1,4 @@
-"""Warm-ups in the reader: in their place, started, checked, mended and done without leaving it."""
+"""Warm-ups and exercises in the reader: in their place, started, checked, mended, done without leaving it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def doing(
         async with app.run_test(size=(80, 24)) as pilot:
             await settled(app, pilot)
             blocks = app.progress.script.blocks
-            index = next(i for i, one in enumerate(blocks) if isinstance(one, b.WarmUp) and one.id == TASK)
+            index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
             app._chosen(f"block:{index}")
             await pilot.pause()
             await journey(app, pilot)
@@ -82,7 +82,7 @@ async def answered(app: ReaderApp, pilot: Any) -> None:
 def test_a_warm_up_stands_at_the_end_of_its_section(catalog: Catalog) -> None:
     script = read_script(catalog.lesson(LESSON), catalog.warm_ups(LESSON))
     bare = read_script(catalog.lesson(LESSON))
-    tasks = [(i, one) for i, one in enumerate(script.blocks) if isinstance(one, b.WarmUp)]
+    tasks = [(i, one) for i, one in enumerate(script.blocks) if isinstance(one, b.Task)]
     assert [one.id for _, one in tasks] == [one.id for one in catalog.warm_ups(LESSON)]
     for index, task in tasks:
         section = script.section_at(index)
@@ -91,17 +91,17 @@ def test_a_warm_up_stands_at_the_end_of_its_section(catalog: Catalog) -> None:
         assert index + 1 == section.end
     assert [cell.key for cell in script.cells] == [cell.key for cell in bare.cells]
     assert [one.key for one in script.questions] == [one.key for one in bare.questions]
-    assert [one for one in script.blocks if not isinstance(one, b.WarmUp)] == list(bare.blocks)
+    assert [one for one in script.blocks if not isinstance(one, b.Task)] == list(bare.blocks)
     assert "without end" in words_of(tasks[1][1]), "search finds it"
 
 
-def test_no_prediction_keeps_a_warm_up_closed(catalog: Catalog) -> None:
+def test_no_prediction_keeps_a_task_closed(catalog: Catalog) -> None:
     for lesson in catalog.lesson_ids():
-        script = read_script(catalog.lesson(lesson), catalog.warm_ups(lesson))
+        script = read_script(catalog.lesson(lesson), catalog.tasks(lesson))
         closed = [
             one.id
             for index, one in enumerate(script.blocks)
-            if isinstance(one, b.WarmUp) and script.question_over(index) is not None
+            if isinstance(one, b.Task) and script.question_over(index) is not None
         ]
         assert closed == [], lesson
 

@@ -1,4 +1,4 @@
-"""What keys do with a lesson's warm-ups: start, change, check, hint; a file that was saved is checked."""
+"""What keys do with a lesson's warm-ups and exercises: start, change, check, hint; a save is checked."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.binding import Binding
 
-from course.catalog.blocks import WarmUp
+from course.catalog.blocks import Task
 from course.cli.reading.screen.cells import CellsApp
 from course.errors import CourseError
 
 if TYPE_CHECKING:
     from course.cli.reading.screen.printing import Item
 
-__all__ = ["WarmUpsApp"]
+__all__ = ["TasksApp"]
 
 
-class WarmUpsApp(CellsApp):
-    """A lesson on the whole screen, whose cells run and whose warm-ups are done in place."""
+class TasksApp(CellsApp):
+    """A lesson on the whole screen, whose cells run and whose tasks are done in place."""
 
     BINDINGS: ClassVar[list[Any]] = [Binding("h", "hint", show=False)]
 
@@ -45,33 +45,33 @@ class WarmUpsApp(CellsApp):
         if item is None or item.kind != "task":
             return super()._keys()
         if not self._practice.possible:
-            return "a warm-up: done in a workspace   Space on   ? keys"
+            return "done in a workspace   Space on   ? keys"
         if not self._practice.of(item.target).file:
-            return "Enter start the warm-up   Space on   ? keys"
+            return "Enter start it   Space on   ? keys"
         return "r check   e edit   h hint   Space on   ? keys"
 
     @property
     def _at_hand(self) -> Item | None:
-        """The warm-up at hand."""
+        """The task at hand."""
         item = self.page.item
         return item if item is not None and item.kind == "task" else None
 
     def action_run_cell(self) -> None:
-        """Check the warm-up at hand, or run the cell."""
+        """Check the task at hand, or run the cell."""
         if self._at_hand is None:
             super().action_run_cell()
         else:
             self._do(self._at_hand)
 
     def action_edit(self) -> None:
-        """Change the file of the warm-up at hand, or the cell."""
+        """Change the file of the task at hand, or the cell."""
         if self._at_hand is None:
             super().action_edit()
         else:
             self._edit(self._at_hand)
 
     def action_hint(self) -> None:
-        """The hint that is due at the warm-up at hand; all keys elsewhere."""
+        """The hint that is due at the task at hand; all keys elsewhere."""
         item = self._at_hand
         if item is None:
             self.action_help()
@@ -84,7 +84,7 @@ class WarmUpsApp(CellsApp):
         """All keys; a layer above knows them."""
 
     def _do(self, item: Item) -> None:
-        """Start a warm-up, or check it."""
+        """Start a task, or check it."""
         practice = self._practice
         if not practice.possible:
             self.say("Make a workspace first: course init my-course")
@@ -100,7 +100,7 @@ class WarmUpsApp(CellsApp):
         self._say_round()
 
     def _edit(self, item: Item) -> None:
-        """Change the file of a warm-up here; one that is not there is put there first."""
+        """Change the file of a task here; one that is not there is put there first."""
         practice = self._practice
         if not practice.of(item.target).file:
             self._do(item)
@@ -123,14 +123,14 @@ class WarmUpsApp(CellsApp):
 
         self.push_screen(Edit(practice.of(item.target).file, practice.source(item.target)), done)
 
-    def _task_changed(self, warm_up: str) -> None:
-        """A warm-up's standing has changed (from another thread)."""
+    def _task_changed(self, name: str) -> None:
+        """A task's standing has changed (from another thread)."""
         with contextlib.suppress(RuntimeError):  # the reader is gone
-            self.call_from_thread(self._show_task, warm_up)
+            self.call_from_thread(self._show_task, name)
 
-    def _show_task(self, warm_up: str) -> None:
-        for index, block in enumerate(self.progress.script.blocks):
-            if isinstance(block, WarmUp) and block.id == warm_up:
-                self._rebuild(index)
-                self._bring_to_sight(index)
-                self._say_round()
+    def _show_task(self, name: str) -> None:
+        index = self.progress.script.task(name)
+        if isinstance(self.progress.script.blocks[index], Task):
+            self._rebuild(index)
+            self._bring_to_sight(index)
+            self._say_round()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import itertools
 import os
 import platform
 import re
@@ -172,12 +173,19 @@ def arenas(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         yield arena
 
 
-CASES = [
-    pytest.param(name, level, id=f"{level}-{name}")
-    for level in ("L3", "L2", "L1")
-    for name, attack in ATTACKS.items()
-    if level != "L1" or attack.l1
-]
+def cases() -> Iterator[Any]:
+    """Each attack at each level; in an ordinary run at one level, each level in turn."""
+    turns = itertools.count()
+    for name, attack in ATTACKS.items():
+        levels = ("L3", "L2", "L1") if attack.l1 else ("L3", "L2")
+        turn = levels[next(turns) % len(levels)]
+        for level in levels:
+            marks = () if level == turn else pytest.mark.soak
+            yield pytest.param(name, level, id=f"{level}-{name}", marks=marks)
+
+
+#: By level, so that a level's session is opened once.
+CASES = sorted(cases(), key=lambda case: str(case.values[1]), reverse=True)
 
 
 @pytest.mark.parametrize(("name", "level"), CASES)

@@ -86,7 +86,14 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
     await pilot.pause()
 
 
-@pytest.mark.parametrize("size", [(40, 20), (80, 24), (160, 50)])
+@pytest.mark.parametrize(
+    "size",
+    [
+        (80, 24),
+        pytest.param((40, 20), marks=pytest.mark.soak),
+        pytest.param((160, 50), marks=pytest.mark.soak),
+    ],
+)
 def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size):
     async def journey(app, pilot):
         for name in catalog.lesson_ids():

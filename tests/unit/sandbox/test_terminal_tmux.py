@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import shutil
 import subprocess
 import sys
 import time
@@ -16,16 +14,13 @@ import pytest
 from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.views.terminal.camera import Camera
 from course.sandbox.world.world import World
+from tests.terminals import Terminal, needs_tmux
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-pytestmark = [
-    pytest.mark.soak,
-    pytest.mark.skipif(shutil.which("tmux") is None, reason="tmux is not installed"),
-]
+pytestmark = [pytest.mark.soak, needs_tmux]
 
-ROOT = Path(__file__).resolve().parents[3]
 PLAY = """
 import sys
 from course.sandbox.scene.loading import choose
@@ -43,72 +38,8 @@ print(f"left after {world.t:.2f} s")
 """
 
 
-class Terminal:
-    """A pane of its own server, so that nobody else's is touched."""
-
-    def __init__(self, folder: Path, size: tuple[int, int]) -> None:
-        self._socket = str(folder / "tmux")
-        (folder / "play.py").write_text(PLAY, encoding="utf-8")
-        environment = {
-            "PATH": os.environ["PATH"],
-            "HOME": str(folder),
-            "LANG": "C.UTF-8",
-            "LC_ALL": "C.UTF-8",
-            "PYTHONPATH": str(ROOT),
-        }
-        shell = ("env", "PS1=$ ", "COLORTERM=truecolor", "sh")
-        subprocess.run(
-            [
-                *("tmux", "-S", self._socket, "-f", os.devnull, "new-session", "-d"),
-                *("-x", str(size[0]), "-y", str(size[1]), "-c", str(folder), *shell),
-            ],
-            env=environment,
-            check=True,
-            timeout=20,
-        )
-
-    def _tmux(self, *arguments: str) -> str:
-        done = subprocess.run(
-            ["tmux", "-S", self._socket, *arguments], capture_output=True, text=True, check=False, timeout=20
-        )
-        return done.stdout
-
-    def start(self, *arguments: str) -> None:
-        self.keys(f"{sys.executable} play.py {' '.join(arguments)}", "Enter")
-
-    def keys(self, *names: str) -> None:
-        self._tmux("send-keys", *names)
-
-    def mouse(self, kind: int, column: int, row: int, end: str = "M") -> None:
-        """A mouse's report as terminals send it; columns and rows from 1."""
-        self._tmux("send-keys", "-l", f"\x1b[<{kind};{column};{row}{end}")
-
-    def screen(self) -> str:
-        return self._tmux("capture-pane", "-p")
-
-    def wait(self, *words: str, seconds: float = 40.0) -> str:
-        """The screen, once it shows one of these."""
-        until = time.monotonic() + seconds
-        while time.monotonic() < until:
-            screen = self.screen()
-            if any(word in screen for word in words):
-                return screen
-            time.sleep(0.1)
-        pytest.fail(f"{words} did not appear on:\n{self.screen()}")
-
-    def wait_until_gone(self, word: str, seconds: float = 40.0) -> None:
-        """Until the screen no longer shows this."""
-        until = time.monotonic() + seconds
-        while word in (screen := self.screen()):
-            assert time.monotonic() < until, screen
-            time.sleep(0.1)
-
-    def state(self) -> str:
-        """What a program may leave behind: the other screen, mouse reports, a hidden cursor."""
-        return self._tmux("display", "-p", "#{alternate_on} #{mouse_any_flag} #{cursor_flag}").strip()
-
-    def close(self) -> None:
-        self._tmux("kill-server")
+def start(terminal: Terminal, *arguments: str) -> None:
+    terminal.line(f"{sys.executable} play.py {' '.join(arguments)}")
 
 
 @pytest.fixture
@@ -118,6 +49,7 @@ def size() -> tuple[int, int]:
 
 @pytest.fixture
 def terminal(tmp_path: Path, size: tuple[int, int]) -> Iterator[Terminal]:
+    (tmp_path / "play.py").write_text(PLAY, encoding="utf-8")
     made = Terminal(tmp_path, size)
     with contextlib.closing(made):
         yield made
@@ -127,7 +59,7 @@ CLEAN = "0 0 1"
 
 
 def test_a_scene_is_asked_about_run_compared_dragged_and_left(terminal: Terminal):
-    terminal.start("head-on")
+    start(terminal, "head-on")
     terminal.wait("How fast does the right one go")
     assert terminal.state()[0] == "1"
     terminal.keys("2", "Enter")
@@ -156,7 +88,7 @@ def test_a_scene_is_asked_about_run_compared_dragged_and_left(terminal: Terminal
 
 @pytest.mark.parametrize("how", ["C-c", "INT", "TERM", "HUP"])
 def test_the_terminal_is_left_clean_however_one_leaves(terminal: Terminal, how: str):
-    terminal.start("newtons-cradle")
+    start(terminal, "newtons-cradle")
     screen = terminal.wait("Before it runs")
     if how == "C-c":
         terminal.keys("C-c")
@@ -179,7 +111,7 @@ def test_the_terminal_is_left_clean_however_one_leaves(terminal: Terminal, how: 
 
 
 def test_the_terminal_is_left_clean_after_an_error_which_is_reported_once(terminal: Terminal):
-    terminal.start("head-on", "--fail")
+    start(terminal, "head-on", "--fail")
     terminal.wait("RuntimeError: broken on purpose")
     time.sleep(0.5)
     assert terminal.screen().count("\nRuntimeError: broken on purpose") == 1
@@ -214,7 +146,7 @@ def test_every_scene_opens_runs_answers_the_mouse_and_leaves_the_terminal_clean(
     def keep(what: str) -> None:
         (Path(terminal._socket).parent / f"{scene}-{size[0]}-{what}.txt").write_text(terminal.screen())
 
-    terminal.start(scene)
+    start(terminal, scene)
     terminal.wait("Before it runs")
     keep("asked")
     terminal.keys("Escape")

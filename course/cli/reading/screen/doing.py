@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 __all__ = ["TasksApp"]
 
 
+_BUSY = "Something is being checked already."
+
+
 class TasksApp(CellsApp):
     """A lesson on the whole screen, whose cells run and whose tasks are done in place."""
 
@@ -28,7 +31,8 @@ class TasksApp(CellsApp):
 
     def _tick(self) -> None:
         super()._tick()
-        if self._practice.possible and len(self.screen_stack) == 1:
+        # What is saved while something is checked is looked at once that is over.
+        if self._practice.possible and not self._practice.busy and len(self.screen_stack) == 1:
             for item in self.page.items():
                 # Saved in an editor of the student's.
                 if item.kind == "task" and self._practice.was_saved(item.target):
@@ -78,7 +82,9 @@ class TasksApp(CellsApp):
         elif not self._practice.of(item.target).file:
             self._do(item)
         elif self._practice.hint(item.target):
-            self._rebuild(item.block)
+            self._show_task(item.target)
+        else:
+            self.say(_BUSY)
 
     def action_help(self) -> None:
         """All keys; a layer above knows them."""
@@ -90,14 +96,13 @@ class TasksApp(CellsApp):
             self.say("Make a workspace first: course init my-course")
         elif practice.of(item.target).file:
             if not practice.check(item.target):
-                self.say("Something is being checked already.")
+                self.say(_BUSY)
         else:
             try:
                 practice.start(item.target)
             except CourseError as error:
                 self.say(error.message)
-        self._rebuild(item.block)
-        self._say_round()
+        self._show_task(item.target)
 
     def _edit(self, item: Item) -> None:
         """Change the file of a task here; one that is not there is put there first."""

@@ -74,6 +74,11 @@ class Practice:
         """Whether there is a workspace to work in."""
         return self._workspace is not None
 
+    @property
+    def busy(self) -> bool:
+        """Whether something is being checked, or asked."""
+        return any(one.busy for one in self._standings.values())
+
     def of(self, name: str) -> Standing:
         """How far the student is."""
         if name not in self._standings:
@@ -140,7 +145,7 @@ class Practice:
     # -- inside ----------------------------------------------------------------------------------------
 
     def _run(self, name: str, command: str, what: str) -> bool:
-        if any(one.busy for one in self._standings.values()):
+        if self.busy:
             return False
         if self._pool is None:
             from concurrent.futures import ThreadPoolExecutor

@@ -1,0 +1,143 @@
+"""One lesson in a real terminal, from its title to its last line, with its warm-ups and its exercise.
+
+The student reads, predicts, runs a cell, changes one, starts a task, fails, asks for a hint, mends the file
+in an editor and goes on; nothing but the editor is outside the reader.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.exercises.variants import compose, mutant_files, solution_path
+from course.catalog.load import Catalog
+from course.progress.workspace import Workspace
+from tests.terminals import Terminal, needs_tmux
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+pytestmark = [pytest.mark.soak, needs_tmux]
+
+LESSON = "numerical-integration"
+CATALOG = Catalog()
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Workspace:
+    return Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
+
+
+@pytest.fixture(params=[(80, 24), (120, 40), (40, 20)], ids=["80x24", "120x40", "40x20"])
+def terminal(request: pytest.FixtureRequest, workspace: Workspace) -> Iterator[Terminal]:
+    with contextlib.closing(Terminal(workspace.root, request.param)) as made:
+        yield made
+
+
+class Student:
+    """Does what the line of keys at the foot of the screen offers."""
+
+    def __init__(self, terminal: Terminal, workspace: Workspace) -> None:
+        self.terminal, self.workspace = terminal, workspace
+        self.done: list[str] = []
+        self.tasks = [one.id for one in CATALOG.tasks(LESSON)]
+        self.left = list(self.tasks)
+
+    def keys(self) -> str:
+        return self.terminal.screen().rstrip("\n").splitlines()[-1]
+
+    def read_to_the_end(self) -> None:
+        for _ in range(400):
+            screen, keys = self.terminal.screen(), self.keys()
+            if "Enter predict" in keys:
+                self.predict()
+            elif "were you" in keys or "1 right" in keys:
+                self.terminal.keys("2")
+                self.terminal.wait_until_gone("1 right")
+                self.done.append("judged")
+            elif "Enter start it" in keys:
+                self.do_task(self.left.pop(0))
+            elif "r run" in keys and self.done.count("ran") < 2:
+                self.run()
+            elif "Enter puts its file" in screen:
+                self.terminal.keys("Tab")  # a cell above it is at hand
+                self.terminal.wait_for_other(screen)
+            elif "You have read this lesson." in screen:
+                return
+            else:
+                self.on(screen)
+        pytest.fail(f"no end:\n{screen}")
+
+    def on(self, screen: str) -> None:
+        self.terminal.keys("Space")
+        self.terminal.wait_for_other(screen)
+
+    def predict(self) -> None:
+        self.terminal.keys("Enter")
+        self.terminal.wait("a number with its")
+        self.terminal.type("it grows")
+        self.terminal.keys("Enter")
+        self.terminal.wait("it grows", "Kept", "r run", "1 right")
+        self.done.append("predicted")
+
+    def run(self) -> None:
+        if "ran" not in self.done:
+            self.terminal.keys("r")
+        else:
+            self.terminal.keys("e")
+            self.terminal.wait("Ctrl-R")
+            self.terminal.type("print('mine', 6 * 7)\n")
+            self.terminal.keys("C-r")
+        self.terminal.wait("Your run", "Here", "mine 42", "yours", "changed", "as the lesson")
+        self.done.append("ran")
+
+    def do_task(self, name: str) -> None:
+        exercise = CATALOG.exercise(name)
+        self.terminal.keys("Enter")
+        self.terminal.wait("r check")
+        path = self.workspace.path(exercise.place, exercise.module)
+        assert path.is_file(), name
+        self.terminal.keys("r")
+        self.checked(name, 1)
+        self.terminal.keys("h")
+        self.terminal.wait("The first hint follows")
+        # A save is checked by itself, and so is one that comes while another is checked.
+        solution, wrong = solution_path(CATALOG, exercise), mutant_files(CATALOG, exercise)
+        path.write_bytes(compose(solution, wrong[0]))
+        self.checked(name, 2)
+        self.terminal.keys("h")
+        self.terminal.wait("Hint:")
+        path.write_bytes(compose(solution, wrong[1]))
+        self.terminal.wait("Checking")
+        path.write_bytes(solution.read_bytes())
+        self.terminal.wait("Done: every check passes.")
+        self.done.append(name)
+
+    def checked(self, name: str, times: int) -> None:
+        """Wait until the record has a check and the screen its answer."""
+        until = time.monotonic() + 60.0
+        while len(self.workspace.store.events("check", name)) < times or "Checking" in self.terminal.screen():
+            assert time.monotonic() < until, self.terminal.screen()
+            time.sleep(0.1)
+
+
+def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(
+    terminal: Terminal, workspace: Workspace
+) -> None:
+    terminal.line(f"{sys.executable} -m course lesson {LESSON}")
+    terminal.wait("Space on")
+    student = Student(terminal, workspace)
+    student.read_to_the_end()
+    assert student.left == []
+    assert student.done.count("predicted") == student.done.count("judged") > 5
+    terminal.keys("q")
+    terminal.wait("$ ")
+    events = workspace.store.events("check")
+    passed = {event.subject for event in events if event.data["all_pass"]}
+    assert passed == set(student.tasks)
+    assert {event.subject for event in events if not event.data["all_pass"]} == passed

@@ -1,0 +1,101 @@
+"""A terminal of its own, in tmux: keys and a mouse as a terminal sends them, and what is on the screen."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+__all__ = ["Terminal", "needs_tmux"]
+
+ROOT = Path(__file__).resolve().parents[1]
+
+needs_tmux = pytest.mark.skipif(shutil.which("tmux") is None, reason="tmux is not installed")
+
+
+class Terminal:
+    """A pane of its own server, so that nobody else's is touched."""
+
+    def __init__(self, folder: Path, size: tuple[int, int]) -> None:
+        self._socket = str(folder / "tmux")
+        environment = {
+            "PATH": os.environ["PATH"],
+            "HOME": str(folder),
+            "LANG": "C.UTF-8",
+            "LC_ALL": "C.UTF-8",
+            "PYTHONPATH": str(ROOT),
+        }
+        shell = ("env", "PS1=$ ", "COLORTERM=truecolor", "sh")
+        subprocess.run(
+            [
+                *("tmux", "-S", self._socket, "-f", os.devnull, "new-session", "-d"),
+                *("-x", str(size[0]), "-y", str(size[1]), "-c", str(folder), *shell),
+            ],
+            env=environment,
+            check=True,
+            timeout=20,
+        )
+
+    def _tmux(self, *arguments: str) -> str:
+        done = subprocess.run(
+            ["tmux", "-S", self._socket, *arguments], capture_output=True, text=True, check=False, timeout=20
+        )
+        return done.stdout
+
+    def type(self, words: str) -> None:
+        """Letters as they are, whatever keys are named like them."""
+        self._tmux("send-keys", "-l", words)
+
+    def line(self, words: str) -> None:
+        """A line to the shell."""
+        self.type(words)
+        self.keys("Enter")
+
+    def keys(self, *names: str) -> None:
+        self._tmux("send-keys", *names)
+
+    def mouse(self, kind: int, column: int, row: int, end: str = "M") -> None:
+        """A mouse's report as terminals send it; columns and rows from 1."""
+        self._tmux("send-keys", "-l", f"\x1b[<{kind};{column};{row}{end}")
+
+    def screen(self) -> str:
+        return self._tmux("capture-pane", "-p")
+
+    def wait(self, *words: str, seconds: float = 40.0) -> str:
+        """The screen, once it shows one of these."""
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            screen = self.screen()
+            if any(word in screen for word in words):
+                return screen
+            time.sleep(0.1)
+        pytest.fail(f"{words} did not appear on:\n{self.screen()}")
+
+    def wait_until_gone(self, word: str, seconds: float = 40.0) -> None:
+        """Until the screen no longer shows this."""
+        until = time.monotonic() + seconds
+        while word in (screen := self.screen()):
+            assert time.monotonic() < until, screen
+            time.sleep(0.1)
+
+    def wait_for_other(self, screen: str, seconds: float = 40.0) -> str:
+        """The screen, once it is another one and stands still."""
+        until = time.monotonic() + seconds
+        while (shown := self.screen()) == screen or shown != self._a_moment_later():
+            assert time.monotonic() < until, shown
+        return shown
+
+    def _a_moment_later(self) -> str:
+        time.sleep(0.1)
+        return self.screen()
+
+    def state(self) -> str:
+        """What a program may leave behind: the other screen, mouse reports, a hidden cursor."""
+        return self._tmux("display", "-p", "#{alternate_on} #{mouse_any_flag} #{cursor_flag}").strip()
+
+    def close(self) -> None:
+        self._tmux("kill-server")

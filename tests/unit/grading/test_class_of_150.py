@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.grading.running.run import GradeAll
 
-#: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has neither right.
+#: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has both wrong.
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 WRONG = b"\ndef double(x):\n    return x\n"
 EVERYBODY = range(1, 151)
@@ -167,7 +167,7 @@ UNKNOWN = {"canvas": len(ANONYMOUS)}
 def graded_and_settled(
     tmp_path: Path, catalog: Catalog, layout: str, grade: GradeAll
 ) -> dict[str, dict[str, str]]:
-    """Grade a class of that layout, settle what is unsettled, export it; rows of ``grades.csv`` by student."""
+    """Grade a class of that layout, settle the rest, export it; rows of ``grades.csv`` by student."""
     if layout == "gradescope":
         pytest.importorskip("yaml")
     table = LAYOUTS[layout](tmp_path / "class")

@@ -101,7 +101,7 @@ def judged_while_edited(
 def judged_by_the_snapshot(
     out: Path, course: Catalog, version: str, snapshot: str, level: str | None = None
 ) -> None:
-    """Of a run during which ``course`` was edited: who judged, what the edit would change, and the way back."""
+    """Of a run during which ``course`` was edited: who judged, what that would change, the way back."""
     now = grader_version(course.exercise("doubling"), course)
     assert now != version
     first = outcomes(out)

@@ -83,7 +83,9 @@ def unsettled(results: Results) -> list[Unsettled]:
 def proposals(results: Results) -> list[Assignment]:
     """The matches that are proposed, one for each that has one."""
     return [
-        Assignment(item.student, item.exercise, one.name, Path(one.path), one.member, item.found.times)
+        Assignment(
+            item.student, item.exercise, one.name, Path(os.fsdecode(one.path)), one.member, item.found.times
+        )
         for item in unsettled(results)
         for one in item.found.candidates
         if one.proposed
@@ -134,7 +136,9 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
             times = item.found.times
             for one in item.found.candidates:
                 if one.name == file:
-                    return Assignment(student, exercise, one.name, Path(one.path), one.member, times)
+                    return Assignment(
+                        student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times
+                    )
     return Assignment(student, exercise, file, *_on_disk(file), times)
 
 

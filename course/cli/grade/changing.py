@@ -80,9 +80,9 @@ def rerun(
     """
     from course.cli.grade.replies import GradeRerun
     from course.grading.running.batch import grade_all
+    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions
     from course.grading.running.rerun import rerun as regrade
-    from course.grading.running.run import open_results
 
     console = current()
     level, at_least = levels(isolation)
@@ -143,7 +143,7 @@ def override(
     It counts in place of the graders' score in every export and report, whatever is graded later, and no late
     penalty touches it.
     """
-    from course.grading.running.run import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if (score is None) != lift:
         raise UsageError(
@@ -193,7 +193,7 @@ def late(
     """
     from course.cli.grade.replies import GradeLate
     from course.grading.results.journal import Recording, recorded
-    from course.grading.running.run import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if policy is not None and clear:
         raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
@@ -311,7 +311,7 @@ def similar(
     layout do not count, and neither does the stub. Likeness is a reason to talk with students, not a finding.
     """
     from course.cli.grade.replies import GradeSimilar, SimilarPair
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
     from course.grading.similar.compare import compare
 
     console = current()

@@ -135,7 +135,7 @@ def _from_gradebook(
     zeros: bool,
 ) -> Written | None:
     """Write it; None if it was printed."""
-    from course.grading.running.run import open_results, remember
+    from course.grading.running.folder import open_results, remember
 
     people = read_roster(roster) if roster else None
     if missing not in {"blank", "zero"}:
@@ -185,7 +185,7 @@ def _autograder(
 ) -> Written:
     import secrets
 
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
 
     catalog = load_catalog()
     chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import CourseRef
-    from course.grading.gradebook.book import Result
-    from course.grading.gradebook.records import Decision
+    from course.grading.gradebook.records import Decision, Result
     from course.grading.results.effective import Effective
     from course.grading.running.rerun import Change
-    from course.grading.running.run import GradeAll, RunOptions, Summary
+    from course.grading.running.run import GradeAll, RunOptions
+    from course.grading.running.summary import Summary
 
 __all__ = ["explain", "levels", "run", "score_of"]
 
@@ -123,8 +123,8 @@ def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
     """Who would get another score from the graders as they are now, which a resumed run does not use."""
+    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions, rerun
-    from course.grading.running.run import open_results
 
     if not summary.edited:
         return ()
@@ -198,7 +198,7 @@ def explain(
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
 
     catalog = load_catalog()
     with open_results(out) as results:

@@ -67,7 +67,7 @@ def assign(
     from course.grading.running.assign import assign as take
     from course.grading.running.assign import named, proposals, unsettled
     from course.grading.running.batch import grade_all
-    from course.grading.running.run import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if (student is None) != (file is None) or (student is not None and accept_names):
         raise UsageError(
@@ -165,7 +165,7 @@ def log(
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
 
     console = current()
     with open_results(out) as results:
@@ -204,7 +204,7 @@ def salvage(
     when nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.run import export_all
+    from course.grading.running.folder import export_all
     from course.isolation.launch import private_folder, remove_tree
 
     console = current()

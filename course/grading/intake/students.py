@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.errors import InternalError, UngradableError
-from course.grading.gradebook.book import SubmittedAt
+from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import MAX_FILE, Held, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.reading import reader

@@ -33,7 +33,7 @@ from course.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from course.grading.gradebook.book import FromDownload
+    from course.grading.gradebook.records import FromDownload
 
 __all__ = ["COLUMNS", "Person", "Roster", "moodle_key", "read_roster", "read_text"]
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Result
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.scoring.session import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 

@@ -18,7 +18,7 @@ from course.grading.exports.cells import is_safe, number, replacing, safe_cell
 from course.grading.exports.formats import FORMATS, export
 from course.grading.exports.lines import utc
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import Override, SubmittedAt
+from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
 from tests.unit.grading.made import (

@@ -12,12 +12,12 @@ import pytest
 from course.errors import UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import Override
-from course.grading.gradebook.records import FromDownload
+from course.grading.gradebook.records import FromDownload, Override
 from course.grading.intake.downloads import class_list
 from course.grading.results.override import override
 from course.grading.results.roster import Person, read_roster
-from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.folder import open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.test_run import right

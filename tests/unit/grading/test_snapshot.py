@@ -16,9 +16,10 @@ from course.errors import IntegrityError, InternalError, NotFoundError
 from course.grading.gradebook.book import Gradebook
 from course.grading.results.effective import Results
 from course.grading.running.batch import start_grader
+from course.grading.running.folder import open_results
 from course.grading.running.grader import Config
 from course.grading.running.rerun import RerunOptions, rerun
-from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version

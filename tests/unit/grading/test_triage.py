@@ -20,7 +20,8 @@ from course.grading.intake.students import Entry, read_class
 from course.grading.intake.triage import Candidate, found_for
 from course.grading.results.override import override
 from course.grading.running.assign import assign, named, proposals, unsettled
-from course.grading.running.run import RunOptions, grade_class, open_results, previewed
+from course.grading.running.folder import open_results, previewed
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from tests.unit.grading.test_run import right
 

@@ -109,8 +109,10 @@ def read_student(student: Student, exercises: Sequence[Exercise], *, required: b
 
 
 def _unforeseen(error: Exception) -> Problem:
-    message = f"What was handed in cannot be read: {one_line(f'{type(error).__name__}: {error}', _LONGEST)}."
-    return Problem("unreadable", message, _PERMISSIONS)
+    # Students read this too: of the system's errors only the reason, which has no path in it.
+    reason = (error.strerror if isinstance(error, OSError) else str(error)) or "no reason was given"
+    message = f"It cannot be read: {type(error).__name__}, {one_line(reason, _LONGEST)}."
+    return Problem("unreadable", message, "Look at it; `course grade assign` takes any file by its path.")
 
 
 def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:

@@ -277,7 +277,7 @@ def test_a_name_that_is_no_text_is_listed_and_settled_like_any_other(
     [
         ("_content", OSError(5, "Input/output error")),
         ("_content", RuntimeError("unheard of")),
-        ("survey", PermissionError(13, "Permission denied")),
+        ("survey", PermissionError(13, "Permission denied", "/srv/class/bob")),
         ("witnesses", KeyError("x")),
     ],
 )
@@ -301,6 +301,7 @@ def test_what_nobody_thought_of_costs_its_own_submission_only(
     (trouble,) = summary.troubled
     assert (trouble.student, trouble.code) == ("bob", "unreadable")
     assert type(error).__name__ in trouble.message
+    assert "/srv" not in trouble.message, "students read it"
 
 
 def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, catalog: Catalog) -> None:

@@ -23,8 +23,9 @@ sys.path.insert(0, str(ROOT))
 
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.gradebook.backup import back_up  # noqa: E402
-from course.grading.gradebook.book import Gradebook, Result  # noqa: E402
+from course.grading.gradebook.book import Gradebook  # noqa: E402
 from course.grading.gradebook.file import row_digest  # noqa: E402
+from course.grading.gradebook.records import Result  # noqa: E402
 from course.grading.intake.downloads import Place  # noqa: E402
 from course.grading.intake.triage import survey  # noqa: E402
 from course.grading.results.effective import Results  # noqa: E402

@@ -1,7 +1,8 @@
-"""A whole class in one run: how much of it is writing, what two graders bring, whether memory stays flat, and
-what a cluster on this machine costs.
+"""A whole class in one run: how much of it is writing, what two graders bring, whether memory stays flat,
+what a cluster on this machine costs, and how fast ``grade rerun --dry-run`` is beside the run.
 
-    python tests/benchmarks/class_run.py                          all four, on the miniature course
+    python tests/benchmarks/class_run.py                          all five, on the miniature course
+    python tests/benchmarks/class_run.py --only rerun --submissions 10000 --rounds 1
     python tests/benchmarks/class_run.py --only memory --submissions 10000
     python tests/benchmarks/class_run.py --only cluster --workers 2
     python tests/benchmarks/class_run.py --exercise integrators   on the real one
@@ -30,16 +31,19 @@ sys.path.insert(0, str(ROOT))
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.cluster.connect import local_cluster  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
-from course.grading.running.run import RunOptions, Summary, grade_class  # noqa: E402
+from course.grading.running.folder import open_results  # noqa: E402
+from course.grading.running.rerun import RerunOptions, rerun  # noqa: E402
+from course.grading.running.run import RunOptions, grade_class  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from course.grading.running.run import GradeAll
+    from course.grading.running.summary import Summary
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 PAGE = os.sysconf("SC_PAGE_SIZE")
-KINDS = ("write", "jobs", "memory", "cluster")
+KINDS = ("write", "jobs", "memory", "cluster", "rerun")
 
 
 def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
@@ -177,6 +181,30 @@ def cluster_ratio(folder: Path, catalog: Catalog, exercise: str, students: int, 
     )
 
 
+def rerun_ratio(folder: Path, catalog: Catalog, exercise: str, jobs: int, rounds: int) -> None:
+    """A run, and ``rerun --dry-run --all`` over what it wrote, taking turns; the best of each.
+
+    Both start graders, grade everything and end; the run writes besides, and makes the reports.
+    """
+    costs: dict[str, list[float]] = {"run": [], "rerun": []}
+    grade = partial(grade_all, graders=jobs)
+    for _ in range(rounds):
+        out = Path(tempfile.mkdtemp(prefix="run-", dir=folder.parent)) / "out"
+        options = RunOptions(exercises=(exercise,), seed=1)
+        summary = grade_class(folder, out, catalog, options, lambda *_: None, grade=grade)
+        costs["run"].append(summary.elapsed_s)
+        began = time.monotonic()
+        with open_results(out) as results:
+            done = rerun(results, catalog, RerunOptions(dry_run=True, everything=True), grade=grade)
+        costs["rerun"].append(time.monotonic() - began)
+        assert (done.regraded, done.changes) == (summary.states["graded"], ()), "the same, and none changed"
+        print(
+            f"rerun: {done.regraded} with -j {jobs}: run {costs['run'][-1]:.1f} s, {costs['rerun'][-1]:.1f} s"
+        )
+    ratio = min(costs["rerun"]) / min(costs["run"])
+    print(f"rerun: takes {ratio:.2f} times as long as the run (target: at most 1), best of {rounds}")
+
+
 def graders() -> list[int]:
     """The grader processes this one started."""
     found = []
@@ -201,6 +229,7 @@ def main() -> None:
     parser.add_argument("--exercise", default="doubling")
     parser.add_argument("--submissions", type=int, default=1000)
     parser.add_argument("--workers", type=int, default=2, help="of the cluster, and graders beside it")
+    parser.add_argument("--rounds", type=int, default=3, help="of run and rerun")
     arguments = parser.parse_args()
     if arguments.exercise in {path.name for path in (MINI / "exercises").iterdir()}:
         os.environ["COURSE_CONTENT"] = str(MINI)
@@ -220,6 +249,8 @@ def main() -> None:
             memory(folder, catalog, arguments.exercise, arguments.submissions)
         if "cluster" in wanted:
             cluster_ratio(folder, catalog, arguments.exercise, arguments.submissions, arguments.workers)
+        if "rerun" in wanted:
+            rerun_ratio(folder, catalog, arguments.exercise, arguments.workers, arguments.rounds)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,14 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import os
+import re
+import shlex
 import shutil
 import signal
+import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +27,7 @@ from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version
 from tests.e2e.processes import below, left_running
+from tests.unit.grading.test_snapshot import judged_by_the_snapshot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -215,12 +220,11 @@ def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(
             os.kill(dask_workers(os.getpid())[0], signal.SIGKILL)
 
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
+    out = tmp_path / "out"
     with local_cluster(2, course) as grade:
-        grade_class(tmp_path / "class", tmp_path / "out", course, options, report, grade=grade)
-    with Gradebook(tmp_path / "out" / "gradebook.sqlite") as book:
-        assert {result.key.grader_version for result in book.results()} == {version}
-        assert {result.verdict.score for result in book.results()} == {10.0, 6.0}
-    assert grader_version(course.exercise("doubling"), course) != version
+        summary = grade_class(tmp_path / "class", out, course, options, report, grade=grade)
+    assert summary.states["graded"] == 60
+    judged_by_the_snapshot(out, course, version, summary.graders)
 
 
 @contextlib.contextmanager
@@ -244,16 +248,20 @@ def scheduler_and_worker(environment: dict[str, str]) -> Iterator[tuple[str, lis
         )
         yield address, started
     finally:
-        for process in reversed(started):
-            process.terminate()
-        for process in started:
-            try:
-                process.wait(20)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-            if process.stderr:
-                process.stderr.close()
+        stop(started)
+
+
+def stop(started: list[subprocess.Popen[str]]) -> None:
+    for process in reversed(started):
+        process.terminate()
+    for process in started:
+        try:
+            process.wait(20)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if process.stderr:
+            process.stderr.close()
 
 
 def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, catalog: Catalog) -> None:
@@ -284,3 +292,71 @@ def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, cat
         )
     assert (summary.already, summary.states["graded"]) == (done, 300)
     assert not left_running(tmp_path)
+
+
+def commands_of_the_page(port: int) -> list[str]:
+    """The blocks of docs/cluster.md under "Two machines": certificates, scheduler, two of workers, the run.
+
+    Both machines are this one, with one worker each, and the port is a free one; nothing else is changed.
+    """
+    page = (ROOT / "docs" / "cluster.md").read_text("utf-8")
+    section = page.partition("## Two machines")[2].partition("\n## ")[0]
+    for written, here in (
+        ("tls://alpha:8786", f"tls://127.0.0.1:{port}"), ("--port 8786", f"--port {port}"),
+        ("--nworkers 4", "--nworkers 1"), ("--nworkers 8", "--nworkers 1"),
+    ):  # fmt: skip
+        assert written in section
+        section = section.replace(written, here)
+    return re.findall(r"```\n(.*?)```", section, re.S)
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
+def test_the_page_for_two_machines_works_as_written(tmp_path: Path) -> None:
+    """A setting left out first: one sentence, no folder left behind; the corrected command is the same."""
+    with socket.create_server(("127.0.0.1", 0)) as sock:
+        port = sock.getsockname()[1]
+    certificates, *daemons, grading = commands_of_the_page(port)
+    alpha, beta = tmp_path / "alpha", tmp_path / "beta"
+    make_class(alpha / "submissions", 12)
+    environment = {
+        **os.environ, "MARKER": str(tmp_path), "COURSE_CONTENT": str(MINI), "PYTHONPATH": str(ROOT),
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+    }  # fmt: skip
+
+    def pasted(script: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ["sh", "-c", script], check=False, cwd=alpha, env=environment, capture_output=True, text=True
+        )
+
+    assert pasted(f"set -e\n{certificates}").returncode == 0
+    beta.mkdir()
+    for name in ("ca.pem", "machines.pem", "machines.key"):
+        shutil.copy(alpha / name, beta)
+    started: list[subprocess.Popen[str]] = []
+    try:
+        for folder, block in zip((alpha, alpha, beta), daemons, strict=True):
+            how: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+            words = shlex.split(block.replace("\\\n", " "))
+            started.append(
+                subprocess.Popen(words, cwd=folder, env=environment, text=True, start_new_session=True, **how)
+            )
+        until_listening(port, started[0])
+        wrong = pasted(grading.replace("CLIENT__KEY", "CLIENT__NONE"))
+        assert (wrong.returncode, wrong.stderr.count("\n")) == (4, 2)
+        assert "needs the key of that certificate" in wrong.stderr
+        assert not (alpha / "grades").exists()
+        right = pasted(grading)
+        assert right.returncode == 0, right.stderr
+    finally:
+        stop(started)
+    assert len(scores(alpha / "grades")) == 12
+    assert not left_running(tmp_path)
+
+
+def until_listening(port: int, server: subprocess.Popen[str]) -> None:
+    while server.poll() is None:
+        with contextlib.suppress(OSError):
+            socket.create_connection(("127.0.0.1", port), 1).close()
+            return
+        time.sleep(0.1)
+    pytest.fail("the scheduler ended")

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from functools import partial
-from pathlib import Path
+from pathlib import Path  # noqa: TC003 - typer reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import choice_of, exercise_ids, run_numbers, student_ids
+from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.grade.changes import points as _points
 from course.cli.grade.changes import show_change
-from course.cli.grade.running import levels, score_of
+from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, levels
+from course.cli.grade.running import score_of
 from course.errors import UsageError
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.lines import grade_line, utc
@@ -29,14 +30,16 @@ from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
     from course.cli.grade.replies import LateOne
+    from course.grading.gradebook.book import Gradebook
+    from course.grading.gradebook.records import SubmittedAt
     from course.grading.results.effective import Effective
     from course.grading.results.journal import Moved
+    from course.grading.results.roster import Roster
     from course.grading.running.rerun import Regraded
 
 __all__ = ["late", "override", "rerun", "similar"]
 
 _SHOWN = 20
-Out = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")]
 
 
 def rerun(
@@ -47,29 +50,13 @@ def rerun(
     everything: Annotated[
         bool, typer.Option("--all", help="Also what these very graders scored before.")
     ] = False,
-    jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
+    jobs: Jobs = 1,
     timeout: Annotated[
         float | None,
         typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="As in the run if left out."),
     ] = None,
-    isolation: Annotated[
-        str,
-        typer.Option(
-            "--isolation",
-            metavar="auto|strict|process",
-            help="As for `course grade run`.",
-            autocompletion=choice_of("auto", "strict", "process"),
-        ),
-    ] = "auto",
-    against: Annotated[
-        str,
-        typer.Option(
-            "--against",
-            metavar="RUN|SNAPSHOT",
-            help="With the graders of that run; `log` lists them.",
-            autocompletion=run_numbers,
-        ),
-    ] = "",
+    isolation: Isolation = "auto",
+    against: Against = "",
     reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the regrading.")] = "",
 ) -> int:
     """Grade again, with the graders as they are now, or as they were.
@@ -80,9 +67,9 @@ def rerun(
     """
     from course.cli.grade.replies import GradeRerun
     from course.grading.running.batch import grade_all
+    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions
     from course.grading.running.rerun import rerun as regrade
-    from course.grading.running.run import open_results
 
     console = current()
     level, at_least = levels(isolation)
@@ -143,7 +130,7 @@ def override(
     It counts in place of the graders' score in every export and report, whatever is graded later, and no late
     penalty touches it.
     """
-    from course.grading.running.run import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if (score is None) != lift:
         raise UsageError(
@@ -181,7 +168,7 @@ def late(
         Path | None, typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days.")
     ] = None,
     clear: Annotated[bool, typer.Option("--clear", help="Put no policy in force.")] = False,
-    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the change.")] = "",
+    reason: Reason = "",
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show whose score would change; change nothing.")
     ] = False,
@@ -193,7 +180,7 @@ def late(
     """
     from course.cli.grade.replies import GradeLate
     from course.grading.results.journal import Recording, recorded
-    from course.grading.running.run import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if policy is not None and clear:
         raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
@@ -204,22 +191,15 @@ def late(
     changes = bool(policy or people or known or clear)
     why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
     with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
-        with recorded(opened.book, "late", why) if changes else nullcontext(Recording()) as told:
+        book = opened.book
+        with recorded(book, "late", why) if changes else nullcontext(Recording()) as told:
             if text is not None or clear:
-                opened.book.set_meta(late_policy=text)
-            if people is not None:
-                opened.book.set_meta(roster=people.dump())
-            if known:
-                opened.book.add_times(known, replace=True)
-        results = Results(opened.book)
+                book.set_meta(late_policy=text)
+            _take_in(book, people, known)
+        results = Results(book)
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
         unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
-        names = {f"student {name}" for name in _everybody(results)}
-        graded = {item.id: item for item in results.exercises()}
-        unknown = sorted({f"student {item.student}" for item in known} - names)
-        unknown += sorted({f"exercise {item.exercise}" for item in known if item.exercise not in graded})
-        if results.policy is not None:
-            unknown += unknown_names(results.policy, graded, _everybody(results))
+        unknown = _unknown(results, known)
     if console.json:
         console.emit(
             GradeLate(
@@ -246,6 +226,24 @@ def _show_moved(console: Console, moved: list[Moved], *, dry_run: bool) -> None:
     if moved or dry_run:
         would = "would change" if dry_run else "changed"
         console.line((f"{len(moved)} {'score' if len(moved) == 1 else 'scores'} {would}.", "bold"))
+
+
+def _take_in(book: Gradebook, people: Roster | None, times: list[SubmittedAt]) -> None:
+    if people is not None:
+        book.set_meta(roster=people.dump())
+    if times:
+        book.add_times(times, replace=True)
+
+
+def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
+    """What a file of times and the policy name, and the gradebook has not."""
+    students = _everybody(results)
+    exercises = {item.id: item for item in results.exercises()}
+    unknown = sorted({f"student {item.student}" for item in times if item.student not in students})
+    unknown += sorted({f"exercise {item.exercise}" for item in times if item.exercise not in exercises})
+    if results.policy is not None:
+        unknown += unknown_names(results.policy, exercises, students)
+    return unknown
 
 
 def _everybody(results: Results) -> set[str]:
@@ -291,10 +289,7 @@ def _show_late(
 
 def similar(
     out: Out,
-    exercise: Annotated[
-        list[str] | None,
-        typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
-    ] = None,
+    exercise: Exercises = None,
     # Right solutions that were written differently share 0.39 at most (those of this course, by weight); a
     # copy whose names were changed shares 1.
     share: Annotated[
@@ -311,7 +306,7 @@ def similar(
     layout do not count, and neither does the stub. Likeness is a reason to talk with students, not a finding.
     """
     from course.cli.grade.replies import GradeSimilar, SimilarPair
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
     from course.grading.similar.compare import compare
 
     console = current()

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import choice_of, exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
+from course.cli.grade.options import Exercises, Missing, one_of
 from course.errors import CourseError, UsageError
 from course.grading.exports.autograder import write_autograder
-from course.grading.exports.formats import AUTOGRADER
+from course.grading.exports.formats import AUTOGRADER, FORMATS
 from course.grading.exports.formats import export as write
 from course.grading.exports.lines import grade_line
 from course.grading.exports.selection import ExportOptions, select
@@ -23,6 +23,7 @@ from course.scoring.numbers import LARGEST_SEED
 
 if TYPE_CHECKING:
     from course.grading.exports.selection import Written
+    from course.grading.results.roster import Roster
 
 __all__ = ["export"]
 
@@ -36,21 +37,7 @@ def export(
     ] = None,
     format: Annotated[  # noqa: A002 - the option's name
         str,
-        typer.Option(
-            "--format",
-            metavar="csv|jsonl|junit|gradescope|gradescope-autograder|canvas|moodle|moodle-worksheet|html",
-            autocompletion=choice_of(
-                "csv",
-                "jsonl",
-                "junit",
-                "gradescope",
-                "gradescope-autograder",
-                "canvas",
-                "moodle",
-                "moodle-worksheet",
-                "html",
-            ),
-        ),
+        one_of("--format", *FORMATS, AUTOGRADER),
     ] = "csv",
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="PATH", help="Where; in OUT if left out.")
@@ -66,22 +53,11 @@ def export(
     partial: Annotated[
         bool, typer.Option("--partial", help="Leave out students the roster has not.")
     ] = False,
-    missing: Annotated[
-        str,
-        typer.Option(
-            "--missing",
-            metavar="blank|zero",
-            autocompletion=choice_of("blank", "zero"),
-            help="What an enrolled student who handed in nothing gets.",
-        ),
-    ] = "blank",
+    missing: Missing = "blank",
     accept_zeros: Annotated[
         bool, typer.Option("--accept-zeros", help="Write 0 for what could not be graded and nobody settled.")
     ] = False,
-    exercise: Annotated[
-        list[str] | None,
-        typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
-    ] = None,
+    exercise: Exercises = None,
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, max=LARGEST_SEED, help="Of an autograder without OUT.")
     ] = None,
@@ -95,28 +71,22 @@ def export(
     the export, unless --partial leaves them out. What could not be graded stops an export to a platform,
     unless a score was given by hand or --accept-zeros says that it is worth 0.
     """
-
     console = current()
-    written: Written | None
+    exercises = tuple(exercise or ())
     if format == AUTOGRADER:
-        written = _autograder(out, output, tuple(exercise or ()), seed, timeout)
+        written: Written | None = _autograder(out, output, exercises, seed, timeout)
     elif out is None:
         raise UsageError(
             "This format needs OUT.", help="Name the folder that `course grade run --out` wrote."
         )
     else:
-        written = _from_gradebook(
-            console,
-            out,
-            format,
-            output,
-            roster,
-            tuple(assignment or ()),
-            partial,
-            tuple(exercise or ()),
-            missing,
-            accept_zeros,
-        )
+        people = read_roster(roster) if roster else None
+        if missing not in {"blank", "zero"}:
+            raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
+        sheet = roster if format == "moodle-worksheet" else None
+        given = _assignments(assignment or [])
+        options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet)
+        written = _from_gradebook(console, out, format, output, people, options)
     if written is not None:
         _show(console, format, written)
     return 0
@@ -127,21 +97,12 @@ def _from_gradebook(
     out: Path,
     name: str,
     output: Path | None,
-    roster: Path | None,
-    assignments: tuple[str, ...],
-    partial: bool,
-    exercises: tuple[str, ...],
-    missing: str,
-    zeros: bool,
+    people: Roster | None,
+    options: ExportOptions,
 ) -> Written | None:
     """Write it; None if it was printed."""
-    from course.grading.running.run import open_results, remember
+    from course.grading.running.folder import open_results, remember
 
-    people = read_roster(roster) if roster else None
-    if missing not in {"blank", "zero"}:
-        raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
-    sheet = roster if name == "moodle-worksheet" else None
-    options = ExportOptions(exercises, _assignments(assignments), partial, missing, zeros, sheet)
     with open_results(out) as opened:
         results = Results(opened.book, people) if people else opened
         if console.json and name == "jsonl" and output is None:
@@ -168,7 +129,7 @@ def _print_lines(console: Console, results: Results, options: ExportOptions) -> 
         console.warn(f"Left out, not in the roster: {one_line(student)}")
 
 
-def _assignments(given: tuple[str, ...]) -> dict[str, str]:
+def _assignments(given: list[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for text in given:
         name, equals, number = text.partition("=")
@@ -185,7 +146,7 @@ def _autograder(
 ) -> Written:
     import secrets
 
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
 
     catalog = load_catalog()
     chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()

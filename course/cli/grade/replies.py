@@ -8,7 +8,7 @@ from course.cli.frame.replies import Envelope
 from course.grading.gradebook.records import Decision, Run
 from course.grading.results.journal import Moved
 from course.grading.running.rerun import Change
-from course.grading.running.run import Trouble
+from course.grading.running.summary import Trouble
 
 __all__ = [
     "AssignedOne",

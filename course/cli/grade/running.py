@@ -10,10 +10,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from course import extras
-from course.cli.frame.completion import choice_of, exercise_ids, student_ids, submitted_ids
+from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.grade.changes import show_change
+from course.cli.grade.options import (
+    Jobs,
+    Layout,
+    LocalCluster,
+    Protection,
+    RosterFile,
+    Scheduler,
+    levels,
+)
 from course.cli.work.verdicts import show_everything
 from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
@@ -29,13 +38,13 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import CourseRef
-    from course.grading.gradebook.book import Result
-    from course.grading.gradebook.records import Decision
+    from course.grading.gradebook.records import Decision, Result
     from course.grading.results.effective import Effective
     from course.grading.running.rerun import Change
-    from course.grading.running.run import GradeAll, RunOptions, Summary
+    from course.grading.running.run import GradeAll, RunOptions
+    from course.grading.running.summary import Summary
 
-__all__ = ["explain", "levels", "run", "score_of"]
+__all__ = ["explain", "run", "score_of"]
 
 _MOST_TROUBLED = 20
 
@@ -47,7 +56,7 @@ def run(
         list[str] | None,
         typer.Option("--exercise", metavar="ID", help="Grade these only.", autocompletion=exercise_ids),
     ] = None,
-    jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
+    jobs: Jobs = 1,
     timeout: Annotated[
         float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="CPU seconds per check.")
     ] = 10.0,
@@ -55,44 +64,15 @@ def run(
     only: Annotated[
         list[str] | None, typer.Option("--only", metavar="STUDENT", autocompletion=submitted_ids)
     ] = None,
-    isolation: Annotated[
-        str,
-        typer.Option(
-            "--isolation",
-            metavar="auto|strict|process",
-            autocompletion=choice_of("auto", "strict", "process"),
-            help="auto: the best level, L2 at least. strict: L3. process: L1, no protection of files.",
-        ),
-    ] = "auto",
+    isolation: Protection = "auto",
     seed: Annotated[
         int | None,
         typer.Option("--seed", min=0, max=LARGEST_SEED, help="Draw hidden inputs as an earlier run did."),
     ] = None,
-    layout: Annotated[
-        str,
-        typer.Option(
-            "--layout",
-            metavar="auto|folders|canvas|moodle|gradescope",
-            autocompletion=choice_of("auto", "folders", "canvas", "moodle", "gradescope"),
-            help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
-        ),
-    ] = "auto",
-    roster: Annotated[
-        Path | None,
-        typer.Option(
-            "--roster",
-            metavar="FILE",
-            help="Who is enrolled: what Canvas, Moodle or Gradescope hand out, or a CSV of your own.",
-        ),
-    ] = None,
-    local_cluster: Annotated[
-        int | None,
-        typer.Option("--local-cluster", metavar="N", min=1, max=256, help="On N Dask workers started here."),
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="On the Dask cluster whose scheduler is there."),
-    ] = None,
+    layout: Layout = "auto",
+    roster: RosterFile = None,
+    local_cluster: LocalCluster = None,
+    scheduler: Scheduler = None,
 ) -> int:
     """Grade a folder of submissions.
 
@@ -123,8 +103,8 @@ def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
     """Who would get another score from the graders as they are now, which a resumed run does not use."""
+    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions, rerun
-    from course.grading.running.run import open_results
 
     if not summary.edited:
         return ()
@@ -198,7 +178,7 @@ def explain(
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
 
     catalog = load_catalog()
     with open_results(out) as results:
@@ -217,14 +197,6 @@ def explain(
     else:
         _show_result(console, catalog, found, history, decisions)
     return 0
-
-
-def levels(isolation: str) -> tuple[str | None, str]:
-    """The level to insist on, if any, and the weakest one to accept."""
-    choices = {"auto": (None, "L2"), "strict": ("L3", "L3"), "process": ("L1", "L1")}
-    if isolation not in choices:
-        raise UsageError(f"--isolation is {isolation!r}.", help="It takes auto, strict or process.")
-    return choices[isolation]
 
 
 class _progress:  # noqa: N801 - used as a function

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
+from pathlib import Path  # noqa: TC003 - typer reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.completion import choice_of, exercise_ids, student_ids
+from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.grade.running import levels
+from course.cli.grade.options import Isolation, Jobs, Out, levels
 from course.errors import UsageError
 from course.grading.gradebook.backup import back_up
 from course.grading.gradebook.book import Gradebook
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["assign", "log", "salvage"]
 
-Out = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")]
 _SHOWN = 200
 
 
@@ -47,16 +46,8 @@ def assign(
     ] = False,
     reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with each result.")] = "",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade, show, and keep nothing.")] = False,
-    jobs: Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")] = 1,
-    isolation: Annotated[
-        str,
-        typer.Option(
-            "--isolation",
-            metavar="auto|strict|process",
-            help="As for `course grade run`.",
-            autocompletion=choice_of("auto", "strict", "process"),
-        ),
-    ] = "auto",
+    jobs: Jobs = 1,
+    isolation: Isolation = "auto",
 ) -> int:
     """Say whose file it is, and grade it.
 
@@ -64,10 +55,9 @@ def assign(
     defines, and the match that is proposed. Nothing is renamed; who decided, when and why is kept.
     """
     from course.cli.grade.replies import GradeAssign
-    from course.grading.running.assign import assign as take
-    from course.grading.running.assign import named, proposals, unsettled
+    from course.grading.running import assign as assigning
     from course.grading.running.batch import grade_all
-    from course.grading.running.run import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if (student is None) != (file is None) or (student is not None and accept_names):
         raise UsageError(
@@ -78,33 +68,27 @@ def assign(
     done: list[Assigned] = []
     if student is None and not accept_names:
         with open_results(out) as results:
-            left = unsettled(results)
+            left = assigning.unsettled(results)
     else:
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")
-        opened = previewed(out) if dry_run else open_results(out, writing=True)
-        with opened as results:
+        grade = partial(grade_all, graders=jobs)
+        with previewed(out) if dry_run else open_results(out, writing=True) as results:
             if student is not None and file is not None:
-                wanted = [named(results, student, file, exercise)]
+                wanted = [assigning.named(results, student, file, exercise)]
             else:
-                wanted = [one for one in proposals(results) if exercise in {None, one.exercise}]
-            grade = partial(grade_all, graders=jobs)
+                wanted = [one for one in assigning.proposals(results) if exercise in {None, one.exercise}]
             with console.working("Grading"):
-                done = take(
+                done = assigning.assign(
                     results, load_catalog(), wanted, reason, grade=grade, level=level, at_least=at_least
                 )
-            left = unsettled(results)
+            left = assigning.unsettled(results)
     if console.json:
-        console.emit(
-            GradeAssign(
-                dry_run=dry_run,
-                assigned=tuple(map(_assigned_one, done)),
-                unsettled=tuple(_unsettled_one(item) for item in left),
-            )
-        )
-        return 0
-    _show_assigned(console, done, dry_run=dry_run)
-    _show_unsettled(console, left)
+        shown = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
+        console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1]))
+    else:
+        _show_assigned(console, done, dry_run=dry_run)
+        _show_unsettled(console, left)
     return 0
 
 
@@ -165,7 +149,7 @@ def log(
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog
-    from course.grading.running.run import open_results
+    from course.grading.running.folder import open_results
 
     console = current()
     with open_results(out) as results:
@@ -204,7 +188,7 @@ def salvage(
     when nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.run import export_all
+    from course.grading.running.folder import export_all
     from course.isolation.launch import private_folder, remove_tree
 
     console = current()

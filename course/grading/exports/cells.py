@@ -6,6 +6,7 @@ import contextlib
 import csv
 import io
 import os
+import re
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError, UsageError
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import IO
 
-__all__ = ["csv_bytes", "is_safe", "number", "replacing", "safe_cell", "write_bytes"]
+__all__ = ["csv_bytes", "for_moodle", "is_safe", "number", "replacing", "safe_cell", "write_bytes"]
 
 #: A spreadsheet takes a cell that begins with one of these for a formula; with a full-width one in some
 #: languages. The apostrophe that disarms them is itself doubled, so that no two texts become one.
@@ -37,6 +38,11 @@ def is_safe(text: str) -> bool:
     return safe_cell(text) == text
 
 
+def for_moodle(text: str) -> str:
+    """A cell that Moodle reads as it is: to PHP, a quote behind a backslash does not end a cell."""
+    return re.sub(r'\\(?="|\Z)', r"\\ ", text)
+
+
 def number(value: float | None) -> str:
     """Points, to a ten-thousandth and without zeros at the end; empty for None."""
     if value is None:
@@ -45,13 +51,17 @@ def number(value: float | None) -> str:
     return "0" if text == "-0" else text
 
 
-def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> bytes:
-    """A table with every cell quoted and safe; the mark in front makes Excel read UTF-8."""
+def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]], *, mark: bool = True) -> bytes:
+    """A table with every cell quoted and safe.
+
+    Args:
+        mark: put a byte order mark in front, which makes Excel read UTF-8; not every program knows it.
+    """
     text = io.StringIO(newline="")
     writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     writer.writerow([safe_cell(cell) for cell in headings])
     writer.writerows([safe_cell(cell) for cell in row] for row in rows)
-    return b"\xef\xbb\xbf" + text.getvalue().encode("utf-8")
+    return b"\xef\xbb\xbf" * mark + text.getvalue().encode("utf-8")
 
 
 def write_bytes(path: Path, content: bytes) -> None:

@@ -18,7 +18,7 @@ from course.catalog.load import Catalog
 from course.errors import CourseError
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.gradescope import results_body
-from course.grading.gradebook.book import Key, Result
+from course.grading.gradebook.records import Key, Result
 from course.grading.intake.downloads import Place, Student
 from course.grading.intake.students import read_student
 from course.grading.results.effective import Effective

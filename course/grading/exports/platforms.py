@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.grading.exports.cells import csv_bytes, is_safe, number, write_bytes
+from course.grading.exports.cells import csv_bytes, for_moodle, is_safe, number, write_bytes
 from course.grading.exports.selection import ExportOptions, Selection, Written, check_zeros, select
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
         rows.append(
             [person.name or student, person.canvas_id, person.sis_user_id, "", person.section, *scores]
         )
-    write_bytes(path, csv_bytes(headings, rows))
+    # Ruby's reader of CSV, which is Canvas', takes a quote behind a mark for a fault.
+    write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)
     return selection.written
 
@@ -81,7 +82,7 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
     rows = []
     for student, scores in _table(selection).items():
         person = selection.people[student]
-        rows.append([person.moodle_key, person.name, *scores])
+        rows.append([person.moodle_key, for_moodle(person.name), *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
     selection.written.notes.append("In Moodle, map the column moodle_key to what your roster has in it.")
@@ -89,7 +90,8 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
 
 
 def _has_moodle_key(person: Person) -> bool:
-    return bool(person.moodle_key) and is_safe(person.moodle_key)
+    key = person.moodle_key
+    return bool(key) and is_safe(key) and for_moodle(key) == key
 
 
 def _table(selection: Selection) -> dict[str, list[str]]:

@@ -17,7 +17,7 @@ import math
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.grading.exports.cells import number, safe_cell, write_bytes
+from course.grading.exports.cells import for_moodle, number, safe_cell, write_bytes
 from course.grading.exports.handout import problem_for_student
 from course.grading.exports.selection import ExportOptions, Written, check_zeros, select
 from course.grading.results.roster import moodle_key, read_text
@@ -133,7 +133,7 @@ def _feedback(effective: Effective) -> str:
     elif verdict.checks:
         passed = sum(check.status.value == "pass" for check in verdict.checks)
         told.append(f"{passed} of {len(verdict.checks)} checks pass.")
-    return safe_cell(" ".join(part for part in told if part))
+    return for_moodle(safe_cell(" ".join(part for part in told if part)))
 
 
 def _wrong(path: Path, why: str) -> UsageError:

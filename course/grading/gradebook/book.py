@@ -23,7 +23,6 @@ import msgspec
 
 from course.errors import CourseError, IntegrityError
 from course.grading.gradebook.file import (
-    FORMAT_VERSION,
     SEAL,
     begin_writing,
     create,
@@ -50,16 +49,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-__all__ = [
-    "FORMAT_VERSION",
-    "FromDownload",
-    "Gradebook",
-    "GradedExercise",
-    "Key",
-    "Override",
-    "Result",
-    "SubmittedAt",
-]
+__all__ = ["Gradebook"]
 
 _CHECKPOINT_S = 5.0  # what a power cut costs at most
 
@@ -217,17 +207,13 @@ class Gradebook:
         newest = self._db.execute(f"SELECT ifnull(max(number), 0) FROM {table}").fetchone()
         return int(newest[0]) + 1
 
-    def has(self, key: Key) -> bool:
-        """Whether this very submission was graded by this very grader, other than by a fault of ours."""
-        return self._find(key) is not None
-
     def confirm(self, key: Key) -> bool:
         """Whether this very submission was graded; if so, make that the newest result of its student again.
 
         A student who hands in an earlier version again is to get its score, and not the later one's. Other
         graders than the key's do as well: nobody is graded anew by the way.
         """
-        number = self._find(key, by_any=True)
+        number = self._find(key)
         if number is None:
             return False
         with explained(self.path):
@@ -245,13 +231,12 @@ class Gradebook:
                 )
         return True
 
-    def _find(self, key: Key, *, by_any: bool = False) -> int | None:
+    def _find(self, key: Key) -> int | None:
         with explained(self.path):
             row = self._db.execute(
-                "SELECT number, verdict FROM results WHERE student = ?1 AND exercise = ?2"
-                " AND submission_sha256 = ?3 AND (?6 OR grader_version = ?4) AND seed = ?5"
-                " ORDER BY number DESC LIMIT 1",
-                (*asdict(key).values(), by_any),
+                "SELECT number, verdict FROM results WHERE student = ? AND exercise = ?"
+                " AND submission_sha256 = ? AND seed = ? ORDER BY number DESC LIMIT 1",
+                (key.student, key.exercise, key.submission_sha256, key.seed),
             ).fetchone()
         if row is None or msgspec.json.decode(row[1], type=_State).state == "grader_error":
             return None

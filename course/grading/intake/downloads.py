@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from course import extras
 from course.errors import NotFoundError, UsageError
-from course.grading.gradebook.book import FromDownload
+from course.grading.gradebook.records import FromDownload
 from course.grading.intake.names import is_meant
 
 if TYPE_CHECKING:

@@ -22,8 +22,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from course.errors import UngradableError
-from course.grading.gradebook.book import SubmittedAt
+from course.errors import InternalError, UngradableError
+from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import MAX_FILE, Held, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.reading import reader
@@ -93,8 +93,29 @@ def read_class(folder: Path, exercises: Sequence[Exercise], *, required: bool) -
         yield from read_student(student, exercises, required=required)
 
 
-def read_student(student: Student, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:
-    """The entries of one student, one per exercise."""
+def read_student(student: Student, exercises: Sequence[Exercise], *, required: bool) -> list[Entry]:
+    """The entries of one student, one per exercise; whatever happens in it ends nobody else's grading.
+
+    Raises:
+        InternalError: nothing at all can be read.
+    """
+    try:
+        return list(_entries(student, exercises, required=required))
+    except InternalError:
+        raise
+    except Exception as error:  # noqa: BLE001 - what nobody thought of is named, and the class goes on
+        problem = _unforeseen(error)
+        return [Entry(student.name, exercise, problem=problem) for exercise in exercises]
+
+
+def _unforeseen(error: Exception) -> Problem:
+    # Students read this too: of the system's errors only the reason, which has no path in it.
+    reason = (error.strerror if isinstance(error, OSError) else str(error)) or "no reason was given"
+    message = f"It cannot be read: {type(error).__name__}, {one_line(reason, _LONGEST)}."
+    return Problem("unreadable", message, "Look at it; `course grade assign` takes any file by its path.")
+
+
+def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:
     name, place = student.name, student.place
     try:
         if place.files is None and place.root.is_symlink():
@@ -115,6 +136,9 @@ def read_student(student: Student, exercises: Sequence[Exercise], *, required: b
             taken.append((exercise, _find(place, archives, exercise)))
         except RefusedError as refused:
             taken.append((exercise, refused))
+        except (OSError, ValueError) as error:
+            problem = _unforeseen(error)
+            taken.append((exercise, RefusedError(problem.code, problem.message, problem.help)))
     used = {at for _, item in taken if isinstance(item, _Taken) for at in item.used}
     left = survey(place, used, exercises)
     for exercise, item in taken:
@@ -174,6 +198,7 @@ def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -
 
 
 _PERMISSIONS = "Check the permissions of the file and of the folders above it."
+_LONGEST = 200
 
 
 #: Problems that a file under another name, or a choice between files, would settle.

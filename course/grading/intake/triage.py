@@ -44,7 +44,7 @@ class Candidate(msgspec.Struct, frozen=True):
 
     Attributes:
         name: where it is, from the student's folder; what lies in an archive follows the archive's name.
-        path: of the file, or of the archive it lies in.
+        path: of the file, or of the archive it lies in, as the system has it: not every name is text.
         member: in the archive; empty for a file.
         sha256: digest of its content.
         defines: names of the functions in it; of one exercise's tasks, where it is listed for an exercise.
@@ -52,7 +52,7 @@ class Candidate(msgspec.Struct, frozen=True):
     """
 
     name: str
-    path: str
+    path: bytes
     member: str = ""
     sha256: str = ""
     defines: tuple[str, ...] = ()
@@ -135,11 +135,11 @@ def _outlined(
     try:
         outlines = reader.outlines(path, skip, functions)
     except RefusedError:
-        yield Candidate(shown, os.fspath(path))
+        yield Candidate(shown, os.fsencode(path))
         return
     for member, sha256, defines in outlines:
         inner = f"{shown}/{one_line(member)}" if member else shown
-        yield Candidate(inner, os.fspath(path), member, sha256, defines)
+        yield Candidate(inner, os.fsencode(path), member, sha256, defines)
 
 
 def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: bool) -> tuple[Candidate, ...]:

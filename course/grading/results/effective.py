@@ -16,7 +16,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 from course.catalog.models import CourseRef
-from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.results.late import Policy, lateness, parse_policy
 from course.grading.results.roster import Person, Roster
 from course.scoring.verdict import Problem, Verdict

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from course.errors import NotFoundError, UsageError
-from course.grading.gradebook.book import Override
+from course.grading.gradebook.records import Override
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:

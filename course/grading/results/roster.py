@@ -4,7 +4,8 @@ A roster is a CSV file with a heading row, one of four kinds, told by its headin
 
     our own             student (the name of the folder a student's work is graded from), and as far as they
                         are needed name, email, canvas_id, sis_user_id, section, moodle_key, extension_days
-    Canvas' gradebook   Student, ID, SIS User ID, SIS Login ID, Section, then its assignments
+    Canvas' gradebook   Student, or LastName and FirstName; ID, SIS User ID, SIS Login ID, Section, then its
+                        assignments; semicolons may part its cells
     Moodle's worksheet  Identifier, Full name, Email address, ... as "Download grading worksheet" gives it;
                         names and addresses are not in it where Moodle grades anonymously
     Gradescope's        First Name and Last Name, or Name; SID, Email, and Role if there is one
@@ -32,7 +33,7 @@ from course.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from course.grading.gradebook.book import FromDownload
+    from course.grading.gradebook.records import FromDownload
 
 __all__ = ["COLUMNS", "Person", "Roster", "moodle_key", "read_roster", "read_text"]
 
@@ -147,7 +148,10 @@ def read_roster(path: Path) -> Roster:
     Raises:
         UsageError: it cannot be read or is no roster; the message names the row.
     """
-    reader = csv.DictReader(io.StringIO(read_text(path), newline=""), strict=True)
+    text = read_text(path)
+    first = text.partition("\n")[0]
+    delimiter = ";" if first.count(";") > first.count(",") else ","
+    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     try:
         headings = [str(name).strip() for name in reader.fieldnames or ()]
         reader.fieldnames = headings
@@ -186,7 +190,7 @@ def _kind(path: Path, headings: list[str]) -> Kind:
     found = set(headings)
     if {"Identifier", "Full name"} <= found or {"Identifier", "Grade"} <= found:
         return _from_moodle
-    if {"Student", "ID"} <= found:
+    if {"Student", "ID"} <= found or {"LastName", "FirstName", "ID"} <= found:
         return _from_canvas
     if {"First Name", "Last Name", "Email"} <= found or {"Name", "Email"} <= found:
         return _from_gradescope
@@ -230,7 +234,8 @@ def _from_ours(path: Path, line: int, row: dict[str, str]) -> Person:
 def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
     """A row of Canvas' gradebook; below its headings it has rows about columns, and a student for tests."""
     cells = {name: text.strip() for name, text in row.items()}
-    name, key = cells["Student"], cells["ID"]
+    name = cells.get("Student") or ", ".join(filter(None, (cells.get("LastName"), cells.get("FirstName"))))
+    key = cells["ID"]
     if not key:
         return None  # "Points Possible", "Manual Posting"
     if not re.fullmatch(r"[0-9]{1,20}", key):

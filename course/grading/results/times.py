@@ -8,7 +8,7 @@ import io
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.grading.gradebook.book import SubmittedAt
+from course.grading.gradebook.records import SubmittedAt
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -20,7 +20,7 @@ from course.grading.intake.students import Entry, submission_from
 from course.grading.intake.triage import Found
 from course.grading.results.effective import Results
 from course.grading.running.batch import grade_all
-from course.grading.running.snapshot import Snapshot, frozen
+from course.grading.running.snapshot import Snapshot, frozen, kept
 from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.grading.results.effective import Effective
+    from course.grading.running.batch import Graded
     from course.grading.running.run import GradeAll
+    from course.grading.running.snapshot import Frozen
 
 __all__ = ["Assigned", "Assignment", "Unsettled", "assign", "named", "proposals", "unsettled"]
 
@@ -83,7 +85,9 @@ def unsettled(results: Results) -> list[Unsettled]:
 def proposals(results: Results) -> list[Assignment]:
     """The matches that are proposed, one for each that has one."""
     return [
-        Assignment(item.student, item.exercise, one.name, Path(one.path), one.member, item.found.times)
+        Assignment(
+            item.student, item.exercise, one.name, Path(os.fsdecode(one.path)), one.member, item.found.times
+        )
         for item in unsettled(results)
         for one in item.found.candidates
         if one.proposed
@@ -134,7 +138,9 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
             times = item.found.times
             for one in item.found.candidates:
                 if one.name == file:
-                    return Assignment(student, exercise, one.name, Path(one.path), one.member, times)
+                    return Assignment(
+                        student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times
+                    )
     return Assignment(student, exercise, file, *_on_disk(file), times)
 
 
@@ -182,47 +188,49 @@ def assign(
             code="no_reason",
         )
     book, options = results.book, results.book.run_options()
-    kept = book.snapshot(options.get("snapshot", ""))
-    snapshot = Snapshot.of(kept, options["snapshot"]) if kept else Snapshot.take(catalog.content)
+    snapshot = kept(book, options.get("snapshot")) or Snapshot.take(catalog.content)
     timeout = float(options.get("timeout", 10.0))
     done: list[Assigned] = []
     with frozen(snapshot) as graders:
-        entries = {}
-        for one in assignments:
-            exercise = graders.catalog.exercise(one.exercise)
-            try:
-                submission = submission_from(exercise, one.path, one.member)
-            except RefusedError as refused:
-                problem = refused.problem
-                raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
-            entries[one.student, one.exercise] = (one, Entry(one.student, exercise, submission))
+        entries = {(one.student, one.exercise): (one, _entry(one, graders)) for one in assignments}
         terms = Terms(level, at_least, timeout, results.seed, snapshot.sha256)
         for graded in list(grade([entry for _, entry in entries.values()], terms)):
             if not done:
                 book.keep_snapshot(snapshot.sha256, snapshot.packed)
                 facts = {"level": level, "at_least": at_least, "snapshot": snapshot.sha256}
                 book.begin_run("assign", {**options, **facts})
-            one, entry = entries[graded.entry.student, graded.entry.exercise.id]
-            before = next(results.all(one.student, one.exercise), None)
-            note = f"Graded from {one.name}, assigned by the instructor: {reason}"
-            verdict = graded.verdict
-            verdict = msgspec.structs.replace(verdict, warnings=(*verdict.warnings, note))
+            one, _ = entries[graded.entry.student, graded.entry.exercise.id]
             version = graded.version or graders.version(one.exercise)
-            key = Key(one.student, one.exercise, entry.sha256, version, results.seed)
-            assert entry.submission is not None
-            book.add(Result(key, verdict), dict(entry.submission.files))
-            book.add_times(
-                SubmittedAt(one.student, one.exercise, entry.sha256, source, at) for source, at in one.times
-            )
-            after = next(Results(book).all(one.student, one.exercise))
-            book.note(
-                Decision(
-                    "", "", "assign", one.student, one.exercise, reason, _told(before), _told(after, one.name)
-                )
-            )
-            book.set_found(one.student, one.exercise, None)
-            done.append(Assigned(one, before, after))
+            done.append(_recorded(results, one, graded, version, reason))
     return done
+
+
+def _entry(one: Assignment, graders: Frozen) -> Entry:
+    exercise = graders.catalog.exercise(one.exercise)
+    try:
+        return Entry(one.student, exercise, submission_from(exercise, one.path, one.member))
+    except RefusedError as refused:
+        problem = refused.problem
+        raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
+
+
+def _recorded(results: Results, one: Assignment, graded: Graded, version: str, reason: str) -> Assigned:
+    """Keep the verdict on a file that was assigned, its times, and the decision."""
+    book, entry = results.book, graded.entry
+    assert entry.submission is not None
+    before = next(results.all(one.student, one.exercise), None)
+    note = f"Graded from {one.name}, assigned by the instructor: {reason}"
+    verdict = msgspec.structs.replace(graded.verdict, warnings=(*graded.verdict.warnings, note))
+    key = Key(one.student, one.exercise, entry.sha256, version, results.seed)
+    book.add(Result(key, verdict), dict(entry.submission.files))
+    book.add_times(
+        SubmittedAt(one.student, one.exercise, entry.sha256, source, at) for source, at in one.times
+    )
+    after = next(Results(book).all(one.student, one.exercise))
+    told = _told(before), _told(after, one.name)
+    book.note(Decision("", "", "assign", one.student, one.exercise, reason, *told))
+    book.set_found(one.student, one.exercise, None)
+    return Assigned(one, before, after)
 
 
 def _told(counts: Effective | None, file: str = "") -> str:

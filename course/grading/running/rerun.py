@@ -14,13 +14,13 @@ import msgspec
 
 from course.catalog.questions import read_questions
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
-from course.grading.gradebook.book import Key, Result
+from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.running.batch import grade_all
 from course.grading.running.run import QUIZ_RECORD, graded_exercises
-from course.grading.running.snapshot import Snapshot, frozen
+from course.grading.running.snapshot import Snapshot, frozen, kept
 from course.quizzing.bank import Bank
 from course.scoring.session import Submission
 from course.scoring.terms import Terms
@@ -166,14 +166,14 @@ def _graders(results: Results, catalog: Catalog, against: str) -> tuple[Snapshot
     wanted = [run for run in runs if str(run.number) == against]
     if not wanted and len(against) >= _LEAST_DIGITS:  # fewer could be the number of a run that is not there
         wanted = [run for run in runs if run.options["snapshot"].startswith(against)]
-    packed = book.snapshot(wanted[-1].options["snapshot"]) if wanted else None
-    if packed is None:
+    snapshot = kept(book, wanted[-1].options["snapshot"]) if wanted else None
+    if snapshot is None:
         raise NotFoundError(
             f"The gradebook has no graders of a run or a snapshot {against!r}.",
             help="`course grade log` lists the runs and their snapshots.",
             code="snapshot_not_found",
         )
-    return Snapshot.of(packed, wanted[-1].options["snapshot"]), wanted[-1].options
+    return snapshot, wanted[-1].options
 
 
 class _Rerun:

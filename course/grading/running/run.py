@@ -4,32 +4,28 @@ from __future__ import annotations
 
 import contextlib
 import secrets
-import shutil
 import time
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import msgspec
 
 from course.catalog.questions import read_questions
 from course.errors import ContentError, MissingCapabilityError, UngradableError, UsageError
-from course.grading.exports.html_report.write import write_pages
-from course.grading.exports.lines import write_csv, write_jsonl
 from course.grading.gradebook.backup import back_up
-from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Result, SubmittedAt
+from course.grading.gradebook.records import GradedExercise, Key, Result, SubmittedAt
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, read_quiz, read_student, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Results
-from course.grading.results.journal import recorded
 from course.grading.running.batch import grade_all
-from course.grading.running.snapshot import Snapshot, frozen
-from course.isolation.launch import private_folder, remove_tree
+from course.grading.running.folder import BOOK, begin, export_all, remember, taken_back
+from course.grading.running.snapshot import Snapshot, frozen, kept
+from course.grading.running.summary import Summary
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
-from course.scoring.failures import OURS
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version
 
@@ -39,6 +35,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.grading.gradebook.book import Gradebook
     from course.grading.intake.downloads import ClassList, Student
     from course.grading.results.effective import Effective
     from course.grading.results.roster import Roster
@@ -51,15 +48,9 @@ if TYPE_CHECKING:
 __all__ = [
     "QUIZ_RECORD",
     "RunOptions",
-    "Summary",
-    "Trouble",
     "edited_since",
-    "export_all",
     "grade_class",
     "graded_exercises",
-    "open_results",
-    "previewed",
-    "remember",
 ]
 
 #: What a quiz record is called among the submissions in a gradebook.
@@ -88,83 +79,6 @@ class RunOptions:
     resume: bool = False
     layout: str = "auto"
     roster: Roster | None = None
-
-
-class Trouble(msgspec.Struct, frozen=True):
-    """One submission without a grade."""
-
-    student: str
-    exercise: str
-    state: str
-    code: str
-    message: str
-
-
-@dataclass
-class Summary:
-    """What a run came to.
-
-    Attributes:
-        states: number of results by state.
-        troubled: the results without a grade.
-        not_submitted: pairs without a file, which count for nothing.
-        already: results that an earlier run had.
-        missing: who is enrolled and handed in nothing at all; empty without a roster.
-        strangers: who handed in something and has no row of their own in the roster.
-        unrecognised: what in the class folder belongs to nobody, one sentence each.
-        unjudged: how often a check broke on what a submission returned: (exercise, check, where).
-        graders: digest of the snapshot that judged.
-        unsettled: how many have files that may be meant for what could not be graded.
-        edited: what was scored by other graders than there are now: a run that is resumed keeps its own.
-        elapsed_s: wall seconds.
-        write_s: of these, spent on writing the gradebook.
-    """
-
-    states: Counter[str] = field(default_factory=Counter)
-    passed: int = 0
-    troubled: list[Trouble] = field(default_factory=list)
-    not_submitted: int = 0
-    missing: list[str] = field(default_factory=list)
-    strangers: list[str] = field(default_factory=list)
-    already: int = 0
-    levels: Counter[str] = field(default_factory=Counter)
-    unrecognised: list[str] = field(default_factory=list)
-    unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
-    graders: str = ""
-    unsettled: int = 0
-    edited: list[str] = field(default_factory=list)
-    seed: int = 0
-    elapsed_s: float = 0.0
-    write_s: float = 0.0
-
-    @property
-    def exit_code(self) -> int:
-        """70 if any fault was ours, 6 if anything could not be graded, else 0 whatever the scores."""
-        if self.states["grader_error"]:
-            return 70
-        return 6 if self.states["ungradable"] or self.unrecognised else 0
-
-    def count(self, results: Results) -> None:
-        """Take in everything a gradebook has."""
-        self.missing = results.absent()
-        self.strangers = results.unmatched(results.students())
-        for effective in results.all():
-            verdict = effective.verdict
-            if effective.missing:
-                continue
-            settled = effective.override is not None  # by hand, whatever the graders could make of it
-            self.states["graded" if settled else verdict.state] += 1
-            self.passed += effective.passed
-            if verdict.isolation:
-                self.levels[verdict.isolation] += 1
-            for check in verdict.checks:
-                if (check.traceback or "").startswith(OURS):
-                    self.unjudged[effective.exercise, check.id, str(check.traceback)] += 1
-            if verdict.error is not None and not settled:
-                error = verdict.error
-                self.troubled.append(
-                    Trouble(effective.student, effective.exercise, verdict.state, error.code, error.message)
-                )
 
 
 def grade_class(
@@ -198,8 +112,8 @@ def grade_class(
     members = _members(folder, options)
     started = time.monotonic()
     with (
-        _taken_back(out) as taken,
-        _open(out, folder, options) as book,
+        taken_back(out) as taken,
+        begin(out, folder, resume=options.resume) as book,
         frozen(_begun_with(book, options) or Snapshot.take(catalog.content)) as graders,
     ):
         run = _Run(members.students, graders, folder, options, book)
@@ -217,16 +131,14 @@ def grade_class(
             summary.edited = edited_since(results, catalog)
         export_all(out, results)
         summary.write_s = book.write_s
-    back_up(out / "gradebook.sqlite")
+    back_up(out / BOOK)
     summary.elapsed_s = time.monotonic() - started
     return summary
 
 
 def _begun_with(book: Gradebook, options: RunOptions) -> Snapshot | None:
     """The graders of the run that is to be resumed; None for a new one, and for one of an older format."""
-    sha256 = book.run_options().get("snapshot") if options.resume else None
-    packed = book.snapshot(sha256) if sha256 else None
-    return Snapshot.of(packed, sha256) if sha256 and packed else None
+    return kept(book, book.run_options().get("snapshot")) if options.resume else None
 
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
@@ -418,69 +330,6 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
     return noted
 
 
-def export_all(out: Path, results: Results) -> None:
-    """The files that lie beside a gradebook after every run.
-
-    Raises:
-        MissingCapabilityError: one cannot be written; the gradebook has everything nevertheless.
-    """
-    try:
-        write_jsonl(out / "results.jsonl", results.all(), results.course)
-        write_csv(out / "grades.csv", results)
-        write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
-    except MissingCapabilityError as error:
-        raise MissingCapabilityError(
-            error.message,
-            help="The gradebook is complete. Make room, then give the same command again (a run with"
-            " --resume): only this is missing. `course grade export` writes it elsewhere.",
-            code=error.code,
-        ) from None
-
-
-@contextlib.contextmanager
-def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
-    """The results in the folder of a grading run.
-
-    Args:
-        writing: hold the gradebook; at the end write what lies beside it anew, and a backup.
-    """
-    with Gradebook(out / "gradebook.sqlite", writing=writing) as book:
-        yield Results(book)
-        if writing:
-            export_all(out, Results(book))
-    if writing:
-        back_up(out / "gradebook.sqlite")
-
-
-@contextlib.contextmanager
-def previewed(out: Path) -> Iterator[Results]:
-    """The results of a run to try a change on: a copy of the gradebook, which is thrown away.
-
-    What a change would do is found by doing it, so a preview cannot differ from it.
-    """
-    path = out / "gradebook.sqlite"
-    Gradebook(path).close()  # it is whole, nobody is writing it, and it is one file now
-    folder = private_folder()
-    try:
-        shutil.copyfile(path, folder / path.name)
-        with Gradebook(folder / path.name, writing=True) as book:
-            yield Results(book)
-    finally:
-        remove_tree(folder)
-
-
-def remember(book: Gradebook, roster: Roster) -> None:
-    """Keep who is enrolled; if somebody's score changes by it (extensions do that), that is written down."""
-    text, before = roster.dump(), book.meta().get("roster")
-    if text == before:
-        return
-    if before is None and not book.exercise_ids():
-        book.set_meta(roster=text)
-        return
-    with recorded(book, "roster", "another roster"):
-        book.set_meta(roster=text)
-
-
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
     if not wanted:
         return catalog.exercises()
@@ -500,66 +349,6 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
         found.students = [student for student in found.students if student.name in options.only]
         found.unrecognised = []
     return found
-
-
-@dataclass
-class _Taken:
-    """A name for the results that is taken. ``graded``: whether any grader could work."""
-
-    graded: bool = False
-
-
-@contextlib.contextmanager
-def _taken_back(out: Path) -> Iterator[_Taken]:
-    """Give the name of a new folder back if the run is refused before anything was graded in it.
-
-    The next command is the same one, corrected, and must not find its own folder in the way.
-    """
-    new, taken = not out.exists(), _Taken()
-    try:
-        yield taken
-    except BaseException:
-        if new and not taken.graded and out.is_dir():
-            for item in out.iterdir():
-                item.unlink()
-            out.rmdir()
-        raise
-
-
-def _open(out: Path, folder: Path, options: RunOptions) -> Gradebook:
-    if out.resolve().is_relative_to(folder.resolve()):
-        raise UsageError(
-            f"--out {out} lies among the submissions.",
-            help="Name a folder elsewhere.",
-            code="out_inside_submissions",
-        )
-    path = out / "gradebook.sqlite"
-    if options.resume and path.exists():
-        return Gradebook(path, writing=True)
-    try:
-        out.mkdir(parents=True)
-    except FileExistsError:
-        # Killed before its gradebook was made, a run leaves the folder and perhaps the draft.
-        begun = (
-            options.resume
-            and out.is_dir()
-            and all(item.name.startswith("gradebook.new") for item in out.iterdir())
-        )
-        if not begun:
-            raise UsageError(
-                f"{out} exists already; nothing was touched.",
-                help="Name a new folder, or add --resume to finish the run that is there.",
-                code="out_exists",
-            ) from None
-        for draft in out.iterdir():
-            draft.unlink(missing_ok=True)
-    except OSError as error:
-        raise MissingCapabilityError(
-            f"{out} cannot be made: {error.strerror}.",
-            help="Name a folder that can be written.",
-            code="read_only",
-        ) from None
-    return Gradebook(path, create=True, writing=True)
 
 
 def _seed(book: Gradebook, options: RunOptions) -> int:

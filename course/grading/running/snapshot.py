@@ -30,7 +30,9 @@ from course.scoring.version import grader_version
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Frozen", "Snapshot", "frozen", "in_use"]
+    from course.grading.gradebook.book import Gradebook
+
+__all__ = ["Frozen", "Snapshot", "frozen", "in_use", "kept"]
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 #: Of this package, what a grader process imports, and what checks may.
@@ -87,6 +89,16 @@ class Snapshot:
         if digest.hexdigest() != sha256:
             raise _damaged(sha256)
         return cls(sha256, packed)
+
+
+def kept(book: Gradebook, sha256: str | None) -> Snapshot | None:
+    """The snapshot of that digest in a gradebook; None where it has none.
+
+    Raises:
+        IntegrityError: it is damaged.
+    """
+    packed = book.snapshot(sha256) if sha256 else None
+    return Snapshot.of(packed, sha256) if packed and sha256 else None
 
 
 def _files(content: Content) -> Iterator[tuple[str, Path]]:

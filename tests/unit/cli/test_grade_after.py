@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from course.grading.gradebook.book import FromDownload, Gradebook, SubmittedAt
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import FromDownload, SubmittedAt
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 

@@ -1,10 +1,11 @@
-"""Gradebooks made by hand, for tests of what is made from them; and graders that die young."""
+"""Gradebooks made by hand, for tests of what is made from them; PHP's CSV; graders that die young."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.grading.gradebook.book import Gradebook, GradedExercise, Key, Result
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.scoring.session import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
@@ -22,7 +23,7 @@ HOSTILE = [
     "=cmd|' /C calc'!A0", "+1", "-1", "@x", "\tx", "\r\nx", 'a"b', "a,b", "a;b", "a\nb", "é漢字",
     "\x1b[31mred", "'=1+1", "=1+1", "<script>alert(1)</script>", "]]>&amp;", "../../up", "Ada\u202eevoL",
     "\u00a0", "\uff1d1", "O'Neil", "a\x00b", "\ufffe\uffff", "x" * 300,
-    "\U0001f680 Ada", "\U0001f469\u200d\U0001f680", "\u05d0\u05d3\u05d4",
+    'a\\"b', "a\\", "\U0001f680 Ada", "\U0001f469\u200d\U0001f680", "\u05d0\u05d3\u05d4",
 ]  # fmt: skip
 
 
@@ -103,6 +104,33 @@ def make_book(path: Path, verdicts: dict[str, Verdict], *, writing: bool = True)
     for student, found in verdicts.items():
         book.add(Result(key(student), found), {"doubling.py": student.encode()})
     return book
+
+
+def read_by_php(text: str) -> list[list[str]]:
+    """Rows of a CSV file as PHP gives them with a backslash as its escape, which is how Moodle calls it.
+
+    Source: moodle/lib/csvlib.class.php, ``load_csv_content``; php-src/ext/standard/file.c, ``php_fgetcsv``.
+    """
+    rows, row, cell, state = [], [], "", "start"
+    for sign in text.replace("\r\n", "\n") + "\n":
+        if state == "start" and sign == '"':
+            state = "quoted"
+        elif state == "escaped":
+            cell, state = cell + sign, "quoted"
+        elif state == "quoted":
+            state = {"\\": "escaped", '"': "closed"}.get(sign, state)
+            cell += sign * (sign != '"')
+        elif state == "closed" and sign == '"':
+            cell, state = cell + sign, "quoted"
+        elif sign in ",\n":
+            row.append(cell)
+            cell, state = "", "start"
+            if sign == "\n":
+                rows.append(row)
+                row = []
+        else:
+            cell, state = cell + sign, "plain"
+    return [row for row in rows if row != [""]]
 
 
 def stillborn(

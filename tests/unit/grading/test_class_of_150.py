@@ -1,7 +1,8 @@
 """A class of 150 as each platform hands it out: nobody refused, everybody enrolled in one row, all settled.
 
 Of the 150, 9 handed in nothing, 12 handed in under another name or in another folder (of which 5 are taken
-without a question), 2 typed text in place of a file, and 2 are anonymous. Graders are stood in for.
+without a question), 2 typed text in place of a file, and 2 are anonymous. In the ordinary run graders are
+stood in for; the soak run grades with real ones.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import io
 import json
 import zipfile
 from collections import Counter
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -18,9 +20,11 @@ import pytest
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.results.roster import read_roster
-from course.grading.running import run
+from course.grading.running import folder
 from course.grading.running.assign import assign, proposals, unsettled
-from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.batch import grade_all
+from course.grading.running.folder import open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from tests.unit.grading.test_roster import rows
 from tests.unit.grading.test_run import right
@@ -29,8 +33,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.catalog.load import Catalog
+    from course.grading.running.run import GradeAll
 
+#: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has both wrong.
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
+WRONG = b"\ndef double(x):\n    return x\n"
 EVERYBODY = range(1, 151)
 NOTHING, TEXT, ANONYMOUS = range(1, 10), (20, 21), (30, 31)
 NAMES = ("Ada Lovelace", "Bob O'Neil", "Zoë Müller", "Grace Hopper", "李 明")
@@ -79,7 +86,17 @@ def put(path: Path, content: bytes) -> None:
 
 
 def handed_in(number: int) -> tuple[str, bytes]:
-    return ODD.get(number, ("doubling.py", SOURCE))
+    mistake = b"" if number % 3 else WRONG
+    return ODD.get(number, ("doubling.py", SOURCE + mistake + b"# %d\n" % number))
+
+
+def points(number: int) -> str:
+    """What a student is due, as ``grades.csv`` writes it."""
+    if number in NOTHING:
+        return ""
+    if number in TEXT:
+        return "0"
+    return "4" if number in ODD or number % 3 else "0"
 
 
 def lay_folders(folder: Path) -> list[list[str]]:
@@ -148,11 +165,10 @@ LAYOUTS = {
 UNKNOWN = {"canvas": len(ANONYMOUS)}
 
 
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
-    tmp_path: Path, catalog: Catalog, layout: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(run, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
+def graded_and_settled(
+    tmp_path: Path, catalog: Catalog, layout: str, grade: GradeAll
+) -> dict[str, dict[str, str]]:
+    """Grade a class of that layout, settle the rest, export it; rows of ``grades.csv`` by student."""
     if layout == "gradescope":
         pytest.importorskip("yaml")
     table = LAYOUTS[layout](tmp_path / "class")
@@ -163,14 +179,14 @@ def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
     assert len(roster.people) == 150
     out, unknown = tmp_path / "out", UNKNOWN.get(layout, 0)
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
-    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=right)
+    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=grade)
     assert summary.unrecognised == []
     assert (len(summary.missing), len(summary.strangers)) == (len(NOTHING) + unknown, unknown)
     assert summary.states == {"graded": 150 - 9 - TO_SETTLE - 2, "ungradable": TO_SETTLE + 2}
     assert Counter(row.code for row in summary.troubled) == {"no_file": TO_SETTLE + 2}
     with open_results(out, writing=True) as results:
         assert len(unsettled(results)) == TO_SETTLE
-        assign(results, catalog, proposals(results), "the only file there is", grade=right)
+        assign(results, catalog, proposals(results), "the only file there is", grade=grade)
         assert unsettled(results) == []
     found = rows(out / "grades.csv")
     assert len(found) == 150 + unknown
@@ -188,3 +204,26 @@ def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
         given = {"canvas": 150, "gradescope": 141, "moodle-worksheet": 141}[platform]
         assert written.rows == given + (0 if platform != "gradescope" else 9)
         assert written.unmatched == sorted(summary.strangers)
+    return found
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
+    tmp_path: Path, catalog: Catalog, layout: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(folder, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
+    graded_and_settled(tmp_path, catalog, layout, right)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_real_graders_give_everybody_the_points_of_their_own_file(
+    tmp_path: Path, catalog: Catalog, layout: str
+) -> None:
+    found = graded_and_settled(tmp_path, catalog, layout, partial(grade_all, graders=2))
+    due = {name(number): points(number) for number in EVERYBODY}
+    if layout == "canvas":  # whose the anonymous files are it does not say
+        due |= {name(number): "" for number in ANONYMOUS}
+    assert {row["name"]: row["score"] for row in found.values() if row["name"]} == due
+    nameless = {row["score"] for row in found.values() if not row["name"]}
+    assert nameless == ({points(number) for number in ANONYMOUS} if layout == "canvas" else set())

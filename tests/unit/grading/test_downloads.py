@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook.book import FromDownload
+from course.grading.gradebook.records import FromDownload
 from course.grading.intake.downloads import ClassList, class_list
 from course.grading.intake.students import read_student
 from tests.unit.grading.test_intake import archive

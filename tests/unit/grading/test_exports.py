@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import io
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
@@ -17,10 +18,20 @@ from course.grading.exports.cells import is_safe, number, replacing, safe_cell
 from course.grading.exports.formats import FORMATS, export
 from course.grading.exports.lines import utc
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import Override, SubmittedAt
+from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
-from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, SECRET, digest, make_book
+from tests.unit.grading.made import (
+    BROKEN,
+    HALF,
+    HOSTILE,
+    REFUSED,
+    RIGHT,
+    SECRET,
+    digest,
+    make_book,
+    read_by_php,
+)
 from tests.unit.grading.test_results import POLICY
 
 if TYPE_CHECKING:
@@ -192,6 +203,7 @@ def test_the_schema_refuses_what_jenkins_refuses(
     assert violations(content)
 
 
+#: Source: Gradescope, "Autograder Specifications", "Output format" and below.
 _TOP = {
     "score", "execution_time", "output", "output_format", "visibility", "stdout_visibility", "extra_data",
     "tests",
@@ -201,11 +213,16 @@ _TEST = {
     "extra_data",
 }  # fmt: skip
 _VISIBILITY = {"hidden", "after_due_date", "after_published", "visible"}
+_FORMATS = {"text", "simple_format", "html", "md", "ansi"}
 
 
 def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
     results: Results, tmp_path: Path
 ) -> None:
+    """A score at the top is the total; a test is passed or failed, and shown to students or not.
+
+    Source: Gradescope, "Autograder Specifications", "Controlling Test Case Visibility", "Test case status".
+    """
     folder = write(results, "gradescope", tmp_path)
     index = read_csv(folder / "index.csv")
     assert len(index) == len(HOSTILE) + 3
@@ -214,11 +231,16 @@ def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
         body = json.loads((folder / row["file"]).read_bytes())
         assert body.keys() <= _TOP
         assert body["visibility"] in _VISIBILITY
+        assert body["stdout_visibility"] in _VISIBILITY
+        assert body["output_format"] in _FORMATS
         assert isinstance(body["score"], int | float)
+        assert isinstance(body["execution_time"], int | float)
         for test in body["tests"]:
             assert test.keys() <= _TEST
             assert test["visibility"] in _VISIBILITY
+            assert test["output_format"] in _FORMATS
             assert test["status"] in {"passed", "failed"}
+            assert isinstance(test.get("number", ""), str)
             assert 0 <= test["score"] <= test["max_score"]
             assert all(isinstance(tag, str) for tag in test["tags"])
     by_name = {row["student"]: json.loads((folder / row["file"]).read_bytes()) for row in index}
@@ -229,24 +251,67 @@ def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
     assert [test["visibility"] for test in by_name["late"]["tests"]] == ["visible", "after_due_date"]
 
 
+def taken_by_canvas(content: bytes) -> tuple[dict[str, str], dict[tuple[str, str], dict[str, str]]]:
+    """Points of the assignments by id, and the grades of each student by ID and SIS User ID.
+
+    Source: canvas-lms/lib/gradebook_importer.rb: ``row_has_student_headers?``, ``update_column_count``,
+    ``strip_non_assignment_columns``, ``parse_assignments``, ``check_for_non_student_row``,
+    ``process_student``, ``identify_delimiter``. It reads with Ruby's CSV, to which a quote after anything but
+    a comma is a fault.
+    """
+    text = content.decode("utf-8")
+    assert text.startswith(('"Student"', "Student"))
+    head, *rows = csv.reader(io.StringIO(text, newline=""), strict=True)
+    for line in text.split("\r\n")[:3]:  # by which it tells commas from semicolons
+        assert [len(row) for row in csv.reader([line], strict=True)] == [len(head)]
+    assert "Student" in head[0]
+    assert "ID" in head[1]
+    assert head[2:5] == ["SIS User ID", "SIS Login ID", "Section"]
+    calculated = re.compile("(Current|Final) (Score|Points|Grade)|Override (Score|Grade|Status)")
+    columns = {at: name for at, name in enumerate(head) if at >= 5 and not calculated.search(name)}
+    ids = {at: found[1] for at, name in columns.items() if (found := re.search(r"\(([0-9]+)\)$", name))}
+    assert ids.keys() == columns.keys(), "a title without an id becomes a new assignment"
+    (possible,) = (row for row in rows if "Points Possible" in row[0])
+    students = {}
+    for row in rows:
+        if row is not possible:
+            assert row[1] or row[2], "found by its ID, then by its SIS ids; a name alone may be another's"
+            students[row[1], row[2]] = {ids[at]: row[at].strip() for at in ids}
+    assert all(re.fullmatch(r"[0-9.]*", grade) for grades in students.values() for grade in grades.values())
+    return {ids[at]: possible[at] for at in ids}, students
+
+
 def test_canvas_finds_its_students_and_its_assignment(results: Results, tmp_path: Path) -> None:
-    path = write(results, "canvas", tmp_path)
-    headings, points, *rows = csv.reader(io.StringIO(path.read_text("utf-8-sig"), newline=""), strict=True)
-    assert headings == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Doubling (4711)"]
-    assert points == ["    Points Possible", "", "", "", "", "10"]
-    by_id = {row[1]: row for row in rows}
-    assert len(by_id) == len(HOSTILE) + 3
-    assert by_id[str(100 + len(HOSTILE))][5] == "8"
-    assert by_id[str(100 + len(HOSTILE) + 1)][5] == "8.25"
-    assert by_id[str(100 + len(HOSTILE) + 2)][5] == "", "a fault of ours is no zero"
-    assert by_id["100"][0] == safe_cell(HOSTILE[0])
+    """Name, ids and section come first, in this order; then a column for each assignment.
+
+    Source: Canvas instructor guide, "How do I import grades in the Gradebook?"; canvas-lms/lib/
+    gradebook_exporter.rb, ``csv_data``.
+    """
+    content = write(results, "canvas", tmp_path).read_bytes()
+    points, students = taken_by_canvas(content)
+    assert points == {"4711": "10"}
+    assert len(students) == len(HOSTILE) + 3
+    at = len(HOSTILE)
+    grades = [students[str(100 + at + more), f"sis-{at + more}"]["4711"] for more in range(3)]
+    assert grades == ["8", "8.25", ""], "a fault of ours is no zero"
+    names = {row[1]: row[0] for row in csv.reader(io.StringIO(content.decode(), newline=""))}
+    assert names["100"] == safe_cell(HOSTILE[0])
 
 
 def test_moodle_finds_its_students_by_their_key(results: Results, tmp_path: Path) -> None:
-    rows = read_csv(write(results, "moodle", tmp_path))
-    by_key = {row["moodle_key"]: row for row in rows}
-    assert by_key[f"key{len(HOSTILE)}"]["Doubling"] == "8"
-    assert by_key[f"key{len(HOSTILE) + 2}"]["Doubling"] == ""
+    """One row a student, found by whatever field the teacher maps; an empty cell is no grade.
+
+    Source: MoodleDocs, "Grade import"; moodle/grade/import/csv/classes/load_data.php, ``update_grade_item``
+    and ``check_user_exists``; moodle/lib/csvlib.class.php, to which a row of another length spoils the file.
+    """
+    head, *rows = read_by_php(write(results, "moodle", tmp_path).read_bytes().decode("utf-8-sig"))
+    assert head == ["moodle_key", "name", "Doubling"]
+    assert [row for row in rows if len(row) != len(head)] == []
+    grades = {key: grade for key, _, grade in rows}
+    assert len(grades) == len(HOSTILE) + 3
+    assert grades[f"key{len(HOSTILE)}"] == "8"
+    assert grades[f"key{len(HOSTILE) + 2}"] == ""
+    assert all(re.fullmatch(r"[0-9.]*", grade) for grade in grades.values())
 
 
 @pytest.mark.parametrize("name", FOR_STUDENTS)
@@ -281,6 +346,7 @@ def test_students_the_roster_has_not_stop_every_export_unless_partial(
         ("canvas", Person("late", sis_user_id="=1+1")),
         ("moodle", Person("late")),
         ("moodle", Person("late", moodle_key="@sum")),
+        ("moodle", Person("late", moodle_key="key\\")),
     ],
 )
 def test_a_key_that_is_missing_or_would_have_to_be_changed_is_no_key(

@@ -13,16 +13,9 @@ import msgspec
 import pytest
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook.book import (
-    FromDownload,
-    Gradebook,
-    GradedExercise,
-    Key,
-    Override,
-    Result,
-    SubmittedAt,
-)
+from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import _SEALED, _digest
+from course.grading.gradebook.records import FromDownload, GradedExercise, Key, Override, Result, SubmittedAt
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -74,10 +67,10 @@ def test_the_newest_result_counts_and_the_older_one_is_kept(tmp_path: Path) -> N
 def test_a_fault_of_ours_does_not_count_as_graded(tmp_path: Path) -> None:
     with Gradebook(tmp_path / "g.sqlite", create=True) as book:
         book.add(Result(key(), verdict(state="grader_error")))
-        assert not book.has(key())
+        assert not book.confirm(key())
         book.add(Result(key(), verdict()))
-        assert book.has(key())
-        assert not book.has(key(digest="b" * 64))
+        assert book.confirm(key())
+        assert not book.confirm(key(digest="b" * 64))
 
 
 def test_a_second_writer_is_told_and_changes_nothing(tmp_path: Path) -> None:
@@ -254,7 +247,7 @@ def test_a_gradebook_of_the_first_format_is_brought_up_to_date(tmp_path: Path) -
         with Gradebook(path) as book:
             (found,) = book.results()
             assert (found.key, found.verdict.score, found.graded_at) == (key(), 4, "then")
-            assert book.has(key())
+            assert book.confirm(key())
             assert book.meta()["seed"] == "7"
 
 

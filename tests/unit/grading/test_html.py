@@ -21,10 +21,10 @@ from course.grading.exports.html_report.class_page import class_page
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
 from course.grading.exports.html_report.templates import macro, script
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
-from course.grading.running.run import open_results
+from course.grading.running.folder import open_results
 from course.printable import one_line
 from course.scoring.verdict import Problem, Status
 from tests.unit.grading.made import (
@@ -72,7 +72,7 @@ def quiz_verdict(right: int):
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A class with every name, every outcome, a quiz, overrides and people who are late."""
-    from course.grading.gradebook.book import GradedExercise
+    from course.grading.gradebook.records import GradedExercise
 
     folder = tmp_path_factory.mktemp("html")
     verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(NAMES)}

@@ -11,7 +11,7 @@ import pytest
 
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import GradedExercise, Override, Result, SubmittedAt
+from course.grading.gradebook.records import GradedExercise, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.similar.compare import Document, Pair, Similar
 from course.grading.similar.fingerprints import Parser

@@ -12,7 +12,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.errors import IntegrityError, MissingCapabilityError
 from course.grading.exports.lines import grade_line
-from course.grading.gradebook.book import Key, Result
+from course.grading.gradebook.records import Key, Result
 from course.grading.results.effective import Results
 from course.grading.results.override import override
 from course.grading.running.batch import Graded

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook.book import FromDownload, Result, SubmittedAt
+from course.grading.gradebook.records import FromDownload, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.late import Policy, lateness, parse_policy, read_policy, unknown_names
 from course.grading.results.override import lift, override

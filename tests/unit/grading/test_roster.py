@@ -12,12 +12,12 @@ import pytest
 from course.errors import UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import Override
-from course.grading.gradebook.records import FromDownload
+from course.grading.gradebook.records import FromDownload, Override
 from course.grading.intake.downloads import class_list
 from course.grading.results.override import override
 from course.grading.results.roster import Person, read_roster
-from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.folder import open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.test_run import right
@@ -185,7 +185,48 @@ def test_two_spellings_of_an_accent_are_one_student(tmp_path: Path, catalog: Cat
     assert (summary.missing, summary.strangers) == ([], [])
 
 
+#: Headings, "Points Possible", a student and the student for tests, as Canvas' options change them.
+CANVAS_FORMS = {
+    "names apart": [
+        ["LastName", "FirstName", "ID", "SIS Login ID", "Section", "Notes", "Doubling (4711)", "Final Grade"],
+        ["    Points Possible", "", "", "", "", "(read only)", "10.00", "(read only)"],
+        ["Lovelace", "Ada", "101", "ada", "A", "", "", "F"],
+        ["Student", "Test", "999", "x", "A", "", "", ""],
+    ],
+    "all ids": [
+        ["Student", "ID", "SIS User ID", "SIS Login ID", "Integration ID", "Root Account", "Section", "A"],
+        ["", "", "", "", "", "", "", "Manual Posting (scores hidden from instructors)"],
+        ["    Points Possible", "", "", "", "", "", "", "10.00"],
+        ["Lovelace, Ada", "101", "", "ada", "i7", "x.org", "A", ""],
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("delimiter", [",", ";"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
+@pytest.mark.parametrize("form", CANVAS_FORMS)
+def test_every_form_of_canvas_gradebook_is_read(
+    tmp_path: Path, form: str, encoding: str, delimiter: str
+) -> None:
+    """Names in one column or two, ids as far as they are shown, cells parted as the user's language does it.
+
+    Source: canvas-lms/lib/gradebook_exporter.rb, ``csv_data``; canvas-lms/lib/csv_with_i18n.rb,
+    ``determine_column_separator`` and ``include_bom?``.
+    """
+    path = tmp_path / "roster.csv"
+    with path.open("w", encoding=encoding, newline="") as handle:
+        csv.writer(handle, delimiter=delimiter).writerows(CANVAS_FORMS[form])
+    assert read_roster(path).people == (
+        Person("lovelaceada_101", "Lovelace, Ada", canvas_id="101", section="A"),
+    )
+
+
 def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
+    """Gradescope's needs a name, in one column or two, and an e-mail; ids, sections and roles are optional.
+
+    Source: Gradescope help, "Adding Students and Staff"; canvas-lms/lib/gradebook_exporter.rb;
+    moodle/mod/assign/gradingtable.php.
+    """
     path = tmp_path / "roster.csv"
     path.write_text(CANVAS, "utf-8-sig")
     assert read_roster(path).people[0] == Person(
@@ -197,6 +238,8 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
     assert found.find("whatever", FromDownload("moodle", "103", "?")) == found.people[2]
     path.write_text(GRADESCOPE, "utf-8")
     assert [person.student for person in read_roster(path).people] == ["S1", "S2", "S3"]
+    path.write_text("Name,Email\nAda Lovelace,ada@x.org\n", "utf-8")
+    assert read_roster(path).people == (Person("ada@x.org", "Ada Lovelace", "ada@x.org"),)
 
 
 @pytest.mark.parametrize(

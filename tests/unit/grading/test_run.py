@@ -23,8 +23,9 @@ from course.grading.intake.students import read_class
 from course.grading.results.override import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
+from course.grading.running.folder import open_results
 from course.grading.running.grader import Answer
-from course.grading.running.run import RunOptions, Summary, grade_class, open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from course.scoring.verdict import Verdict
 from tests.unit.grading.made import stillborn
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
     from course.grading.intake.students import Entry
+    from course.grading.running.summary import Summary
 
 MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 ROOT = Path(__file__).resolve().parents[3]

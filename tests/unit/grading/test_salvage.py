@@ -10,9 +10,16 @@ import pytest
 
 from course.errors import IntegrityError, NotFoundError, UsageError
 from course.grading.gradebook.backup import back_up, backups
-from course.grading.gradebook.book import Gradebook, GradedExercise, Override, Result, SubmittedAt
+from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.pages import raw_rows
-from course.grading.gradebook.records import Decision, FromDownload
+from course.grading.gradebook.records import (
+    Decision,
+    FromDownload,
+    GradedExercise,
+    Override,
+    Result,
+    SubmittedAt,
+)
 from course.grading.gradebook.salvage import salvage
 from tests.unit.grading.test_gradebook import key, verdict
 

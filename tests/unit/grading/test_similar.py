@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from course.grading.gradebook.book import Result
+from course.grading.gradebook.records import Result
 from course.grading.results.effective import Results
 from course.grading.similar.compare import compare
 from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, fingerprints

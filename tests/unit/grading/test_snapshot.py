@@ -16,9 +16,10 @@ from course.errors import IntegrityError, InternalError, NotFoundError
 from course.grading.gradebook.book import Gradebook
 from course.grading.results.effective import Results
 from course.grading.running.batch import start_grader
+from course.grading.running.folder import open_results
 from course.grading.running.grader import Config
 from course.grading.running.rerun import RerunOptions, rerun
-from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version
@@ -57,8 +58,8 @@ def graders() -> list[int]:
     return [int(pid) for pid in found]
 
 
-def options(**more: Any) -> RunOptions:
-    return RunOptions(exercises=("doubling",), terms=Terms(level="L1"), seed=3, **more)
+def options(level: str | None = "L1", **more: Any) -> RunOptions:
+    return RunOptions(exercises=("doubling",), terms=Terms(level=level), seed=3, **more)
 
 
 def outcomes(out: Path) -> dict[str, Any]:
@@ -73,14 +74,13 @@ def outcomes(out: Path) -> dict[str, Any]:
         }
 
 
-def changed(out: Path, course: Catalog, **how: Any) -> list[tuple[str, float | None, float | None]]:
-    with open_results(out) as results:
-        done = rerun(results, course, RerunOptions(dry_run=True, level="L1", **how))
-    return [(change.student, change.raw_before, change.raw_after) for change in done.changes]
-
-
 def judged_while_edited(
-    tmp_path: Path, course: Catalog, solution: bytes, disturb: Callable[[], None], students: int
+    tmp_path: Path,
+    course: Catalog,
+    solution: bytes,
+    disturb: Callable[[], None],
+    students: int,
+    level: str | None = "L1",
 ) -> None:
     """Edit a check when the first result is in: all are judged as before, by what their graders say."""
     make_class(tmp_path / "class", solution, students)
@@ -94,36 +94,49 @@ def judged_while_edited(
             disturb()
 
     out = tmp_path / "out"
-    summary = grade_class(tmp_path / "class", out, course, options(), report)
+    summary = grade_class(tmp_path / "class", out, course, options(level), report)
     assert summary.states["graded"] == students
+    judged_by_the_snapshot(out, course, version, summary.graders, level)
+
+
+def judged_by_the_snapshot(
+    out: Path, course: Catalog, version: str, snapshot: str, level: str | None = None
+) -> None:
+    """Of a run during which ``course`` was edited: who judged, what that would change, the way back."""
     now = grader_version(course.exercise("doubling"), course)
     assert now != version
     first = outcomes(out)
     assert {judged_by for judged_by, _, _ in first.values()} == {version}
     assert {score for _, score, _ in first.values()} == {10.0, 6.0}
     # What the edit would change is said, and nothing is changed by saying it.
-    would = changed(out, course)
-    assert sorted(would) == sorted(
+    with open_results(out) as results:
+        would = rerun(results, course, RerunOptions(dry_run=True, level=level)).changes
+    assert sorted((change.student, change.raw_before, change.raw_after) for change in would) == sorted(
         (student, score, score - 2.0) for student, (_, score, _) in first.items() if score == 10.0
     )
     assert outcomes(out) == first
     # Changed at last, and made again from the snapshot of the first run: the same to the point.
     with open_results(out, writing=True) as results:
-        done = rerun(results, course, RerunOptions(level="L1"))
+        done = rerun(results, course, RerunOptions(level=level))
     assert len(done.changes) == len(would)
     assert {judged_by for judged_by, _, _ in outcomes(out).values()} == {now}
     with open_results(out, writing=True) as results:
-        again = rerun(results, course, RerunOptions(level="L1", against="1"))
-    assert again.graders == summary.graders
+        again = rerun(results, course, RerunOptions(level=level, against="1"))
+    assert again.graders == snapshot
     assert outcomes(out) == first
     with Gradebook(out / "gradebook.sqlite") as book:
-        kept = [(run.kind, run.options["snapshot"] == summary.graders) for run in book.runs()]
+        kept = [(run.kind, run.options["snapshot"] == snapshot) for run in book.runs()]
     assert kept == [("run", True), ("rerun", False), ("rerun", True)]
 
 
+#: Plain processes in an ordinary run, and what the machine has best beside them.
+LEVELS = ["L1", pytest.param(None, marks=pytest.mark.soak, id="best")]
+
+
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="finds graders in /proc")
+@pytest.mark.parametrize("level", LEVELS)
 def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
-    tmp_path: Path, course: Catalog, solution: bytes
+    tmp_path: Path, course: Catalog, solution: bytes, level: str | None
 ) -> None:
     killed: list[int] = []
 
@@ -132,13 +145,16 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
 
-    judged_while_edited(tmp_path, course, solution, disturb, 4)
+    judged_while_edited(tmp_path, course, solution, disturb, 4 if level else 40, level)
     assert killed
 
 
 @pytest.mark.soak
-def test_an_edit_alone_changes_nothing_in_a_run(tmp_path: Path, course: Catalog, solution: bytes) -> None:
-    judged_while_edited(tmp_path, course, solution, lambda: None, 40)
+@pytest.mark.parametrize("level", LEVELS)
+def test_an_edit_alone_changes_nothing_in_a_run(
+    tmp_path: Path, course: Catalog, solution: bytes, level: str | None
+) -> None:
+    judged_while_edited(tmp_path, course, solution, lambda: None, 40, level)
 
 
 def test_resuming_after_an_edit_grades_the_rest_as_the_run_began_and_says_what_was_edited(

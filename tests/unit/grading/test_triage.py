@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import os
+import sys
 import zipfile
 from typing import TYPE_CHECKING, Any
 
@@ -13,11 +15,13 @@ from course.errors import MissingCapabilityError, NotFoundError, UngradableError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
+from course.grading.intake import students
 from course.grading.intake.students import Entry, read_class
 from course.grading.intake.triage import Candidate, found_for
 from course.grading.results.override import override
 from course.grading.running.assign import assign, named, proposals, unsettled
-from course.grading.running.run import RunOptions, grade_class, open_results, previewed
+from course.grading.running.folder import open_results, previewed
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from tests.unit.grading.test_run import right
 
@@ -44,9 +48,9 @@ def zipped(**members: bytes) -> bytes:
     return buffer.getvalue()
 
 
-def lay(folder: Path, **files: bytes) -> None:
+def lay(folder: Path, student: str = "ada", /, **files: bytes) -> None:
     for name, content in files.items():
-        path = folder / "ada" / name
+        path = folder / student / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
 
@@ -183,7 +187,7 @@ def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: 
 
 
 def test_one_file_is_proposed_where_its_functions_are(catalog: Catalog) -> None:
-    files = [Candidate("x.py", "x.py", sha256="1", defines=("double", "doublings", "halve"))]
+    files = [Candidate("x.py", b"x.py", sha256="1", defines=("double", "doublings", "halve"))]
     assert found_for(catalog.exercise("doubling"), files, asked=False)[0].proposed
 
 
@@ -252,6 +256,52 @@ def test_what_is_assigned_is_graded_at_once_written_down_and_stays(tmp_path: Pat
     assert graded(tmp_path, catalog, resume=True).already == 2
     with open_results(out) as results:
         assert len(results.book.history("ada", "doubling")) == 3
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are text there")
+def test_a_name_that_is_no_text_is_listed_and_settled_like_any_other(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    """It ended the whole run: its path could not be written down."""
+    lay(tmp_path / "class", **{os.fsdecode(b"l\xf6sung.py"): SOURCE})
+    assert graded(tmp_path, catalog).unsettled == 1
+    with open_results(tmp_path / "out", writing=True) as results:
+        (wanted,) = proposals(results)
+        assert wanted.name == "l\\xf6sung.py"
+        assign(results, catalog, [wanted], "the only file there is", grade=right)
+    assert counts(tmp_path / "out") == {"ada": ("graded", 10.0)}
+
+
+@pytest.mark.parametrize(
+    ("where", "error"),
+    [
+        ("_content", OSError(5, "Input/output error")),
+        ("_content", RuntimeError("unheard of")),
+        ("survey", PermissionError(13, "Permission denied", "/srv/class/bob")),
+        ("witnesses", KeyError("x")),
+    ],
+)
+def test_what_nobody_thought_of_costs_its_own_submission_only(
+    tmp_path: Path, catalog: Catalog, monkeypatch: pytest.MonkeyPatch, where: str, error: Exception
+) -> None:
+    for student in ("ada", "bob", "cy"):
+        lay(tmp_path / "class", student, **{"doubling.py": SOURCE})
+    original = getattr(students, where)
+    calls: list[None] = []
+
+    def second_fails(*given: Any, **more: Any) -> Any:
+        calls.append(None)
+        if len(calls) == 2:
+            raise error
+        return original(*given, **more)
+
+    monkeypatch.setattr(students, where, second_fails)
+    summary = graded(tmp_path, catalog)
+    assert (summary.states, summary.exit_code) == ({"graded": 2, "ungradable": 1}, 6)
+    (trouble,) = summary.troubled
+    assert (trouble.student, trouble.code) == ("bob", "unreadable")
+    assert type(error).__name__ in trouble.message
+    assert "/srv" not in trouble.message, "students read it"
 
 
 def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, catalog: Catalog) -> None:

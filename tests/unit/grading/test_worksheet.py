@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import shutil
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -11,9 +12,12 @@ import pytest
 from course.errors import UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
+from course.grading.results.override import override
 from course.grading.results.roster import read_roster
-from course.grading.running.run import RunOptions, grade_class, open_results
+from course.grading.running.folder import open_results
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
+from tests.unit.grading.made import read_by_php
 from tests.unit.grading.test_run import right
 
 if TYPE_CHECKING:
@@ -43,13 +47,18 @@ def write(path: Path, rows: list[list[str]], headings: list[str] = HEADINGS) -> 
 def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, str]]:
     """Grades and feedback that Moodle takes out of a worksheet, after its own reader.
 
-    mod/assign/feedback/offline: the three columns must be there; a row is found by what follows the word
-    "Participant"; a grade that is empty, out of range or locked is left; feedback is taken as it is.
+    The three columns must be there and all rows be as long as the first; a row is found by what follows the
+    word "Participant"; a grade that is empty, out of range or locked is left; feedback is taken as it is.
+
+    Source: moodle/mod/assign/feedback/offline: importgradeslib.php, ``init`` and ``next``; locallib.php,
+    ``process_import_grades``; moodle/lib/csvlib.class.php, ``load_csv_content``.
     """
-    rows = list(csv.DictReader(io.StringIO(path.read_bytes().decode("utf-8"), newline="")))
-    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(rows[0])
+    head, *rows = read_by_php(path.read_bytes().decode("utf-8"))
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(head)
+    assert {len(row) for row in rows} == {len(head)}
     found: dict[str, tuple[float | None, str]] = {}
-    for row in rows:
+    for row in (dict(zip(head, cells, strict=True)) for cells in rows):
+        assert row["Identifier"].startswith("Participant ")
         number = row["Identifier"][len("Participant ") :]
         text = row["Grade"].strip().replace(",", ".")
         grade = float(text) if text else None
@@ -81,6 +90,11 @@ def filled(out: Path, sheet: Path, to: Path, **more: Any) -> Any:
 
 
 def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path: Path, out: Path) -> None:
+    """Columns, their order and every cell but two are Moodle's, and who has no grade of ours keeps both.
+
+    Source: moodle/mod/assign/gradingtable.php, the columns of a download; MoodleDocs, "Using Assignment",
+    "Offline grading worksheet".
+    """
     sheet = write(tmp_path / "sheet.csv", SHEET)
     written = filled(out, sheet, tmp_path / "back.csv")
     assert (written.rows, written.paths) == (2, [tmp_path / "back.csv"])
@@ -100,6 +114,18 @@ def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path: Path, out: 
     assert "There is no doubling.py" in taken["104"][1]
     # Read back as a roster: the same people.
     assert read_roster(tmp_path / "back.csv").people == read_roster(sheet).people
+
+
+@pytest.mark.parametrize("reason", ['said "x\\"', "a path, C:\\"])
+def test_feedback_with_backslashes_is_one_cell_to_moodle(tmp_path: Path, out: Path, reason: str) -> None:
+    """A cell that ended in a backslash took the next one with it, and Moodle refused the whole file."""
+    shutil.copytree(out, tmp_path / "out")
+    with open_results(tmp_path / "out", writing=True) as results:
+        override(results, "Ada Lovelace_101", "doubling", 7.0, reason)
+    filled(tmp_path / "out", write(tmp_path / "sheet.csv", SHEET), tmp_path / "back.csv")
+    grade, feedback = taken_by_moodle(tmp_path / "back.csv", 100.0)["101"]
+    assert grade == 70.0
+    assert feedback.replace("\\ ", "\\").endswith(reason)
 
 
 def test_missing_work_is_a_zero_only_as_told(tmp_path: Path, out: Path) -> None:

@@ -1,0 +1,155 @@
+"""The folder of a run: taken for a new one, opened for what comes later, and what lies in it written anew."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from course.errors import MissingCapabilityError, UsageError
+from course.grading.exports.html_report.write import write_pages
+from course.grading.exports.lines import write_csv, write_jsonl
+from course.grading.gradebook.backup import back_up
+from course.grading.gradebook.book import Gradebook
+from course.grading.results.effective import Results
+from course.grading.results.journal import recorded
+from course.isolation.launch import private_folder, remove_tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from course.grading.results.roster import Roster
+
+__all__ = ["BOOK", "begin", "export_all", "open_results", "previewed", "remember", "taken_back"]
+
+#: What the gradebook of a run is called in its folder.
+BOOK = "gradebook.sqlite"
+
+
+@dataclass
+class Taken:
+    """A name for the results that is taken. ``graded``: whether any grader could work."""
+
+    graded: bool = False
+
+
+@contextlib.contextmanager
+def taken_back(out: Path) -> Iterator[Taken]:
+    """Give the name of a new folder back if the run is refused before anything was graded in it.
+
+    The next command is the same one, corrected, and must not find its own folder in the way.
+    """
+    new, taken = not out.exists(), Taken()
+    try:
+        yield taken
+    except BaseException:
+        if new and not taken.graded and out.is_dir():
+            for item in out.iterdir():
+                item.unlink()
+            out.rmdir()
+        raise
+
+
+def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
+    """The gradebook of a run that begins or, with ``resume``, goes on, opened for writing.
+
+    Raises:
+        UsageError: ``out`` exists, is in use, or lies among the submissions.
+        MissingCapabilityError: it cannot be made.
+    """
+    if out.resolve().is_relative_to(submissions.resolve()):
+        raise UsageError(
+            f"--out {out} lies among the submissions.",
+            help="Name a folder elsewhere.",
+            code="out_inside_submissions",
+        )
+    path = out / BOOK
+    if resume and path.exists():
+        return Gradebook(path, writing=True)
+    try:
+        out.mkdir(parents=True)
+    except FileExistsError:
+        # Killed before its gradebook was made, a run leaves the folder and perhaps the draft.
+        begun = (
+            resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
+        )
+        if not begun:
+            raise UsageError(
+                f"{out} exists already; nothing was touched.",
+                help="Name a new folder, or add --resume to finish the run that is there.",
+                code="out_exists",
+            ) from None
+        for draft in out.iterdir():
+            draft.unlink(missing_ok=True)
+    except OSError as error:
+        raise MissingCapabilityError(
+            f"{out} cannot be made: {error.strerror}.",
+            help="Name a folder that can be written.",
+            code="read_only",
+        ) from None
+    return Gradebook(path, create=True, writing=True)
+
+
+def export_all(out: Path, results: Results) -> None:
+    """The files that lie beside a gradebook after every run.
+
+    Raises:
+        MissingCapabilityError: one cannot be written; the gradebook has everything nevertheless.
+    """
+    try:
+        write_jsonl(out / "results.jsonl", results.all(), results.course)
+        write_csv(out / "grades.csv", results)
+        write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
+    except MissingCapabilityError as error:
+        raise MissingCapabilityError(
+            error.message,
+            help="The gradebook is complete. Make room, then give the same command again (a run with"
+            " --resume): only this is missing. `course grade export` writes it elsewhere.",
+            code=error.code,
+        ) from None
+
+
+@contextlib.contextmanager
+def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
+    """The results in the folder of a grading run.
+
+    Args:
+        writing: hold the gradebook; at the end write what lies beside it anew, and a backup.
+    """
+    with Gradebook(out / BOOK, writing=writing) as book:
+        yield Results(book)
+        if writing:
+            export_all(out, Results(book))
+    if writing:
+        back_up(out / BOOK)
+
+
+@contextlib.contextmanager
+def previewed(out: Path) -> Iterator[Results]:
+    """The results of a run to try a change on: a copy of the gradebook, which is thrown away.
+
+    What a change would do is found by doing it, so a preview cannot differ from it.
+    """
+    path = out / BOOK
+    Gradebook(path).close()  # it is whole, nobody is writing it, and it is one file now
+    folder = private_folder()
+    try:
+        shutil.copyfile(path, folder / path.name)
+        with Gradebook(folder / path.name, writing=True) as book:
+            yield Results(book)
+    finally:
+        remove_tree(folder)
+
+
+def remember(book: Gradebook, roster: Roster) -> None:
+    """Keep who is enrolled; if somebody's score changes by it (extensions do that), that is written down."""
+    text, before = roster.dump(), book.meta().get("roster")
+    if text == before:
+        return
+    if before is None and not book.exercise_ids():
+        book.set_meta(roster=text)
+        return
+    with recorded(book, "roster", "another roster"):
+        book.set_meta(roster=text)

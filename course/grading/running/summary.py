@@ -1,0 +1,93 @@
+"""What a grading run came to, in numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from course.scoring.failures import OURS
+
+if TYPE_CHECKING:
+    from course.grading.results.effective import Results
+
+__all__ = ["Summary", "Trouble"]
+
+
+class Trouble(msgspec.Struct, frozen=True):
+    """One submission without a grade."""
+
+    student: str
+    exercise: str
+    state: str
+    code: str
+    message: str
+
+
+@dataclass
+class Summary:
+    """What a run came to.
+
+    Attributes:
+        states: number of results by state.
+        troubled: the results without a grade.
+        not_submitted: pairs without a file, which count for nothing.
+        already: results that an earlier run had.
+        missing: who is enrolled and handed in nothing at all; empty without a roster.
+        strangers: who handed in something and has no row of their own in the roster.
+        unrecognised: what in the class folder belongs to nobody, one sentence each.
+        unjudged: how often a check broke on what a submission returned: (exercise, check, where).
+        graders: digest of the snapshot that judged.
+        unsettled: how many have files that may be meant for what could not be graded.
+        edited: what was scored by other graders than there are now: a run that is resumed keeps its own.
+        elapsed_s: wall seconds.
+        write_s: of these, spent on writing the gradebook.
+    """
+
+    states: Counter[str] = field(default_factory=Counter)
+    passed: int = 0
+    troubled: list[Trouble] = field(default_factory=list)
+    not_submitted: int = 0
+    missing: list[str] = field(default_factory=list)
+    strangers: list[str] = field(default_factory=list)
+    already: int = 0
+    levels: Counter[str] = field(default_factory=Counter)
+    unrecognised: list[str] = field(default_factory=list)
+    unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    graders: str = ""
+    unsettled: int = 0
+    edited: list[str] = field(default_factory=list)
+    seed: int = 0
+    elapsed_s: float = 0.0
+    write_s: float = 0.0
+
+    @property
+    def exit_code(self) -> int:
+        """70 if any fault was ours, 6 if anything could not be graded, else 0 whatever the scores."""
+        if self.states["grader_error"]:
+            return 70
+        return 6 if self.states["ungradable"] or self.unrecognised else 0
+
+    def count(self, results: Results) -> None:
+        """Take in everything a gradebook has."""
+        self.missing = results.absent()
+        self.strangers = results.unmatched(results.students())
+        for effective in results.all():
+            verdict = effective.verdict
+            if effective.missing:
+                continue
+            settled = effective.override is not None  # by hand, whatever the graders could make of it
+            self.states["graded" if settled else verdict.state] += 1
+            self.passed += effective.passed
+            if verdict.isolation:
+                self.levels[verdict.isolation] += 1
+            for check in verdict.checks:
+                if (check.traceback or "").startswith(OURS):
+                    self.unjudged[effective.exercise, check.id, str(check.traceback)] += 1
+            if verdict.error is not None and not settled:
+                error = verdict.error
+                self.troubled.append(
+                    Trouble(effective.student, effective.exercise, verdict.state, error.code, error.message)
+                )

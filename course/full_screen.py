@@ -83,6 +83,10 @@ class FullScreenApp(App[None]):
         """Show something in the last line for a moment."""
         self._message = (message, self._clock())
 
+    def hush(self) -> None:
+        """Whoever goes on has read the last line; it says the keys again."""
+        self._message = ("", 0.0)
+
     @property
     def message(self) -> str:
         """What the last line says just now; empty once it was there long enough."""

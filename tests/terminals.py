@@ -83,15 +83,19 @@ class Terminal:
             time.sleep(0.1)
 
     def wait_for_other(self, screen: str, seconds: float = 40.0) -> str:
-        """The screen, once it is another one and stands still."""
+        """The screen, once it is another one and still."""
         until = time.monotonic() + seconds
-        while (shown := self.screen()) == screen or shown != self._a_moment_later():
+        while (shown := self.still()) == screen:
             assert time.monotonic() < until, shown
         return shown
 
-    def _a_moment_later(self) -> str:
-        time.sleep(0.1)
-        return self.screen()
+    def still(self) -> str:
+        """The screen, once it has stood still for a moment."""
+        shown, before = self.screen(), ""
+        while shown != before:
+            time.sleep(0.2)
+            shown, before = self.screen(), shown
+        return shown
 
     def state(self) -> str:
         """What a program may leave behind: the other screen, mouse reports, a hidden cursor."""

@@ -148,10 +148,11 @@ class CellsApp(LessonApp):
             self._say_round()
 
     def _bring_to_sight(self, block: int) -> None:
-        """The end of a block on the screen: that is where a cell's output is."""
+        """The end of a block on the screen, where its output is; whoever has read on is not called back."""
         book = self.page.book
         span = book.layout.span(block) if book is not None else None
-        if span is not None and not self.page.top < span[1] <= self.page.end():
+        top, end = self.page.top, self.page.end()
+        if span is not None and span[0] < end < span[1] and top < span[1]:
             self.page.go(max(0, span[1] - self.page.room), paged=False)
             self._settle()
 

@@ -240,6 +240,7 @@ class LessonApp(FullScreenApp):
     # -- showing ------------------------------------------------------------------------------------
 
     def _show(self, top: int, *, paged: bool = True) -> None:
+        self.hush()
         self.page.item = None
         self.page.go(top, paged=paged)
         self._settle()
@@ -352,6 +353,7 @@ class LessonApp(FullScreenApp):
 
     def action_item(self, way: int) -> None:
         """The next thing on this screen that keys act on; after the last, the first of the next screen."""
+        self.hush()
         items = self.page.items()
         at = items.index(self.page.item) + way if self.page.item in items else (0 if way > 0 else -1)
         if not items or at >= len(items) or (at < 0 and self.page.item in items):

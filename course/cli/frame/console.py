@@ -204,14 +204,21 @@ class Console:
     # -- what a person reads -------------------------------------------------------------------------
 
     def line(self, *pieces: Piece, indent: int = 0) -> None:
-        """One line of the answer: strings, or (string, style) pairs, joined as they are."""
+        """One line of the answer: strings, or (string, style) pairs, joined as they are.
+
+        Words wrap at the width of the window. An address or a path that is longer stays in one piece, so that
+        it can be copied.
+        """
         if not self.fancy:
             self._human.write(" " * indent + "".join(_bare(piece) for piece in pieces) + "\n")
             return
         from rich.padding import Padding
 
         text = _text(pieces)
-        self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
+        if max(map(len, text.plain.split()), default=0) > self.width - indent:
+            self.rich().print(_text((" " * indent, *pieces)), soft_wrap=True)
+        else:
+            self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
 
     def blank(self) -> None:
         """An empty line, where there is layout to speak of."""
@@ -362,11 +369,11 @@ class Console:
         return answer.strip() if answer else None
 
     def go_on(self, where: str) -> bool:
-        """Wait for Enter; q, or the end of the input, means no."""
+        """Wait for Enter; q, n, or the end of the input, means no."""
         self._out.write(f"{where} Enter goes on, q stops: ")
         self._out.flush()
         answer = sys.stdin.readline()
-        return bool(answer) and answer.strip().lower() not in {"q", "quit"}
+        return bool(answer) and answer.strip().lower() not in {"q", "quit", "n", "no"}
 
     @contextlib.contextmanager
     def working(self, what: str) -> Iterator[None]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
+import queue
 import urllib.error
 import urllib.request
 import zipfile
@@ -241,6 +243,46 @@ def test_open_says_in_one_sentence_what_is_missing(course, workspace, monkeypatc
 def test_open_knows_what_there_is(course, workspace):
     pytest.importorskip("jupyterlab")
     assert course("open", "trebling").code == 5
+
+
+def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, workspace, monkeypatch):
+    """JupyterLab by itself starts one in the terminal where there is no display."""
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("ipykernel")
+    import subprocess
+
+    said = []
+
+    def started(command, **_):
+        said.extend(command)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(subprocess, "Popen", started)
+    course("open", "doubling")
+    assert "jupyterlab" in said
+    assert "--no-browser" in said
+
+
+@pytest.mark.parametrize("display", ["", ":0"])
+def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypatch, display):
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("ipykernel")
+    from course import browser
+    from course.notebooks import server
+
+    shown = queue.Queue()
+    lab = server.Lab("http://localhost:8888/lab?token=1", None)
+    monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))
+    monkeypatch.setattr(server.Lab, "wait", lambda _: 0)
+    monkeypatch.setattr(browser, "opened", shown.put)
+    monkeypatch.setattr("sys.platform", "linux")
+    for name in ("BROWSER", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("DISPLAY", display)
+    ran = course("open", "doubling")
+    assert f"is at {lab.address}" in ran.out
+    assert ("ssh -N -L 8888:127.0.0.1:8888" in ran.out) is (not display)
+    assert shown.get(timeout=30) == lab.address if display else shown.empty()
 
 
 @pytest.mark.parametrize("wanted", ["doubling", None])

@@ -133,7 +133,7 @@ def test_version_wins_wherever_it_stands(course, words):
         ("check --nonsense", "course.check/1", 2),
         ("chekc", "course.error/1", 2),
         ("check one two", "course.check/1", 2),
-        ("author", "course.author/1", 2),
+        ("author", "course.error/1", 2),
         ("-C nowhere check", "course.check/1", 5),
         ("check -C", "course.check/1", 2),
         ("reset", "course.reset/1", 2),

@@ -16,13 +16,14 @@ import os
 import sys
 import threading
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TextIO, cast
+from typing import TYPE_CHECKING, TextIO, cast
 
+from course.cli.frame.stream import Stream
 from course.errors import InternalError
 from course.printable import steady
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     import msgspec
     from rich.console import Console as RichConsole
@@ -63,48 +64,6 @@ class Settings:
     directory: str | None = None
 
 
-class _Stream:
-    """A text stream whose reader may go away: ``course lessons | head -1`` is not an error."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._open = True
-
-    def write(self, text: str) -> int:
-        self._unless_gone(lambda: self._stream.write(text))
-        return len(text)
-
-    def write_bytes(self, data: bytes) -> None:
-        """Write UTF-8 bytes as they are, whatever encoding the stream has."""
-        binary = getattr(self._stream, "buffer", None)
-        if binary is None:
-            self.write(data.decode("utf-8"))
-            return
-        self.flush()
-        self._unless_gone(lambda: binary.write(data))
-        self._unless_gone(binary.flush)
-
-    def flush(self) -> None:
-        self._unless_gone(self._stream.flush)
-
-    def _unless_gone(self, action: Callable[[], Any]) -> None:
-        """Do something with the stream; once its reader is gone, nothing more is done with it."""
-        if not self._open:
-            return
-        try:
-            action()
-        except BrokenPipeError:
-            self._open = False
-            # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
-            with contextlib.suppress(OSError, ValueError):
-                null = os.open(os.devnull, os.O_WRONLY)
-                os.dup2(null, self._stream.fileno())
-                os.close(null)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
-
-
 class Console:
     """Says things in the shape this run asks for.
 
@@ -128,8 +87,8 @@ class Console:
             # A console that cannot show a character shows a question mark, not a traceback.
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        self._out = _Stream(stdout or sys.stdout)
-        self._err = _Stream(stderr or sys.stderr)
+        self._out = Stream(stdout or sys.stdout)
+        self._err = Stream(stderr or sys.stderr)
         self._human = self._err if self.settings.json else self._out
         self.fancy = self._is_fancy()
         self._rich: RichConsole | None = None

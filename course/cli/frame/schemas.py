@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 import typer
 
 from course.cli.frame.console import current
-from course.cli.frame.replies import Bare, Check, CheckAll, Envelope, ErrorReply, Schema, Schemas, Watch
+from course.cli.frame.replies import Bare, Envelope, ErrorReply, Schema, Schemas
 from course.errors import NotFoundError
 
 if TYPE_CHECKING:
@@ -21,11 +22,6 @@ __all__ = ["NO_COMMAND", "reply_types", "schema", "schema_names", "schema_of", "
 NO_COMMAND = "course.error/1"
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-#: Where replies are declared, beside the ones that the frame itself has.
-_ROOMS = (
-    "author.replies", "engines.replies", "grade.replies", "notebook.replies", "quiz.replies",
-    "sandbox.replies", "sim.replies", "work.reporting",
-)  # fmt: skip
 #: JSON has no such numbers, so replies spell them.
 _NUMBER = {"anyOf": [{"type": "number"}, {"enum": ["nan", "inf", "-inf"]}]}
 
@@ -70,8 +66,8 @@ def reply_types() -> dict[str, type[msgspec.Struct]]:
     """Every kind of reply by its schema's name, sorted."""
     from course.grading.exports.lines import GradeLine
 
-    for room in _ROOMS:
-        importlib.import_module(f"course.cli.{room}")
+    for file in Path(__file__).parents[1].glob("*/replies.py"):
+        importlib.import_module(f"course.cli.{file.parent.name}.replies")
     kinds: list[type[msgspec.Struct]] = [*Envelope.__subclasses__(), GradeLine]
     found = {str(kind.__struct_config__.tag): kind for kind in kinds} | {NO_COMMAND: ErrorReply}
     return dict(sorted(found.items()))
@@ -80,7 +76,7 @@ def reply_types() -> dict[str, type[msgspec.Struct]]:
 def schema_of(tag: str) -> dict[str, Any]:
     """The JSON Schema of a reply: what the command answers, or why it could not."""
     kind = reply_types()[tag]
-    names = [kind, ErrorReply, Bare, *([Check] if kind in {CheckAll, Watch} else ())]
+    names = [kind, ErrorReply, Bare, *getattr(kind, "refers_to", ())]
     (answer, *without), definitions = msgspec.json.schema_components(names, ref_template="#/$defs/{name}")
     for name in (ErrorReply.__name__, Bare.__name__):
         # Or any answer would be one of these, with something added.

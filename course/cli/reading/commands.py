@@ -12,7 +12,8 @@ from course.browser import keep_closed
 from course.cli.frame.arguments import LessonName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import find_workspace, load_catalog
-from course.cli.frame.replies import LessonReply, Lessons, NextStep
+from course.cli.frame.replies import NextStep
+from course.cli.reading.replies import LessonReply, Lessons
 from course.errors import CourseError, NotFoundError
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def lessons() -> int:
     In the order to read them; inside a workspace also which ones you have read.
     """
 
-    from course.cli.work.overview import day, lesson_state, lesson_states
+    from course.cli.home.overview import day, lesson_state, lesson_states
 
     console = current()
     here = find_workspace()

@@ -19,12 +19,13 @@ import typer
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import ErrorBody, ErrorReply, Watch, WatchRun
+from course.cli.frame.replies import ErrorBody, ErrorReply
+from course.cli.home.advice import next_step
 from course.cli.work import checking
-from course.cli.work.advice import next_step
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
+from course.cli.work.replies import Watch, WatchRun
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, UngradableError
 
@@ -33,8 +34,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.catalog.models import Exercise
-    from course.cli.frame.replies import Check
     from course.cli.work.keys import Keys
+    from course.cli.work.replies import Check
     from course.scoring.session import GradingSession
     from course.scoring.verdict import Verdict
 

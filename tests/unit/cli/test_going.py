@@ -79,7 +79,7 @@ def someone(monkeypatch):
 
 
 def test_go_is_one_loop_until_a_step_is_not_finished(course, workspace, write, someone, monkeypatch):
-    from course.cli.work import going
+    from course.cli.home import going
 
     ran_with = []
 

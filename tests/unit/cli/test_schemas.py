@@ -14,9 +14,10 @@ import msgspec
 import pytest
 
 import course as package
-from course.cli.frame.replies import Bare, Envelope, ErrorBody, ErrorReply, Hint, NextStep, encode
+from course.cli.frame.replies import Bare, Envelope, ErrorBody, ErrorReply, NextStep, encode
 from course.cli.frame.schemas import reply_types, schema_of
 from course.cli.work import checking
+from course.cli.work.replies import Hint
 from course.scoring.session import GradingSession
 
 CLI = Path(package.__file__).parent / "cli"

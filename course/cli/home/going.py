@@ -7,8 +7,9 @@ import shlex
 from course.cli.frame.app import again
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Go, Next, NextStep
-from course.cli.work.advice import next_in_course
+from course.cli.frame.replies import NextStep
+from course.cli.home.advice import next_in_course
+from course.cli.home.replies import Go, Next
 
 __all__ = ["go", "next_command"]
 

@@ -325,3 +325,19 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     assert path.read_bytes() == mine
     with pytest.raises(urllib.error.URLError):  # it ends with the command
         urllib.request.urlopen(ran.json["address"])
+
+
+def test_a_jupyterlab_that_does_not_start_is_quoted(course, workspace, monkeypatch, tmp_path):
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("ipykernel")
+    from course.notebooks import server
+
+    stand_in = tmp_path / "python"
+    stand_in.write_text("#!/bin/sh\necho 'no room left \033[31m' >&2\nexit 3\n")
+    stand_in.chmod(0o755)
+    monkeypatch.setattr(server.sys, "executable", str(stand_in))
+    ran = course("open", "doubling")
+    assert ran.code == 70
+    assert "JupyterLab ended before it was ready (exit code 3)." in ran.err
+    assert "It said:\nno room left" in ran.err
+    assert "\033[31m" not in ran.err

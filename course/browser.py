@@ -8,10 +8,17 @@ from __future__ import annotations
 
 import contextlib
 import os
+import socket
 import sys
+import threading
 import webbrowser
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
-__all__ = ["can_open", "keep_closed", "opened", "over_ssh"]
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["can_open", "invite", "keep_closed", "opened", "over_ssh"]
 
 #: Browsers that run in this terminal: they would take it over, and draw no canvas.
 _IN_TERMINAL = frozenset({"elinks", "links", "lynx", "w3m", "www-browser"})
@@ -50,3 +57,20 @@ def opened(address: str) -> bool:
         if getattr(browser, "basename", "") not in _IN_TERMINAL:
             return browser.open(address)
     return False
+
+
+def invite(address: str, say: Callable[[str], None], *, show: bool) -> None:
+    """Show a page that this machine serves to itself until Ctrl+C; where nothing can, say how to get there.
+
+    Args:
+        say: takes lines for the user.
+        show: open a browser, if there is one.
+    """
+    say("Only this machine's browser gets there, and only with the whole address. Ctrl+C ends it.")
+    if show and can_open():
+        # Starting a browser can take as long as it likes; the page is served meanwhile.
+        threading.Thread(target=opened, args=(address,), daemon=True).start()
+        return
+    port = urlsplit(address).port
+    say("From another machine, first forward the port, with the same number at both ends:")
+    say(f"  ssh -N -L {port}:127.0.0.1:{port} {socket.gethostname()}")

@@ -121,10 +121,11 @@ def require(part: str, *packages: str, what: str = "") -> None:
     known = PARTS[part]
     missing = _missing(packages or known.packages)
     if missing:
+        names = " and ".join(filter(None, (", ".join(missing[:-1]), missing[-1])))
         verb = "are" if len(missing) > 1 else "is"
         texts = (requirement_of(package.rpartition("=")[2]).text for package in known.packages)
         raise MissingCapabilityError(
-            f"{what or known.what} needs {' and '.join(missing)}, which {verb} not installed.",
+            f"{what or known.what} needs {names}, which {verb} not installed.",
             help="Install what it needs: pip install " + " ".join(f"'{text}'" for text in texts),
             code="missing_extra",
         )

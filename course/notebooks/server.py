@@ -6,17 +6,20 @@ import contextlib
 import json
 import os
 import secrets
+import socket
 import subprocess
 import sys
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from urllib.parse import quote, urlencode
+from typing import IO, TYPE_CHECKING, Any
+from urllib.parse import quote, urlencode, urlsplit
 
 from course.errors import CourseError
 from course.extras import require
 from course.notebooks.execute import environment
+from course.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,6 +28,8 @@ __all__ = ["Lab", "started"]
 
 #: Between two looks whether it is there, in s.
 _LOOK = 0.1
+#: How much of what it said is shown if it does not start, in characters.
+_SAID = 2000
 #: How long it may take to shut its kernels down before it is ended, in s.
 _GRACE = 20
 
@@ -46,13 +51,12 @@ class Lab:
 
 
 @contextlib.contextmanager
-def started(folder: Path, path: str = "", *, browser: bool = True) -> Iterator[Lab]:
-    """Start JupyterLab and wait until it answers; it ends with the context.
+def started(folder: Path, path: str = "") -> Iterator[Lab]:
+    """Start JupyterLab and wait until it answers; it ends with the context. It opens no browser.
 
     Args:
         folder: what its file browser shows.
         path: of a notebook in it that is opened.
-        browser: open a browser on it as well.
 
     Raises:
         MissingCapabilityError: the extra ``notebook`` is not installed.
@@ -61,39 +65,54 @@ def started(folder: Path, path: str = "", *, browser: bool = True) -> Iterator[L
     require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
     page = f"/lab/tree/{quote(path)}" if path else "/lab"
     token = secrets.token_hex(24)
-    # Ctrl+C reaches it as well as this process, and is not asked about a second time. Only errors are said.
-    command = [sys.executable, "-m", "jupyterlab", "-y", "--log-level=ERROR"]
+    # Ctrl+C reaches it as well as this process, and is not asked about a second time. A browser of its own
+    # choice would be opened without a display, too: one that takes this terminal over.
+    command = [sys.executable, "-m", "jupyterlab", "-y", "--no-browser"]
     command += [f"--ServerApp.root_dir={folder}", f"--ServerApp.default_url={page}"]
-    command += [] if browser else ["--no-browser"]
     # Who works as root, as containers do, has decided so before.
     command += ["--allow-root"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
     # In the environment, and not on the command line, where every user of the machine reads it.
-    process = subprocess.Popen(
-        command, env=environment() | {"JUPYTER_TOKEN": token}, cwd=folder, stdout=subprocess.DEVNULL
-    )
-    try:
-        yield Lab(_address(process, token, page), process)
-    finally:
-        _ended(process)
+    secret = environment() | {"JUPYTER_TOKEN": token}
+    with tempfile.TemporaryFile() as log:
+        process = subprocess.Popen(command, env=secret, cwd=folder, stdout=subprocess.DEVNULL, stderr=log)
+        try:
+            yield Lab(_address(process, token, page, log), process)
+        finally:
+            _ended(process)
 
 
-def _address(process: subprocess.Popen[bytes], token: str, page: str) -> str:
-    """Once the server has said where it is: in a file for each server that runs."""
+def _address(process: subprocess.Popen[bytes], token: str, page: str, log: IO[bytes]) -> str:
+    """Once the server answers where it said that it would: in a file for each server that runs."""
     from jupyter_core.paths import jupyter_runtime_dir
 
     runtime = Path(jupyter_runtime_dir())
     while process.poll() is None:
         for file in runtime.glob("jpserver-*.json"):
             about = _read(file)
-            if about.get("pid") == process.pid or about.get("token") == token:
+            if (about.get("pid") == process.pid or about.get("token") == token) and _answers(about["url"]):
                 query = f"?{urlencode({'token': about['token']})}" if about.get("token") else ""
                 return str(about["url"]).rstrip("/") + page + query
         time.sleep(_LOOK)
     raise CourseError(
         f"JupyterLab ended before it was ready (exit code {process.returncode}).",
-        help="What it said stands above. `jupyter lab` in this folder starts it without the course.",
+        help=f"`jupyter lab` in this folder starts it without the course. It said:\n{_end_of(log)}",
         code="jupyter_ended",
     )
+
+
+def _answers(url: str) -> bool:
+    """Whether somebody listens there: the file is written a moment before."""
+    parts = urlsplit(url)
+    try:
+        socket.create_connection((parts.hostname, parts.port or 80), timeout=_LOOK).close()
+    except OSError:
+        return False
+    return True
+
+
+def _end_of(log: IO[bytes]) -> str:
+    log.seek(0)
+    return printable(log.read().decode("utf-8", "replace")[-_SAID:].strip())
 
 
 def _read(file: Path) -> dict[str, Any]:

@@ -96,6 +96,18 @@ def test_the_report_shows_both_sections(growth: Catalog) -> None:
     assert made.sections[0].rows == (("1.5", "3"),)
 
 
+def test_no_folder_has_more_modules_than_the_page_says() -> None:
+    assert (
+        "No folder of the program has more than seventeen modules, but for `notebooks` with nineteen." in TEXT
+    )
+    counts = {
+        folder.relative_to(ROOT).as_posix(): len(list(folder.glob("*.py")))
+        for folder in (ROOT / "course").rglob("*/")
+    }
+    assert counts.pop("course/notebooks") == 19
+    assert max(counts.values()) == 17
+
+
 def test_every_name_of_the_kit_is_on_the_page() -> None:
     code = "\n".join(re.findall(r"^```python \w+\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL))
     named = set(re.findall(r"kit\.(\w+)", TEXT))

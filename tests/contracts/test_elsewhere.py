@@ -112,6 +112,18 @@ def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding)
     assert json.loads(out)["id"] == "why-simulate"
 
 
+@pytest.mark.parametrize("line", ["", "demo", "lesson numerical-integration --plain", "check doubling"])
+def test_a_console_of_windows_shows_what_is_met_first(workspace, line):
+    real = line.startswith(("demo", "lesson"))
+    code, out, _ = run(
+        workspace.parent if real else workspace, *line.split(), program=("-m", "course"), encoding="cp437",
+        COURSE_CONTENT="" if real else str(MINI_COURSE),
+        PYTHONIOENCODING="cp437", PYTHONUTF8="0", LC_ALL="C",
+    )  # fmt: skip
+    assert code == 0
+    assert len(out.splitlines()) > 3
+
+
 def test_files_are_utf_8_whatever_the_locale_says(tmp_path):
     """Everything written and read names its encoding: a locale without UTF-8 changes nothing."""
     root = tmp_path / "é à"

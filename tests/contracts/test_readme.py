@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.cli.author.pictures import PICTURES
 from course.cli.frame.app import run
+from course.engines.registry import ENGINES
+from course.engines.scenarios import SCENARIOS
+from course.quizzing.attempt import needed
+from course.quizzing.bank import Bank
+from course.sandbox.scene.loading import scene_ids
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -30,6 +37,26 @@ def test_the_picture_of_a_diagnosis_shows_the_finding_and_the_line():
     words = " ".join(words.replace("&#160;", " ").split())
     for said in ("steps of semi-implicit Euler", "EULER_IS_SEMI_IMPLICIT", "x_next = x + h * v_next"):
         assert said in words
+
+
+def test_what_the_readme_counts_is_so():
+    """Its numbers, in its order, and what each of them counts."""
+    catalog = Catalog()
+    minutes = [catalog.exercise(name).minutes for name in catalog.warm_up_ids()]
+    asked = len(Bank.of(catalog).ids)
+    words = {5: "five", 7: "seven", 13: "thirteen", 14: "fourteen", 32: "thirty-two"}
+    for said in (
+        f"{words[len(minutes)]} small tasks, most of five minutes",
+        f"{words[len(scene_ids())]} scenes to play with",
+        f"{words[asked]} questions; {needed(asked)} of {asked} pass",
+        f"puts {words[len(SCENARIOS)]} tests with known answers to",
+        f"to pymunk and up to {words[len(ENGINES) - 1]} more",
+    ):
+        assert said in README
+    assert minutes.count(5) > len(minutes) / 2
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert "Python 3.11 or newer" in README
+    assert project["requires-python"] == ">=3.11"
 
 
 def test_the_links_of_the_readme_lead_somewhere():

@@ -75,7 +75,7 @@ def workspace(course, tmp_path):
 def worked():
     """A warm session over the worked example, as a function of the module's text; and the right text."""
     from course.catalog.load import Catalog
-    from course.cli.work.demo import worked_example
+    from course.cli.setup.demo import worked_example
     from course.scoring.session import GradingSession, Submission
 
     catalog = Catalog()
@@ -238,7 +238,7 @@ def test_no_task_has_the_signature_of_the_worked_example():
     import ast
 
     from course.catalog.load import Catalog
-    from course.cli.work.demo import worked_example
+    from course.cli.setup.demo import worked_example
 
     def signatures(exercise):
         tree = ast.parse(exercise.stub_path.read_text(encoding="utf-8"))

@@ -77,13 +77,10 @@ def test_a_browser_that_does_not_start_is_no_error(stand, monkeypatch):
 
 
 @pytest.mark.parametrize(("show", "display"), [(False, ":0"), (True, "")])
-def test_the_sandbox_says_how_to_forward_its_port_where_it_opens_nothing(stand, monkeypatch, show, display):
-    from course.sandbox.views.web.view import _invite
-
+def test_how_to_forward_a_port_is_said_where_nothing_is_opened(stand, monkeypatch, show, display):
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("DISPLAY", display)
     said: list[str] = []
-    _invite("http://127.0.0.1:4321/token/", said.append, show=show)
-    assert said[0].endswith("http://127.0.0.1:4321/token/")
+    browser.invite("http://127.0.0.1:4321/token/", said.append, show=show)
     assert "ssh -N -L 4321:127.0.0.1:4321" in said[-1]
     assert not stand.shown

@@ -88,10 +88,16 @@ def _emit_coverage(
 
 
 def is_command(words: tuple[str, ...]) -> bool:
-    """Whether ``course`` followed by these words is a command; simulations count as words of ``sim run``."""
+    """Whether ``course`` followed by these words is a command.
+
+    Simulations count as words of ``sim run``, exercises that ask for prose as one of ``reflect``.
+    """
     from importlib import import_module
 
     entry = COMMANDS.get(words[0]) if words else None
+    if words[:1] == ("reflect",) and len(words) == 2:
+        catalog = load_catalog()
+        return words[1] in catalog.exercise_ids() and catalog.exercise(words[1]).rubric_path.is_file()
     if entry is None or (not entry.is_group and len(words) > 1):
         return False
     if len(words) == 1:

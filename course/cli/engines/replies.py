@@ -6,10 +6,7 @@ from typing import Any
 
 import msgspec
 
-from course.cli.frame.replies import (
-    Envelope,
-    WrittenFile,
-)
+from course.cli.frame.replies import Envelope, WrittenFile
 
 __all__ = ["Engine", "EngineList", "EngineMachine", "EngineRow", "EngineScenario", "Engines"]
 

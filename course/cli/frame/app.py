@@ -16,7 +16,7 @@ import typer
 
 from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, hoist
-from course.cli.frame.registry import COMMANDS, HOME, LazyGroup, build, find
+from course.cli.frame.registry import HOME, LazyGroup, build, find
 from course.errors import CourseError, NotFoundError, UsageError
 
 if TYPE_CHECKING:
@@ -46,23 +46,20 @@ def run(arguments: Sequence[str]) -> int:
     """Run one command line and return its exit code; whatever happens, nothing is raised."""
     line = hoist(arguments)
     console = install(Console(line.settings))
-    schema = _schema(line)
     try:
         code = _dispatch(line, console)
         if code == INTERRUPTED and not console.emitted:
             raise KeyboardInterrupt
     except KeyboardInterrupt:
-        code = _say(console, schema, INTERRUPTED, "interrupted", "Interrupted; what was done is kept.")
+        code = _say(console, line, INTERRUPTED, "interrupted", "Interrupted; what was done is kept.")
     except CourseError as error:
-        code = _say(console, schema, error.exit_code, error.code, error.message, error.help)
+        code = _say(console, line, error.exit_code, error.code, error.message, error.help)
     except Exception as error:  # noqa: BLE001 - the boundary: nothing passes it
         code = (
-            _usage(console, schema, error)
-            if hasattr(error, "format_message")
-            else _crash(console, schema, error)
+            _usage(console, line, error) if hasattr(error, "format_message") else _crash(console, line, error)
         )
     if console.json and not console.emitted:
-        _emit(console, schema, code)
+        _emit(console, line, code)
     console.flush()
     return code
 
@@ -131,13 +128,6 @@ def _root(
     return home()
 
 
-def _schema(line: Line) -> str:
-    command = next((word for word in line.rest if not word.startswith("-")), None)
-    if command is None:
-        return "course.version/1" if line.version else "course.status/1"
-    return f"course.{command}/1" if command in COMMANDS else "course.error/1"
-
-
 def _version(console: Console) -> int:
     from course import __version__
 
@@ -184,7 +174,7 @@ def _code(result: Any) -> int:
 
 def _say(
     console: Console,
-    schema: str,
+    line: Line,
     exit_code: int,
     code: str,
     message: str,
@@ -194,38 +184,37 @@ def _say(
     console.error(message, help)
     if console.json and not console.emitted:
         from course.cli.frame.replies import ErrorBody, ErrorReply
+        from course.cli.frame.schemas import schema_of_line
 
-        console.emit(
-            ErrorReply(
-                schema=schema, exit_code=exit_code, error=ErrorBody(code=code, message=message, help=help)
-            )
-        )
+        body = ErrorBody(code=code, message=message, help=help)
+        console.emit(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
     return exit_code
 
 
-def _emit(console: Console, schema: str, code: int) -> None:
+def _emit(console: Console, line: Line, code: int) -> None:
     """Keep the promise of one object for a command that has nothing to add to its exit code."""
     from course.cli.frame.replies import Bare
+    from course.cli.frame.schemas import schema_of_line
 
-    console.emit(Bare(schema=schema, ok=code == 0, exit_code=code))
+    console.emit(Bare(schema=schema_of_line(line), ok=code == 0, exit_code=code))
 
 
-def _usage(console: Console, schema: str, error: Any) -> int:
+def _usage(console: Console, line: Line, error: Any) -> int:
     """A line that typer's parser refused. Known by its shape: the class moved between typer's versions."""
     context = getattr(error, "ctx", None)
     path = context.command_path if context is not None else "course"
     if type(error).__name__.startswith("NoArgsIsHelp"):
         if not console.json:
             console.error(str(error.format_message()))
-        return _say(console, schema, UsageError.exit_code, "usage", f"`{path}` needs a command.")
+        return _say(console, line, UsageError.exit_code, "usage", f"`{path}` needs a command.")
     message = str(error.format_message()).strip()
-    return _say(console, schema, UsageError.exit_code, "usage", message, f"See `{path} --help`.")
+    return _say(console, line, UsageError.exit_code, "usage", message, f"See `{path} --help`.")
 
 
-def _crash(console: Console, schema: str, error: BaseException) -> int:
+def _crash(console: Console, line: Line, error: BaseException) -> int:
     """Our fault: the details go to a file, one line to the screen."""
     from course.cli.frame.crash import write_report
 
     where = write_report(error)
     message = f"A fault in the course, not in your work ({type(error).__name__}); the details are in {where}."
-    return _say(console, schema, OUR_FAULT, "internal", message)
+    return _say(console, line, OUR_FAULT, "internal", message)

@@ -16,13 +16,14 @@ import os
 import sys
 import threading
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TextIO, cast
+from typing import TYPE_CHECKING, TextIO, cast
 
+from course.cli.frame.stream import Stream
 from course.errors import InternalError
 from course.printable import steady
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     import msgspec
     from rich.console import Console as RichConsole
@@ -63,48 +64,6 @@ class Settings:
     directory: str | None = None
 
 
-class _Stream:
-    """A text stream whose reader may go away: ``course lessons | head -1`` is not an error."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._open = True
-
-    def write(self, text: str) -> int:
-        self._unless_gone(lambda: self._stream.write(text))
-        return len(text)
-
-    def write_bytes(self, data: bytes) -> None:
-        """Write UTF-8 bytes as they are, whatever encoding the stream has."""
-        binary = getattr(self._stream, "buffer", None)
-        if binary is None:
-            self.write(data.decode("utf-8"))
-            return
-        self.flush()
-        self._unless_gone(lambda: binary.write(data))
-        self._unless_gone(binary.flush)
-
-    def flush(self) -> None:
-        self._unless_gone(self._stream.flush)
-
-    def _unless_gone(self, action: Callable[[], Any]) -> None:
-        """Do something with the stream; once its reader is gone, nothing more is done with it."""
-        if not self._open:
-            return
-        try:
-            action()
-        except BrokenPipeError:
-            self._open = False
-            # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
-            with contextlib.suppress(OSError, ValueError):
-                null = os.open(os.devnull, os.O_WRONLY)
-                os.dup2(null, self._stream.fileno())
-                os.close(null)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
-
-
 class Console:
     """Says things in the shape this run asks for.
 
@@ -128,8 +87,8 @@ class Console:
             # A console that cannot show a character shows a question mark, not a traceback.
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        self._out = _Stream(stdout or sys.stdout)
-        self._err = _Stream(stderr or sys.stderr)
+        self._out = Stream(stdout or sys.stdout)
+        self._err = Stream(stderr or sys.stderr)
         self._human = self._err if self.settings.json else self._out
         self.fancy = self._is_fancy()
         self._rich: RichConsole | None = None
@@ -204,14 +163,21 @@ class Console:
     # -- what a person reads -------------------------------------------------------------------------
 
     def line(self, *pieces: Piece, indent: int = 0) -> None:
-        """One line of the answer: strings, or (string, style) pairs, joined as they are."""
+        """One line of the answer: strings, or (string, style) pairs, joined as they are.
+
+        Words wrap at the width of the window. An address or a path that is longer stays in one piece, so that
+        it can be copied.
+        """
         if not self.fancy:
             self._human.write(" " * indent + "".join(_bare(piece) for piece in pieces) + "\n")
             return
         from rich.padding import Padding
 
         text = _text(pieces)
-        self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
+        if max(map(len, text.plain.split()), default=0) > self.width - indent:
+            self.rich().print(_text((" " * indent, *pieces)), soft_wrap=True)
+        else:
+            self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
 
     def blank(self) -> None:
         """An empty line, where there is layout to speak of."""
@@ -362,11 +328,11 @@ class Console:
         return answer.strip() if answer else None
 
     def go_on(self, where: str) -> bool:
-        """Wait for Enter; q, or the end of the input, means no."""
+        """Wait for Enter; q, n, or the end of the input, means no."""
         self._out.write(f"{where} Enter goes on, q stops: ")
         self._out.flush()
         answer = sys.stdin.readline()
-        return bool(answer) and answer.strip().lower() not in {"q", "quit"}
+        return bool(answer) and answer.strip().lower() not in {"q", "quit", "n", "no"}
 
     @contextlib.contextmanager
     def working(self, what: str) -> Iterator[None]:

@@ -47,9 +47,9 @@ class Entry:
 
 COMMANDS: dict[str, Entry] = {
     "demo": Entry(
-        "work.demo", "demo", LEARN, "See a mistake found and mended, without a workspace.", "course demo"
+        "setup.demo", "demo", LEARN, "See a mistake found and mended, without a workspace.", "course demo"
     ),
-    "init": Entry("work.starting", "init", LEARN, "Make a workspace.", "course init my-course"),
+    "init": Entry("setup.making", "init", LEARN, "Make a workspace.", "course init my-course"),
     "lessons": Entry("reading.commands", "lessons", LEARN, "List the lessons.", "course lessons"),
     "lesson": Entry(
         "reading.commands", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"
@@ -57,9 +57,9 @@ COMMANDS: dict[str, Entry] = {
     "warmup": Entry(
         "reading.warming", "warmup", LEARN, "Do a lesson's small tasks.", "course warmup fall-time"
     ),
-    "exercises": Entry("work.listing", "exercises", LEARN, "List the exercises.", "course exercises"),
-    "next": Entry("work.going", "next_command", LEARN, "Say what is next.", "course next"),
-    "go": Entry("work.going", "go", LEARN, "Go on from where you stopped.", "course go"),
+    "exercises": Entry("home.listing", "exercises", LEARN, "List the exercises.", "course exercises"),
+    "next": Entry("home.going", "next_command", LEARN, "Say what is next.", "course next"),
+    "go": Entry("home.going", "go", LEARN, "Go on from where you stopped.", "course go"),
     "quiz": Entry(
         "quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"
     ),
@@ -130,12 +130,12 @@ COMMANDS: dict[str, Entry] = {
     "update": Entry(
         "work.changing", "update", KEEP, "Bring newer course content in.", "course update --dry-run"
     ),
-    "progress": Entry("work.overview", "progress", KEEP, "Show everything done so far.", "course progress"),
+    "progress": Entry("home.overview", "progress", KEEP, "Show everything done so far.", "course progress"),
     "submit": Entry(
         "work.submitting", "submit", KEEP, "Write the file to hand in.", "course submit -o mine.zip"
     ),
-    "doctor": Entry("work.doctor", "doctor", KEEP, "Say what works on this machine.", "course doctor"),
-    "bug": Entry("work.bug", "bug", KEEP, "Write what a fault report needs into a file.", "course bug"),
+    "doctor": Entry("setup.doctor", "doctor", KEEP, "Say what works on this machine.", "course doctor"),
+    "bug": Entry("setup.bug", "bug", KEEP, "Write what a fault report needs into a file.", "course bug"),
     "schema": Entry(
         "frame.schemas", "schema", KEEP, "Print the JSON Schema of a reply.", "course schema check"
     ),
@@ -149,7 +149,7 @@ COMMANDS: dict[str, Entry] = {
 
 
 #: What ``course`` alone does: a module and its function.
-HOME = "work.overview", "dashboard"
+HOME = "home.overview", "dashboard"
 
 
 class LazyGroup(TyperGroup):

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import importlib
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 import typer
 
 from course.cli.frame.console import current
-from course.cli.frame.replies import Bare, Check, CheckAll, Envelope, ErrorReply, Schema, Schemas, Watch
+from course.cli.frame.replies import Bare, Envelope, ErrorReply, Schema, Schemas
 from course.errors import NotFoundError
 
-__all__ = ["reply_types", "schema", "schema_names", "schema_of"]
+if TYPE_CHECKING:
+    from course.cli.frame.options import Line
+
+__all__ = ["NO_COMMAND", "reply_types", "schema", "schema_names", "schema_of", "schema_of_line"]
+
+#: What a line answers in which no command was found: an error.
+NO_COMMAND = "course.error/1"
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-#: Where replies are declared, beside the ones that the frame itself has.
-_ROOMS = (
-    "author.replies", "engines.replies", "grade.replies", "notebook.replies", "quiz.replies",
-    "sandbox.replies", "sim.replies", "work.reporting",
-)  # fmt: skip
 #: JSON has no such numbers, so replies spell them.
 _NUMBER = {"anyOf": [{"type": "number"}, {"enum": ["nan", "inf", "-inf"]}]}
 
@@ -42,10 +44,10 @@ def schema(
     Each reply names its schema: "course.check/1" is "check" here. Within a version fields may be added;
     renaming or removing one, or changing what it means, makes a new version, and the CHANGELOG says so.
     """
-    console, found = current(), reply_types()
+    console, found = current(), tuple(reply_types())
     if name is None:
         console.table(("Name", "Schema"), [(_short(tag), tag) for tag in found])
-        console.emit(Schemas(schemas=tuple(found)))
+        console.emit(Schemas(schemas=found))
         return 0
     tag = next((tag for tag in found if name in {tag, _short(tag)}), None)
     if tag is None:
@@ -54,7 +56,7 @@ def schema(
             help="`course schema` lists them.",
             code="schema_not_found",
         )
-    document = schema_of(found[tag])
+    document = schema_of(tag)
     console.raw(msgspec.json.format(msgspec.json.encode(document), indent=2).decode() + "\n")
     console.emit(Schema(name=tag, document=document))
     return 0
@@ -64,32 +66,39 @@ def reply_types() -> dict[str, type[msgspec.Struct]]:
     """Every kind of reply by its schema's name, sorted."""
     from course.grading.exports.lines import GradeLine
 
-    for room in _ROOMS:
-        importlib.import_module(f"course.cli.{room}")
+    for file in Path(__file__).parents[1].glob("*/replies.py"):
+        importlib.import_module(f"course.cli.{file.parent.name}.replies")
     kinds: list[type[msgspec.Struct]] = [*Envelope.__subclasses__(), GradeLine]
-    return {_tag(kind): kind for kind in sorted(kinds, key=_tag)}
+    found = {str(kind.__struct_config__.tag): kind for kind in kinds} | {NO_COMMAND: ErrorReply}
+    return dict(sorted(found.items()))
 
 
-def schema_of(kind: type[msgspec.Struct]) -> dict[str, Any]:
+def schema_of(tag: str) -> dict[str, Any]:
     """The JSON Schema of a reply: what the command answers, or why it could not."""
-    names = [kind, ErrorReply, Bare, *([Check] if kind in {CheckAll, Watch} else ())]
-    references, definitions = msgspec.json.schema_components(names, ref_template="#/$defs/{name}")
-    for name in (
-        ErrorReply.__name__,
-        Bare.__name__,
-    ):  # or any answer would be one of these, with something added
+    kind = reply_types()[tag]
+    names = [kind, ErrorReply, Bare, *getattr(kind, "refers_to", ())]
+    (answer, *without), definitions = msgspec.json.schema_components(names, ref_template="#/$defs/{name}")
+    for name in (ErrorReply.__name__, Bare.__name__):
+        # Or any answer would be one of these, with something added.
         definitions[name]["additionalProperties"] = False
+    named = {"properties": {"schema": {"const": tag}}}
     return {
         "$schema": _DIALECT,
-        "$id": _tag(kind),
-        "title": _tag(kind),
-        "anyOf": list(references),
+        "$id": tag,
+        "title": tag,
+        "anyOf": [answer | named, *(one | named for one in without[:2])],
         "$defs": _with_spelt_numbers(definitions),
     }
 
 
-def _tag(kind: type[msgspec.Struct]) -> str:
-    return str(kind.__struct_config__.tag)  # "course.check/1"
+def schema_of_line(line: Line) -> str:
+    """The schema's name of what a command line answers, for when it has no answer."""
+    words = [word for word in line.rest if not word.startswith("-")]
+    if not words:
+        words = ["version" if line.version else "status"]
+    known = {_short(tag): tag for tag in reply_types()}
+    wanted = [*([f"{words[0]}-all"] if "--all" in line.rest else ()), "-".join(words[:2]), words[0]]
+    return next((known[name] for name in wanted if name in known), NO_COMMAND)
 
 
 def _short(tag: str) -> str:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from course.browser import invite
 from course.cli.frame.completion import notebook_ids
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
@@ -48,9 +49,9 @@ def open_notebook(
     relative = shown.relative_to(folder).as_posix() if wanted else ""
     with contextlib.suppress(KeyboardInterrupt), contextlib.ExitStack() as stack:
         with console.working("Starting JupyterLab"):
-            lab = stack.enter_context(started(folder, relative, browser=not no_browser))
+            lab = stack.enter_context(started(folder, relative))
         console.line(f"{shown} is at {lab.address}")
-        console.note("Only who has the whole address gets in. Ctrl+C ends it.")
+        invite(lab.address, console.note, show=not no_browser)
         console.emit(
             NotebookOpen(course=catalog.ref, folder=str(folder), files=tuple(files), address=lab.address)
         )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import msgspec
 
 from course.catalog.models import CourseRef
-from course.cli.frame.replies import Backup, Check, Envelope
+from course.cli.frame.replies import Backup, Envelope
+from course.cli.work.replies import Check
 
 __all__ = ["Notebook", "NotebookCheck", "NotebookFile", "NotebookOpen"]
 

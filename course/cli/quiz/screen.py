@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.cli.frame.replies import NextStep
+from course.cli.home.overview import day
 from course.cli.quiz.replies import (
     QuizAsked,
     QuizAttempt,
@@ -14,7 +15,6 @@ from course.cli.quiz.replies import (
     QuizQuestion,
     QuizQuestions,
 )
-from course.cli.work.overview import day
 from course.quizzing.attempt import mark_sentence, needed
 from course.quizzing.bank import LETTERS
 from course.quizzing.review import GAP_DAYS, ROUNDS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +13,9 @@ from course.browser import keep_closed
 from course.cli.frame.arguments import LessonName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import find_workspace, load_catalog
-from course.cli.frame.replies import LessonReply, Lessons, NextStep
+from course.cli.frame.replies import NextStep
+from course.cli.home.advice import next_in_course
+from course.cli.reading.replies import LessonReply, Lessons
 from course.errors import CourseError, NotFoundError
 
 if TYPE_CHECKING:
@@ -30,7 +33,7 @@ def lessons() -> int:
     In the order to read them; inside a workspace also which ones you have read.
     """
 
-    from course.cli.work.overview import day, lesson_state, lesson_states
+    from course.cli.home.overview import day, lesson_state, lesson_states
 
     console = current()
     here = find_workspace()
@@ -86,11 +89,11 @@ def lesson(
     reader = _reader(catalog, chosen, console, figures, text if console.json else None)
     paged = page and console.interactive
     whole = _read_by_page(console, here, chosen, reader) if paged else _print_all(reader)
-    step = _after(chosen) if whole else f"course lesson {chosen.id} --page"
+    # A print is no reading: nobody knows whether anybody saw its end.
+    if here is not None and whole and paged:
+        here.record("lesson", chosen.id, {"version": catalog.version})
+    step = _after(here if paged else None, chosen) if whole else f"course lesson {chosen.id} --page"
     if here is not None:
-        # A print is no reading: nobody knows whether anybody saw its end.
-        if whole and paged:
-            here.record("lesson", chosen.id, {"version": catalog.version})
         for warning in here.warnings:
             console.warn(warning)
     for picture in reader.pictures:
@@ -159,7 +162,7 @@ def _read_on_screen(console: Console, here: Here | None, catalog: Catalog, chose
     lesson = last.script.lesson
     for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
         console.warn(warning)
-    console.note(f"Next: {_after(lesson) if last.read else f'course lesson {lesson.id}'}")
+    console.note(f"Next: {_after(here, lesson) if last.read else f'course lesson {lesson.id}'}")
     return 0
 
 
@@ -213,5 +216,9 @@ def _place(here: Here | None, chosen: Lesson, total: int) -> int:
     return page if isinstance(page, int) and 0 <= page < total else 0
 
 
-def _after(chosen: Lesson) -> str:
+def _after(here: Here | None, chosen: Lesson) -> str:
+    """What comes after a lesson that was read in a workspace, or that was printed."""
+    if here is not None:
+        with contextlib.suppress(CourseError):  # a record that cannot be read is warned about elsewhere
+            return next_in_course(here)
     return f"course start {chosen.exercises[0]}" if chosen.exercises else "course lessons"

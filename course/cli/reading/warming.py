@@ -9,16 +9,18 @@ import typer
 from course.cli.frame.arguments import WarmUpName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
-from course.cli.frame.replies import NextStep, Start, WarmUps
+from course.cli.frame.replies import NextStep
+from course.cli.home.overview import warm_up_state, warm_up_states
+from course.cli.reading.replies import WarmUps
 from course.cli.work.checking import check as check_work
-from course.cli.work.overview import warm_up_state, warm_up_states
+from course.cli.work.replies import Start
 from course.cli.work.starting import put
 from course.errors import CourseError, NotFoundError, UsageError
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.cli.frame.replies import WarmUpState
+    from course.cli.home.replies import WarmUpState
 
 __all__ = ["warmup"]
 

@@ -1,1 +1,1 @@
-"""A student's work: a workspace, exercises in it, their checks and hints, and handing them in."""
+"""An exercise worked on: started, checked, hinted at, reported on, handed in."""

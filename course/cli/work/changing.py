@@ -14,9 +14,10 @@ import typer
 from course.cli.frame.arguments import ExerciseName, OneExercise  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Backup, Change, Diff, NextStep, Reset, Update
+from course.cli.frame.replies import Backup, NextStep
 from course.cli.work.checking import say_which
 from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.replies import Change, Diff, Reset, Update
 from course.errors import UsageError
 from course.progress.workspace import same_text, write_atomically
 

@@ -11,10 +11,11 @@ from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads
 from course.cli.frame.completion import check_ids, choice_of
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Check, CheckAll, ErrorBody, ErrorReply, NextStep
-from course.cli.work.advice import next_step
+from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
+from course.cli.home.advice import next_step
 from course.cli.work.annotations import FORMATS, annotate, annotate_error, known_format
 from course.cli.work.chosen import asked_for, chosen_work, worked_on
+from course.cli.work.replies import Check, CheckAll
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.progress.history import check_data

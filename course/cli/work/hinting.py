@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame import replies as schemas
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.completion import task_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Solution
-from course.cli.work.advice import after_warm_up
+from course.cli.frame.replies import NextStep
+from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.replies import Hint, Solution
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError
 from course.progress.history import fingerprint
 
@@ -60,7 +60,7 @@ def hint(
 
 def give_hint(
     console: Console, here: Here, exercise: Exercise, task: str | None = None, named: str | None = None
-) -> schemas.Hint:
+) -> Hint:
     """Show the next hint that is due, or why none is.
 
     Args:
@@ -77,7 +77,7 @@ def give_hint(
     return reply
 
 
-def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> schemas.Hint:
+def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> Hint:
     """Decide what to show, and record it if it is new.
 
     Args:
@@ -138,7 +138,7 @@ def _file_name(here: Here, exercise: Exercise) -> str:
         return exercise.module
 
 
-def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> schemas.Hint:
+def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> Hint:
     if last is None:
         message = (
             f"The first hint follows an attempt. Write something in {file}, however rough, "
@@ -159,9 +159,7 @@ def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> sche
     )
 
 
-def _no_hint(
-    exercise: Exercise, reason: str, message: str, step: str, task: str | None = None
-) -> schemas.Hint:
+def _no_hint(exercise: Exercise, reason: str, message: str, step: str, task: str | None = None) -> Hint:
     return _hint(exercise, reason=reason, task=task, message=message, step=step)
 
 
@@ -174,15 +172,15 @@ def _hint(
     task: str | None = None,
     hint: str | None = None,
     message: str = "",
-) -> schemas.Hint:
-    return schemas.Hint(
+) -> Hint:
+    return Hint(
         exercise=exercise.id,
         given=given,
         reason=reason,
         task=task,
         hint=hint,
         message=message,
-        next=schemas.NextStep(step),
+        next=NextStep(step),
     )
 
 

@@ -7,43 +7,23 @@ import shlex
 from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
 from typing import TYPE_CHECKING, Annotated
 
-import msgspec
 import typer
 
-from course.catalog.models import CourseRef
 from course.cli.frame import files
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
-from course.cli.frame.replies import Envelope, WrittenFile
 from course.cli.work.checking import say_which
 from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.replies import ReportReply, SectionReply
 from course.errors import UsageError
 
 if TYPE_CHECKING:
+    from course.cli.frame.replies import WrittenFile
     from course.figures.drawing.described import Plot
     from course.scoring.report import Report, Section
 
-__all__ = ["ReportReply", "SectionReply", "report"]
-
-
-class SectionReply(msgspec.Struct, frozen=True, kw_only=True):
-    """One part of a report. ``figure`` is the file drawn for it, ``description`` what is seen there."""
-
-    title: str
-    text: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    figure: WrittenFile | None
-    description: str
-
-
-class ReportReply(Envelope, tag="course.report/1", frozen=True, kw_only=True):
-    course: CourseRef
-    exercise: str
-    title: str
-    sections: tuple[SectionReply, ...]
-    bag: str | None
+__all__ = ["report"]
 
 
 def report(

@@ -15,8 +15,8 @@ import typer
 
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
-from course.cli.frame.replies import Submit, SubmitFile
 from course.cli.work.chosen import work_of
+from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records

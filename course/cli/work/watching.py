@@ -19,12 +19,13 @@ import typer
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import ErrorBody, ErrorReply, Watch, WatchRun
+from course.cli.frame.replies import ErrorBody, ErrorReply
+from course.cli.home.advice import next_step
 from course.cli.work import checking
-from course.cli.work.advice import next_step
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
+from course.cli.work.replies import Watch, WatchRun
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, UngradableError
 
@@ -33,8 +34,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.catalog.models import Exercise
-    from course.cli.frame.replies import Check
     from course.cli.work.keys import Keys
+    from course.cli.work.replies import Check
     from course.scoring.session import GradingSession
     from course.scoring.verdict import Verdict
 
@@ -51,7 +52,7 @@ SECOND_LOOK = 0.05
 _GLANCE = 0.05
 _LABEL_WIDTH = 9
 #: What can be pressed.
-KEYS = "h next hint, n next failing function, v details, r again, q leave"
+KEYS = "Keys: h next hint, n next failing function, v details, r again, q leave"
 
 Signature = tuple[int, int, int] | None
 
@@ -84,14 +85,19 @@ def watch(
             open_session(chosen, here.catalog) as session,
             _keys(console, wake) as keys,
         ):
-            how = "Ctrl-C ends it" if keys is None else KEYS
-            console.note(f"Watching {here.workspace.shown(path)}; {how}.")
+            shown = here.workspace.shown(path)
+            console.note(f"Watching {shown}; {'Ctrl-C ends it' if keys is None else 'q ends it'}.")
             for _ in saves(path) if keys is None else saves(path, wake):
+                told = False
                 for key in keys.taken() if keys is not None else ():
                     if key == "q":
                         return 0
-                    watcher.press(key, session)
-                watcher.look(session)
+                    told |= watcher.press(key, session)
+                if watcher.look(session) or told:
+                    # The first line of a watch is off the screen by now.
+                    if keys is not None:
+                        console.note((f"Waiting for a save of {shown}. {KEYS}.", "dim"))
+                    console.flush()
     except KeyboardInterrupt:
         if console.fancy:
             console.blank()  # the terminal has written ^C
@@ -195,8 +201,8 @@ class Watcher:
             return self.look(session)
         return True
 
-    def press(self, key: str, session: GradingSession) -> None:
-        """Do what a key asks for; other keys say which there are."""
+    def press(self, key: str, session: GradingSession) -> bool:
+        """Do what a key asks for; True if that was anything."""
         if key == "h":
             give_hint(self.console, self.here, self.exercise, self._focus or None)
         elif key == "r":
@@ -208,9 +214,10 @@ class Watcher:
             else:
                 self._focus = _following(self._failing(), self._focus)
             self._show(self._verdict)
-        elif key.strip():
-            self.console.note(f"Keys: {KEYS}.")
+        else:
+            return False
         self._flush_warnings()
+        return True
 
     def reply(self) -> Watch:
         """The answer that ``--json`` prints at the end."""

@@ -111,6 +111,13 @@ def test_commands_are_known_with_their_groups(words: tuple[str, ...]) -> None:
     assert is_command(words)
 
 
+@pytest.mark.parametrize(
+    ("exercise", "there"), [("sim-to-real", True), ("integrators", False), ("none", False)]
+)
+def test_reflecting_is_for_exercises_that_ask_for_prose(exercise: str, there: bool) -> None:
+    assert is_command(("reflect", exercise)) is there
+
+
 def test_no_words_are_no_command() -> None:
     assert not is_command(())
 

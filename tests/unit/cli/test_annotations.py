@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 
 import pytest
 import yaml
+from hypothesis import given
+from hypothesis import strategies as st
 
 from course.cli.work.annotations import github
 
@@ -22,14 +27,21 @@ def unescaped(text, pairs):
 
 
 def parse(line):
-    """A workflow command as ``ActionCommand.TryParseV2`` takes it apart; None if it is none."""
+    """A workflow command as ``ActionCommand.TryParseV2`` takes it apart; None if it is none.
+
+    ``::name key=value,key=value::data``. A name that the runner does not know makes it an ordinary line, and
+    a property without a value is passed over.
+    """
     line = line.lstrip()
     if not line.startswith("::") or "::" not in line[2:]:
         return None
     info, _, data = line[2:].partition("::")
     name, _, rest = info.partition(" ")
-    pairs = (item.split("=", 1) for item in rest.strip().split(",") if item)
-    return name, {key: unescaped(value, PROPERTY) for key, value in pairs}, unescaped(data, DATA)
+    if name not in {"error", "warning", "notice"}:
+        return None
+    pairs = (re.split("=+", item.lstrip("="), maxsplit=1) for item in rest.strip().split(",") if item)
+    known = {pair[0]: unescaped(pair[1], PROPERTY) for pair in pairs if len(pair) == 2 and pair[1]}
+    return name, known, unescaped(data, DATA)
 
 
 def annotations(out):
@@ -51,6 +63,43 @@ def test_what_is_escaped_comes_back(file, title, message):
     assert line.endswith("\n")
     assert len(line.splitlines()) == 1
     assert parse(line.removesuffix("\n")) == ("error", {"file": file, "line": "7", "title": title}, message)
+
+
+#: Few letters, so that all of them come up.
+ANY = st.text("%:,=\r\n02ADC x½", max_size=20)
+
+
+@given(folder=ANY, title=ANY, message=ANY)
+def test_whatever_is_said_comes_back(folder, title, message):
+    """Titles end with the id of their check, and paths with the name of a file."""
+    file, title = f"x{folder}/a.py", f"Check {title} [id]"
+    line = github("warning", file, 3, title, message)
+    assert "\n" not in line[:-1]
+    assert "\r" not in line
+    assert parse(line.removesuffix("\n")) == ("warning", {"file": file, "line": "3", "title": title}, message)
+
+
+@pytest.mark.parametrize("where", ["loading", "calling"])
+def test_what_a_file_says_when_it_fails_is_no_command(where, tmp_path):
+    """Run for real: the words of an exception are the student's."""
+    said = 'raise ValueError("a\\n::stop-commands::x\\r\\n::error::y")'
+    course = [sys.executable, "-m", "course", "-C", str(tmp_path)]
+    for words in (["init"], ["start", "integrators"]):
+        subprocess.run([*course, *words], check=True, capture_output=True)
+    text = said if where == "loading" else f"def explicit_euler_step(accel, t, q, v, h):\n    {said}\n"
+    (tmp_path / "integrators" / "integrators.py").write_text(text, "utf-8")
+    environment = {name: value for name, value in os.environ.items() if name != "GITHUB_WORKSPACE"}
+    ran = subprocess.run(
+        [*course, "check", "integrators", "--format", "github"],
+        capture_output=True, text=True, encoding="utf-8", env=environment, check=False,
+    )  # fmt: skip
+    lines = [line for line in (ran.stdout + ran.stderr).splitlines() if line.lstrip().startswith("::")]
+    found = [parse(line) for line in lines]
+    assert [(name, at["file"]) for name, at, _ in found] == [("error", "integrators/integrators.py")] * len(
+        found
+    )
+    assert found[0][1]["line"] == ("1" if where == "loading" else "2")
+    assert "::stop-commands::x" in found[0][2], "it is said, inside the message"
 
 
 def test_a_failed_check_is_an_annotation_at_its_function(course, write, workspace):

@@ -133,7 +133,7 @@ def test_version_wins_wherever_it_stands(course, words):
         ("check --nonsense", "course.check/1", 2),
         ("chekc", "course.error/1", 2),
         ("check one two", "course.check/1", 2),
-        ("author", "course.author/1", 2),
+        ("author", "course.error/1", 2),
         ("-C nowhere check", "course.check/1", 5),
         ("check -C", "course.check/1", 2),
         ("reset", "course.reset/1", 2),
@@ -165,7 +165,7 @@ def test_a_typo_is_answered_with_the_nearest_command(course):
 @pytest.fixture
 def failing(course, monkeypatch):
     """Make ``course doctor`` end by raising something."""
-    from course.cli.work import doctor
+    from course.cli.setup import doctor
 
     def arrange(error):
         def doctor_that_fails() -> int:
@@ -230,7 +230,7 @@ def test_ctrl_c_exits_130_and_says_that_nothing_is_lost(failing):
 
 
 def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
-    from course.cli.work import doctor
+    from course.cli.setup import doctor
 
     def noisy() -> int:
         """Say what works on this machine."""

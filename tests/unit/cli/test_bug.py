@@ -30,7 +30,7 @@ def somebody(monkeypatch, tmp_path):
 
 def crash_in(course, monkeypatch, message):
     """Have a command of the course fail by a fault of its own."""
-    from course.cli.work import doctor
+    from course.cli.setup import doctor
 
     def break_(*_, **__):
         raise RuntimeError(message)

@@ -147,6 +147,23 @@ def test_a_person_is_asked(monkeypatch, answer, agreed):
     assert out.getvalue() == "Really? [y/N] "
 
 
+@pytest.mark.parametrize(("answer", "on"), [("\n", True), ("q\n", False), ("n\n", False), ("", False)])
+def test_a_person_is_asked_whether_to_go_on(monkeypatch, answer, on):
+    console, _, _ = _console()
+    monkeypatch.setattr("sys.stdin", io.StringIO(answer))
+    assert console.go_on("Page 1 of 2.") is on
+
+
+@pytest.mark.parametrize("indent", [0, 4])
+def test_an_address_longer_than_a_line_stays_in_one_piece(monkeypatch, indent):
+    monkeypatch.setenv("COLUMNS", "60")
+    console, out, _ = _console(environ={"NO_COLOR": "1"})
+    address = f"http://localhost:8888/lab?token={48 * 'a'}"
+    console.line("It is at ", (address, "bold"), indent=indent)
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()
+    assert lines == [" " * indent + f"It is at {address}"]
+
+
 def test_numbers_that_json_has_not_are_words():
     class Values(msgspec.Struct):
         values: object

@@ -78,8 +78,15 @@ def someone(monkeypatch):
     return asked
 
 
+def test_a_lesson_that_was_read_names_the_step_that_the_dashboard_names(course, workspace, someone):
+    ran = course("lesson", "twice-as-much", "--page")
+    step = course("next", "--json").json["next"]["command"]
+    assert ran.out.endswith(f"Next: {step}\n")
+    assert step == "course check doubling", "it was started"
+
+
 def test_go_is_one_loop_until_a_step_is_not_finished(course, workspace, write, someone, monkeypatch):
-    from course.cli.work import going
+    from course.cli.home import going
 
     ran_with = []
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
+import queue
 import urllib.error
 import urllib.request
 import zipfile
@@ -243,6 +245,46 @@ def test_open_knows_what_there_is(course, workspace):
     assert course("open", "trebling").code == 5
 
 
+def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, workspace, monkeypatch):
+    """JupyterLab by itself starts one in the terminal where there is no display."""
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("ipykernel")
+    import subprocess
+
+    said = []
+
+    def started(command, **_):
+        said.extend(command)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(subprocess, "Popen", started)
+    course("open", "doubling")
+    assert "jupyterlab" in said
+    assert "--no-browser" in said
+
+
+@pytest.mark.parametrize("display", ["", ":0"])
+def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypatch, display):
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("ipykernel")
+    from course import browser
+    from course.notebooks import server
+
+    shown = queue.Queue()
+    lab = server.Lab("http://localhost:8888/lab?token=1", None)
+    monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))
+    monkeypatch.setattr(server.Lab, "wait", lambda _: 0)
+    monkeypatch.setattr(browser, "opened", shown.put)
+    monkeypatch.setattr("sys.platform", "linux")
+    for name in ("BROWSER", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("DISPLAY", display)
+    ran = course("open", "doubling")
+    assert f"is at {lab.address}" in ran.out
+    assert ("ssh -N -L 8888:127.0.0.1:8888" in ran.out) is (not display)
+    assert shown.get(timeout=30) == lab.address if display else shown.empty()
+
+
 @pytest.mark.parametrize("wanted", ["doubling", None])
 def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     course, workspace, monkeypatch, wanted
@@ -283,3 +325,19 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     assert path.read_bytes() == mine
     with pytest.raises(urllib.error.URLError):  # it ends with the command
         urllib.request.urlopen(ran.json["address"])
+
+
+def test_a_jupyterlab_that_does_not_start_is_quoted(course, workspace, monkeypatch, tmp_path):
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("ipykernel")
+    from course.notebooks import server
+
+    stand_in = tmp_path / "python"
+    stand_in.write_text("#!/bin/sh\necho 'no room left \033[31m' >&2\nexit 3\n")
+    stand_in.chmod(0o755)
+    monkeypatch.setattr(server.sys, "executable", str(stand_in))
+    ran = course("open", "doubling")
+    assert ran.code == 70
+    assert "JupyterLab ended before it was ready (exit code 3)." in ran.err
+    assert "It said:\nno room left" in ran.err
+    assert "\033[31m" not in ran.err

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import ast
+import contextlib
+import json
+import re
+import shutil
 from pathlib import Path
 
 import jsonschema
@@ -10,10 +14,14 @@ import msgspec
 import pytest
 
 import course as package
-from course.cli.frame.replies import Bare, Envelope, ErrorBody, ErrorReply, Hint, NextStep, encode
+from course.cli.frame.replies import Bare, Envelope, ErrorBody, ErrorReply, NextStep, encode
 from course.cli.frame.schemas import reply_types, schema_of
+from course.cli.work import checking
+from course.cli.work.replies import Hint
+from course.scoring.session import GradingSession
 
 CLI = Path(package.__file__).parent / "cli"
+MINI_COURSE = Path(__file__).parents[2] / "fixtures" / "mini_course"
 
 
 def broken(document, reply):
@@ -22,7 +30,7 @@ def broken(document, reply):
 
 @pytest.mark.parametrize("tag", list(reply_types()))
 def test_a_schema_is_one(tag):
-    document = schema_of(reply_types()[tag])
+    document = schema_of(tag)
     jsonschema.Draft202012Validator.check_schema(document)
     assert document["$id"] == tag
 
@@ -37,11 +45,11 @@ def test_every_kind_of_reply_that_is_declared_is_listed():
                     for word in node.keywords
                     if word.arg == "tag" and isinstance(word.value, ast.Constant)
                 }
-    assert declared | {"course.grade/1"} == set(reply_types())
+    assert declared | {"course.grade/1", "course.error/1"} == set(reply_types())
 
 
 def test_a_schema_accepts_its_reply_an_error_and_nothing_else():
-    document = schema_of(Hint)
+    document = schema_of("course.hint/1")
     reply = msgspec.json.decode(
         encode(
             Hint(exercise="a", given=True, reason="", task=None, hint=None, message="", next=NextStep("b"))
@@ -63,15 +71,172 @@ def test_numbers_that_json_has_not_are_in_the_schema():
     class Measured(Envelope, tag="course.measured/1", frozen=True, kw_only=True):
         value: float
 
+    document = schema_of("course.measured/1")
     for value in (1.5, float("nan"), float("-inf")):
-        assert not broken(schema_of(Measured), msgspec.json.decode(encode(Measured(value=value))))
-    assert broken(schema_of(Measured), {"schema": "course.measured/1", "value": "many"})
+        assert not broken(document, msgspec.json.decode(encode(Measured(value=value))))
+    assert broken(document, {"schema": "course.measured/1", "value": "many"})
+
+
+#: Lines that answer with every kind of reply there is, in an order in which each has something to say. A
+#: student's, on the real course, and an instructor's and an author's on a copy of the miniature one.
+STUDENT = """
+--version
+check --help
+init .
+start integrators
+lessons
+lesson why-simulate
+exercises
+warmup
+next
+go
+
+check integrators
+check --all
+watch integrators
+hint integrators
+diff integrators
+progress
+solution integrators
+start first-program
+report first-program
+start sim-to-real
+check sim-to-real
+reflect sim-to-real
+quiz take --questions
+quiz take --answers answers.toml
+quiz review
+quiz history
+notebook build integrators
+notebook check integrators/integrators.ipynb
+open integrators
+sim list
+sim run free-fall
+sim run --all
+engines list
+engines compare --engine pymunk --scenario bounce --dt 0.01
+sandbox list
+sandbox play head-on --headless --duration 1 --record run.jsonl
+sandbox replay run.jsonl
+sandbox export head-on --format mjcf -o world.xml
+submit
+reset integrators --yes
+update
+doctor
+bug
+schema
+schema hint
+author coverage
+author pictures --check
+no-such-command
+"""
+OTHERS = """
+grade run class --exercise doubling --out out --isolation process
+grade explain out ada doubling
+grade export out --format csv
+grade late out --clear
+grade assign out
+grade log out
+grade rerun out --dry-run --all
+grade similar out
+grade salvage out --to new
+author check halving
+author mutants halving
+author build halving
+author new lesson three-times
+author pack --solutions doubling -o released.coursepack
+"""
+
+
+def _stand_in_for_what_waits(monkeypatch):
+    """A watch ends at once, and what `course open` starts is there already."""
+    from course.cli.work import watching
+    from course.notebooks import server
+
+    def ended(_):
+        yield
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(watching, "saves", ended)
+    lab = server.Lab("http://localhost:8888/lab?token=1", None)
+    monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))
+    monkeypatch.setattr(server.Lab, "wait", lambda _: 0)
+
+
+def test_every_reply_of_every_command_keeps_its_schema(course, tmp_path, monkeypatch):
+    """``course`` holds each of them against its schema; here is one of each kind."""
+    pytest.importorskip("jupyterlab", reason="`course open` needs the extra notebook")
+    _stand_in_for_what_waits(monkeypatch)
+    monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
+    answered, failed = {}, []
+
+    def answer(line):
+        ran = course(*line.split(), "--json")
+        for row in ran.out.splitlines():
+            reply = json.loads(row)
+            if reply.get("error") and line != "no-such-command":
+                failed.append((line, reply["error"]))
+            answered[reply["schema"]] = line
+        return ran
+
+    monkeypatch.delenv("COURSE_CONTENT")
+    (tmp_path / "mine").mkdir()
+    monkeypatch.chdir(tmp_path / "mine")
+    for line in STUDENT.strip("\n").split("\n"):
+        ran = answer(line)
+        if line.startswith("start ") and "first" not in line:
+            (stub,) = Path(line.split()[1]).glob("*.py")
+            stub.write_text(
+                re.sub(r"raise NotImplementedError.*", "return 'RIGHT'", stub.read_text("utf-8")), "utf-8"
+            )
+        if line.endswith("--questions"):
+            Path("answers.toml").write_text(ran.json["template"].replace('= ""', '= "a"'), "utf-8")
+    with monkeypatch.context() as real:
+        real.setattr(
+            checking, "open_session", lambda one, catalog: GradingSession(one, catalog, scope="public")
+        )
+        answer("demo")
+    shutil.copytree(MINI_COURSE, tmp_path / "mini")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "mini"))
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    right = MINI_COURSE / "solutions" / "doubling" / "doubling.py"
+    shutil.copy(right, tmp_path / "class" / "ada" / "doubling.py")
+    monkeypatch.chdir(tmp_path)
+    for line in OTHERS.strip("\n").split("\n"):
+        answer(line)
+    assert failed == []
+    assert set(answered) == set(reply_types())
+
+
+def test_a_schema_takes_no_other_command_s_reply():
+    """Not even that of a check where a watch ends with one."""
+    error = {"schema": "course.check/1", "ok": False, "exit_code": 2, "error": {"code": "x", "message": "y"}}
+    assert not broken(schema_of("course.check/1"), error)
+    assert broken(schema_of("course.watch/1"), error)
+    assert broken(schema_of("course.check/1"), {**error, "schema": "course.watch/1"})
+
+
+@pytest.mark.parametrize(
+    ("line", "tag"),
+    [
+        ("demo extra", "course.demo/2"),
+        ("quiz history --nonsense", "course.quiz-history/1"),
+        ("sandbox list nothing-like-it", "course.sandbox-list/1"),
+        ("check --all --nonsense", "course.check-all/1"),
+        ("sim run --all --nonsense", "course.sim-all/1"),
+        ("author new lesson", "course.author-new/1"),
+        ("author", "course.error/1"),
+    ],
+)
+def test_an_error_has_the_schema_of_its_command(course, line, tag):
+    body = course(*line.split(), "--json").json
+    assert (body["schema"], body["ok"]) == (tag, False)
 
 
 def test_the_command_lists_and_prints(course):
     listed = course("schema", "--json").json["schemas"]
     assert listed == list(reply_types())
-    assert msgspec.json.decode(course("schema", "hint").out) == schema_of(Hint)
-    assert course("schema", "course.hint/1", "--json").json["document"] == schema_of(Hint)
+    assert msgspec.json.decode(course("schema", "hint").out) == schema_of("course.hint/1")
+    assert course("schema", "course.hint/1", "--json").json["document"] == schema_of("course.hint/1")
     missing = course("schema", "hin", "--json")
     assert (missing.code, missing.json["error"]["code"]) == (5, "schema_not_found")

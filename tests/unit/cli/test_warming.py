@@ -49,6 +49,18 @@ def write(workspace: Path, name: str, first: str, second: str) -> None:
     (workspace / "warm-ups" / name / f"{name}.py").write_text(text)
 
 
+def test_what_is_next_calls_it_a_small_task(warm, tmp_path, monkeypatch):
+    from course.progress.store import Store
+
+    warm("init", str(tmp_path / "fresh"))
+    monkeypatch.chdir(tmp_path / "fresh")
+    Store(tmp_path / "fresh" / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
+    assert warm("next", "--json").json["next"]["command"] == "course warmup adding"
+    warm("warmup", "adding")
+    body = warm("next", "--json").json
+    assert (body["next"]["command"], body["why"]) == ("course check adding", "the small task you started")
+
+
 def test_all_are_listed_by_lesson_with_what_is_done(warm, workspace):
     body = warm("warmup", "--json").json
     assert [(one["id"], one["state"]) for one in body["warm_ups"]] == [("adding", "new"), ("taking", "new")]

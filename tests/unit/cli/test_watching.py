@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
+import itertools
 import os
 import threading
 import time
@@ -159,6 +161,24 @@ def test_ctrl_c_ends_a_watch_with_its_one_object(course, workspace, write, monke
     assert body["last"]["schema"] == "course.check/1"
 
 
+def test_each_verdict_and_each_answer_to_a_key_ends_with_the_keys_and_the_file(
+    course, workspace, write, monkeypatch
+):
+    from types import SimpleNamespace
+
+    from course.cli.work import watching as module
+
+    write("wrong", "RIGHT")
+    pressed = iter(("", "v", "x\n", "q"))
+    monkeypatch.setattr(module, "saves", lambda path, wake: itertools.repeat(None))
+    keys = SimpleNamespace(taken=lambda: list(next(pressed)))
+    monkeypatch.setattr(module, "_keys", lambda console, wake: contextlib.nullcontext(keys))
+    ran = course("watch")
+    assert ran.code == 0
+    assert ran.out.count("Waiting for a save of doubling/doubling.py. Keys: h next hint") == 2
+    assert ran.out.endswith("q leave.\n")
+
+
 def test_there_must_be_a_file_to_begin_with(course, workspace):
     (workspace / "doubling" / "doubling.py").unlink()
     assert course("watch", "doubling").code == 3
@@ -200,7 +220,6 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     watcher, session = watching
     write("wrong", "wrong")
     watcher.look(session)
-    said = len(_said(watcher))
     watcher.press("h", session)
     assert watcher.here.history(watcher.exercise).hints
     watcher.press("n", session)
@@ -211,5 +230,8 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     assert watcher.verbose
     watcher.press("r", session)
     assert len(watcher.runs) == 2
-    watcher.press("x", session)
-    assert "Keys: h next hint" in _said(watcher)[said:]
+    assert watcher.press("r", session)
+    said = len(_said(watcher))
+    assert not watcher.press("x", session)
+    assert not watcher.press("\n", session)
+    assert len(_said(watcher)) == said

@@ -347,7 +347,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
     chosen = choose("head-on")
     with pytest.raises(MissingCapabilityError) as caught:
         web.play(World(chosen.scene), chosen.scene, say=print)
-    assert "starlette and uvicorn and websockets" in caught.value.message
+    assert "starlette, uvicorn and websockets" in caught.value.message
     for name in PARTS["web"].packages:
         assert f"'{name}" in caught.value.help
     assert "pip install" in caught.value.help

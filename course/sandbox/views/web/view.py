@@ -8,12 +8,10 @@ from __future__ import annotations
 import contextlib
 import secrets
 import socket
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.parse import urlsplit
 
-from course.browser import can_open, opened
+from course.browser import invite
 from course.errors import UsageError
 from course.extras import require
 
@@ -113,14 +111,7 @@ def _configured(app: ASGIApp) -> uvicorn.Config:
 
 def _invite(address: str, say: Callable[[str], None], *, show: bool) -> None:
     say(f"The world is at {address}")
-    say("Only this machine's browser gets there, and only with the whole address. Ctrl+C ends it.")
-    if show and can_open():
-        # Starting a browser can take as long as it likes; the page is served meanwhile.
-        threading.Thread(target=opened, args=(address,), daemon=True).start()
-        return
-    number = urlsplit(address).port
-    say("From another machine, first forward the port, with the same number at both ends:")
-    say(f"  ssh -N -L {number}:{_LOOPBACK}:{number} {socket.gethostname()}")
+    invite(address, say, show=show)
 
 
 def _listener(port: int) -> socket.socket:

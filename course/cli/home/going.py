@@ -7,8 +7,9 @@ import shlex
 from course.cli.frame.app import again
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Go, Next, NextStep
-from course.cli.work.advice import next_in_course
+from course.cli.frame.replies import NextStep
+from course.cli.home.advice import next_in_course
+from course.cli.home.replies import Go, Next
 
 __all__ = ["go", "next_command"]
 
@@ -34,10 +35,11 @@ def next_command() -> int:
     console, here = current(), Here.load()
     step = next_in_course(here)
     console.line(step)
-    console.note((_why(step), "dim"))
+    why = _why(here, step)
+    console.note((why, "dim"))
     for warning in here.warnings:
         console.warn(warning)
-    console.emit(Next(next=NextStep(step), why=_why(step)))
+    console.emit(Next(next=NextStep(step), why=why))
     return 0
 
 
@@ -48,27 +50,31 @@ def go() -> int:
     the quiz and what to hand in. In a terminal it asks before each further step. With --json it runs nothing
     and says what it would run.
     """
-    console = current()
-    step = next_in_course(Here.load())
+    console, here = current(), Here.load()
+    step = next_in_course(here)
     if console.json:
-        console.emit(Go(next=NextStep(step), why=_why(step)))
+        console.emit(Go(next=NextStep(step), why=_why(here, step)))
         return 0
     while True:
         words = _as_run(console, step)
-        console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(step)}", "dim"))
+        console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(here, step)}", "dim"))
         code = again(words)
         if not console.interactive:
             return code
-        before, step = step, next_in_course(Here.load())
+        here = Here.load()
+        before, step = step, next_in_course(here)
         if step == before:
             console.note(f"Not finished yet: {step}. `course go` goes on from here.")
             return code
-        if not console.go_on(f"Next: {step} ({_why(step)})."):
+        if not console.go_on(f"Next: {step} ({_why(here, step)})."):
             return 0
 
 
-def _why(step: str) -> str:
-    return _WHY.get(step.split()[1], "")
+def _why(here: Here, step: str) -> str:
+    _, name, *rest = step.split()
+    if name == "check" and rest and here.catalog.exercise(rest[0]).is_warm_up:
+        return "the small task you started"
+    return _WHY.get(name, "")
 
 
 def _as_run(console: Console, step: str) -> list[str]:

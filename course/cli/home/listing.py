@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from course.cli.frame.console import current
 from course.cli.frame.here import find_workspace, load_catalog
-from course.cli.frame.replies import Exercises, ExerciseState, NextStep
-from course.cli.work.overview import WORDS, exercise_state, score_of
+from course.cli.frame.replies import NextStep
+from course.cli.home.overview import WORDS, exercise_state, score_of
+from course.cli.home.replies import Exercises, ExerciseState
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise

@@ -18,8 +18,8 @@ from course import __version__
 from course.cli.frame import files
 from course.cli.frame.console import current
 from course.cli.frame.here import cwd
-from course.cli.frame.replies import Bug
-from course.cli.work.doctor import packages, protection, terminal
+from course.cli.setup.doctor import packages, protection, terminal
+from course.cli.setup.replies import Bug
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.cli.frame.replies import ExerciseState, ObjectiveState, WarmUpState
+from course.cli.home.replies import ExerciseState, ObjectiveState, WarmUpState
 from course.progress.quiz import quiz_history
 
 if TYPE_CHECKING:

@@ -7,13 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.cli.frame.replies import (
-    MistakeState,
-    PredictionsOf,
-    PredictionsState,
-    PredictionState,
-    Revisit,
-)
+from course.cli.home.replies import MistakeState, PredictionsOf, PredictionsState, PredictionState, Revisit
 from course.errors import CourseError
 from course.progress.mistakes import mistakes_of
 from course.reading.parts import read_script

@@ -15,7 +15,7 @@ from course.catalog.load import read_toml
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.replies import Demo
+from course.cli.setup.replies import Demo
 from course.cli.work.checking import reply_to
 from course.cli.work.verdicts import show_verdict
 from course.errors import InternalError

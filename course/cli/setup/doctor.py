@@ -12,7 +12,7 @@ import typer
 
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import find_workspace, load_catalog
-from course.cli.frame.replies import Doctor, Fix, Package
+from course.cli.setup.replies import Doctor, Fix, Package
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
 

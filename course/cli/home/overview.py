@@ -6,18 +6,11 @@ from typing import TYPE_CHECKING
 
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
-from course.cli.frame.replies import (
-    ExerciseState,
-    LessonState,
-    NextStep,
-    Progress,
-    QuizState,
-    Status,
-    WarmUpState,
-)
-from course.cli.work.advice import next_in_course
-from course.cli.work.learning import Learning, day, show_learning
-from course.cli.work.objectives import objective_states, show_objectives
+from course.cli.frame.replies import NextStep
+from course.cli.home.advice import next_in_course
+from course.cli.home.learning import Learning, day, show_learning
+from course.cli.home.objectives import objective_states, show_objectives
+from course.cli.home.replies import ExerciseState, LessonState, Progress, QuizState, Status, WarmUpState
 from course.errors import CourseError
 from course.progress.history import history_of
 from course.progress.quiz import quiz_history

@@ -1,0 +1,1 @@
+"""Where a student is: objectives with their evidence, what is done, what is next."""

@@ -73,7 +73,7 @@ def _reader() -> Reader:
 
 def _asked(ask: Callable[[], Any]) -> str:
     """What a question to the process that reads came to; it must not end by an input this small."""
-    process = _reader()._process
+    process = _reader()._process or _reader()._start()
     try:
         ask()
     except RefusedError as refused:

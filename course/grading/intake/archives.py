@@ -178,12 +178,12 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
             raise _refused(path, "it is larger than 6 MB")
         with zipfile.ZipFile(path) as archive:
             return read(archive, _checked_members(path, archive.infolist()))
-    except (RefusedError, MemoryError):
+    except RefusedError:
         raise
     except OSError as error:
         raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
     except Exception as error:  # noqa: BLE001 - zipfile and what unpacks for it raise all kinds at damage
-        raise _refused(path, f"it cannot be read ({error})") from None
+        raise _refused(path, f"it cannot be read ({error or type(error).__name__})") from None
 
 
 def _refused(path: Path, why: str) -> RefusedError:

@@ -309,10 +309,17 @@ def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[str
 
 
 def _parsed(source: str | bytes) -> ast.Module | None:
-    with contextlib.suppress(SyntaxError, ValueError), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a stranger's escapes
-        return ast.parse(source)
-    return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a stranger's escapes
+            return ast.parse(source)
+    except (
+        SyntaxError,
+        ValueError,
+        RecursionError,
+        MemoryError,
+    ):  # the last of nesting that no parser follows
+        return None
 
 
 if __name__ == "__main__":

@@ -165,11 +165,21 @@ def test_what_unpacks_a_damaged_archive_raises_as_it_likes(
     with zipfile.ZipFile(path, "w", zipfile.ZIP_LZMA) as target:
         target.writestr("doubling.py", _DOUBLE * 50)
     packed = bytearray(path.read_bytes())
-    packed[60:90] = b"\xff" * 30
-    path.write_bytes(packed)
-    with pytest.raises(RefusedError) as caught:
-        strict.module_in(path, doubling)
-    assert caught.value.problem.code == "refused_archive"
+    properties = packed.index(b"\x5d\0\0")  # of the compression, and how large a dictionary it takes
+    for at, damage in ((properties + 1, b"\xff" * 4), (properties + 9, b"\xff" * 30)):
+        path.write_bytes(packed[:at] + damage + packed[at + len(damage) :])
+        with pytest.raises(RefusedError) as caught:
+            strict.module_in(path, doubling)
+        assert caught.value.problem.code == "refused_archive"
+
+
+def test_nesting_that_no_parser_follows_costs_one_file_of_an_archive(tmp_path: Path, strict: Reader) -> None:
+    path = tmp_path / "m.zip"
+    with zipfile.ZipFile(path, "w") as target:
+        target.writestr("bomb.py", f"double = {'-' * 6000}1")
+        target.writestr("mine.py", _DOUBLE)
+    found = {name: functions for name, _, functions in strict.outlines(path, (), ("double",))}
+    assert found == {"bomb.py": (), "mine.py": ("double",)}
 
 
 def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(

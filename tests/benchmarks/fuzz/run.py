@@ -106,7 +106,7 @@ def zips(chance: inputs.Chance, folder: Path) -> str:
     _asked(lambda: _reader().member(path, chance.choice(inputs.NAMES)))
     found: list[Any] = []
     _asked(lambda: found.extend(_reader().outlines(path, (), FUNCTIONS)))
-    for member, _, _ in found:
+    for member, *_ in found:
         _asked(lambda member=member: submission_from(DOUBLING, path, member))  # type: ignore[misc]
     told = _asked(lambda: _notes_of(path))
     path.unlink()

@@ -54,6 +54,7 @@ PACKAGES = {
     "check50": ["check50"],
     "pytest": ["pytest"],
 }
+OURS = {"course at L3": ("--isolation", "strict"), "course at L1": ("--isolation", "process")}
 DISTRIBUTION = {"otter": "otter-grader"}
 INSTALL_S = 600
 HELD = 2_500_000_000  # bytes in the memory of one process; a worker of ours may have 2 GB
@@ -515,6 +516,7 @@ def measure(grader: Grader, names: list[str], patience_s: float) -> Iterator[tup
 
 def table(found: dict[str, dict[str, Any]], patience_s: float) -> str:
     """Markdown: an attack a row, a grader a column."""
+    found = {name: found[name] for name in (*PACKAGES, *OURS) if name in found}
     head = [f"{name} {one['version']}".strip() for name, one in found.items()]
     lines = ["| attack | what counts as success | " + " | ".join(head) + " |", "|---" * (len(head) + 2) + "|"]
     for name, (_, success) in ATTACKS.items():
@@ -547,8 +549,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     kinds = {"nbgrader": Nbgrader, "otter": Otter, "check50": Check50, "pytest": Pytest}
-    ours = {"course at L3": ("--isolation", "strict"), "course at L1": ("--isolation", "process")}
-    parser.add_argument("--only", action="append", choices=[*kinds, *ours])
+    parser.add_argument("--only", action="append", choices=[*kinds, *OURS])
     parser.add_argument("--attack", action="append", choices=list(ATTACKS))
     parser.add_argument("--venvs", type=Path, help="folder to keep the peers' environments in")
     parser.add_argument("--out", type=Path, default=Path("peers"))
@@ -562,7 +563,7 @@ def main() -> None:
     found: dict[str, dict[str, Any]] = json.loads(written.read_text("utf-8")) if written.exists() else {}
     with contextlib.ExitStack() as stack:
         venvs = options.venvs or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="peers-venvs-")))
-        for name in options.only or [*kinds, *ours]:
+        for name in options.only or [*kinds, *OURS]:
             one = found.setdefault(name, {"version": "", "attacks": {}})
             print(name, flush=True)
             try:
@@ -571,7 +572,7 @@ def main() -> None:
                     one["version"] = version(name, programs)
                     grader: Grader = kinds[name](programs)
                 else:
-                    grader = Ours(name, *ours[name])
+                    grader = Ours(name, *OURS[name])
                 for attacked, result in measure(grader, options.attack or list(ATTACKS), options.patience):
                     one["attacks"][attacked] = result
                     written.write_text(json.dumps(found, indent=1) + "\n", "utf-8")

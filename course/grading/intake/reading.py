@@ -315,13 +315,8 @@ def _parsed(source: str | bytes) -> ast.Module | None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of a stranger's escapes
             return ast.parse(source)
-    except (
-        SyntaxError,
-        ValueError,
-        RecursionError,
-        MemoryError,
-    ):  # the last of nesting that no parser follows
-        return None
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None  # the last two: nesting that the parser does not follow
 
 
 if __name__ == "__main__":

@@ -18,7 +18,17 @@ from typing import Any
 
 from course.errors import MissingCapabilityError
 
-__all__ = ["PARTS", "Part", "Requirement", "available", "load", "require", "requirement_of", "requirements"]
+__all__ = [
+    "CONTAINER",
+    "PARTS",
+    "Part",
+    "Requirement",
+    "available",
+    "load",
+    "require",
+    "requirement_of",
+    "requirements",
+]
 
 _DISTRIBUTION = "physics-sim-course"
 _EXTRA = re.compile(r"""extra\s*==\s*['"]([^'"]+)['"]""")
@@ -54,6 +64,14 @@ PARTS: dict[str, Part] = {
         "The view in a browser", ("starlette", "uvicorn", "websockets"), "course.sandbox.views.web.view"
     ),
 }
+
+
+#: What grading alone takes, of the base install: all that Gradescope's container has, and no extra.
+CONTAINER = Part(
+    "Grading in Gradescope's container",
+    ("msgspec", "numpy", "pymunk", "pytest"),
+    "course.grading.exports.container",
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,10 @@ is shown on one line goes through ``one_line``, so that nobody can add lines of 
 
 from __future__ import annotations
 
+import os
 import re
 
-__all__ = ["one_line", "printable", "steady"]
+__all__ = ["one_line", "printable", "steady", "unheeded"]
 
 _UNUSUAL = re.compile(r"[^ -~]")
 _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
@@ -33,6 +34,18 @@ def printable(text: str, limit: int | None = None) -> str:
 def steady(text: str) -> str:
     """Any text, our own too: only what would steer or turn what is around it is spelled out."""
     return _STEERING.sub(_escaped, text)
+
+
+def unheeded(text: str) -> str:
+    """Text as it may stand in the log of a workflow on GitHub, which obeys what it reads there.
+
+    The runner takes ``::command::`` at the beginning of a line and ``##[command]`` anywhere in one for a word
+    to itself (``TryParseV2`` and ``TryParse`` in ``actions/runner``, src/Runner.Common/ActionCommand.cs). One
+    such line forges an annotation, or stops all that follow. Elsewhere the text is as it was.
+    """
+    if os.environ.get("GITHUB_ACTIONS") != "true":
+        return text
+    return text.replace("##[", "## [").replace("::", ": :")
 
 
 def _spelled_out(match: re.Match[str]) -> str:

@@ -75,7 +75,7 @@ def _submission(exercise: Exercise, source: Source | None) -> Submission:
     if isinstance(source, Path):
         return _of_file(exercise, source)
     if isinstance(source, str):
-        return _of_text(exercise, source.encode())
+        return _of_text(exercise, source.encode("utf-8", "replace"))
     return _of_pieces(exercise, source)
 
 
@@ -119,7 +119,7 @@ def _of_text(exercise: Exercise, text: bytes) -> Submission:
 def _of_pieces(exercise: Exercise, pieces: Iterable[Any]) -> Submission:
     """Functions and texts, below what the exercise itself begins with: its imports and constants."""
     texts = [*given(exercise), *(piece if isinstance(piece, str) else _source(piece) for piece in pieces)]
-    return _of_text(exercise, "\n\n\n".join(texts).encode())
+    return _of_text(exercise, "\n\n\n".join(texts).encode("utf-8", "replace"))
 
 
 def _source(piece: Any) -> str:

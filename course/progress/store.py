@@ -91,7 +91,9 @@ class Store:
             IntegrityError: the file is damaged.
             MissingCapabilityError: it cannot be written here, is locked, or is from a newer course.
         """
-        row = (_now(), kind, subject, json.dumps(data or {}, ensure_ascii=False))
+        # Half a surrogate, as a page or a terminal can send one, is no text that a file can hold.
+        text = json.dumps(data or {}, ensure_ascii=False).encode("utf-8", "replace").decode()
+        row = (_now(), kind, subject, text)
         with self._connection(create=True) as database:
             database.execute("BEGIN IMMEDIATE")
             database.execute(_INSERT, row)

@@ -28,7 +28,7 @@ __all__ = ["JUDGEMENTS", "CellState", "InProgress", "Judgement", "Prediction", "
 
 Judgement = Literal["right", "nearly", "wrong"]
 JUDGEMENTS: tuple[Judgement, ...] = ("right", "nearly", "wrong")
-#: As much of what a cell printed as is kept.
+#: As much of what a cell printed, or a reader predicted, as is kept.
 _KEPT = 4000
 #: Enough of a block's words to know it again after a lesson was edited.
 _WORDS = 60
@@ -166,8 +166,9 @@ class InProgress:
     def predict(self, question: Question, text: str) -> None:
         """Keep what was said; an empty text is a skip. What was said first stays."""
         if question.key not in self._predictions:
-            self._predictions[question.key] = Prediction(text.strip())
-            self._note("prediction", {"key": question.key, "number": question.number, "text": text.strip()})
+            said = text.strip()[:_KEPT].encode("utf-8", "replace").decode()
+            self._predictions[question.key] = Prediction(said)
+            self._note("prediction", {"key": question.key, "number": question.number, "text": said})
 
     def judge(self, question: Question, judged: Judgement) -> None:
         """Keep how a prediction did, by the reader's own word."""

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, TextIO, cast
 
 from course.cli.frame.stream import Stream
 from course.errors import InternalError
-from course.printable import steady
+from course.printable import steady, unheeded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -193,6 +193,7 @@ class Console:
 
     def item(self, label: str, *pieces: Piece, style: str = "", indent: int = 2, width: int = 0) -> None:
         """A short label and a text beside it; in a terminal the text wraps under itself."""
+        label = _harmless(label)
         if not self.fancy:
             self._human.write(" " * indent + f"{label}: " + "".join(_bare(p) for p in pieces) + "\n")
             return
@@ -372,8 +373,8 @@ def _text(pieces: Sequence[Piece]) -> Text:
 
 
 def _harmless(text: str) -> str:
-    """Text that cannot steer the terminal: what a student's code printed or raised is shown, not obeyed."""
-    return steady(text.replace("\r\n", "\n"))
+    """Text that steers no terminal and no workflow: what a student's code raised is shown, not obeyed."""
+    return unheeded(steady(text.replace("\r\n", "\n")))
 
 
 _installed: Console | None = None

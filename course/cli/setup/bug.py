@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import getpass
+import json
 import os
 import platform
 import re
 import sys
 import sysconfig
 import tempfile
+import unicodedata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
+from urllib.parse import quote
 
 import typer
 
@@ -60,12 +64,23 @@ def bug(
 def redacted(text: str) -> str:
     """A text without the names of the user and the machine, and without the folders that bear them."""
     for place, name in _places():
-        # A path may be written with either slash, and with the backslashes of a Python string.
-        for way in {place, place.replace("\\", "/"), place.replace("\\", "\\\\")}:
+        for way in _spellings(place) | _spellings(place.replace("\\", "/")):
             text = re.sub(re.escape(way) + r"(?![\w-])", name, text, flags=re.IGNORECASE)
     for word, name in _names():
-        text = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", name, text, flags=re.IGNORECASE)
+        for way in _spellings(word):
+            # An underscore parts words: a folder may be called ada_thesis.
+            text = re.sub(rf"(?<![^\W_]){re.escape(way)}(?![^\W_])", name, text, flags=re.IGNORECASE)
     return text
+
+
+def _spellings(text: str) -> set[str]:
+    """As it is; with its accents apart, as macOS has them; and as Python, JSON and an address write it."""
+    forms = {unicodedata.normalize(form, text) for form in ("NFC", "NFD")}
+    return {
+        way
+        for form in forms
+        for way in (form, form.encode("unicode_escape").decode("ascii"), json.dumps(form)[1:-1], quote(form))
+    }
 
 
 def _places() -> list[tuple[str, str]]:
@@ -93,6 +108,10 @@ def _names() -> Iterator[tuple[str, str]]:
         words.add(getpass.getuser())
     except (ImportError, KeyError, OSError):
         words.discard("")
+    with contextlib.suppress(ImportError, KeyError, AttributeError):
+        import pwd
+
+        words.add(pwd.getpwuid(os.getuid()).pw_gecos.partition(",")[0])  # in full
     yield from ((word, "<user>") for word in sorted(words - {"", "/"}, key=len, reverse=True))
     host = platform.node()
     machines = {host, host.partition(".")[0], os.environ.get("COMPUTERNAME", "")} - {"", "localhost"}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from course.cli.frame.here import cwd
 from course.errors import UsageError
-from course.printable import steady
+from course.printable import steady, unheeded
 from course.scoring.numbers import numbers_of
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _shown(form: str, level: str, file: str, line: int, title: str, message: str
     title, message = steady(title), steady(message)
     if form == "github":
         return github(level, file, line, title, message)
-    return f"{file}:{line}: {level}: {' '.join(f'{title}: {message}'.split())}\n"
+    return unheeded(f"{file}:{line}: {level}: {' '.join(f'{title}: {message}'.split())}\n")
 
 
 def _data(text: str) -> str:

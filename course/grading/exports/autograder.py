@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError
-from course.extras import requirement_of
+from course.extras import CONTAINER, requirement_of
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.selection import Written
 
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["write_autograder"]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
-#: What grading imports; the rest of the course's requirements is for students.
-_NEEDED = ("msgspec", "numpy", "pymunk", "pytest")
 #: Parts of the package that grading does not use, and the content of a wheel.
 _LEFT_OUT = {"cli", "authoring", "notebooks", "sandbox", "content", "lessons", "__pycache__"}
 
@@ -71,7 +69,7 @@ unset PYTHONPATH PYTHONSTARTUP
 export COURSE_CONTENT=/autograder/source/content
 export PYTHONPATH=/autograder/source
 export PYTHONDONTWRITEBYTECODE=1
-exec /opt/grader/bin/python -P -m course.grading.exports.container \\
+exec /opt/grader/bin/python -P -m {module} \\
   /autograder/submission /autograder/results/results.json /autograder/source/config.json
 """
 
@@ -105,10 +103,10 @@ def write_autograder(
     }
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as packed:
-        wanted = " ".join(f"'{requirement_of(name).text}'" for name in _NEEDED)
+        wanted = " ".join(f"'{requirement_of(name).text}'" for name in CONTAINER.packages)
         setup = _SETUP.replace("{requirements}", wanted)
         _put(packed, "setup.sh", setup.encode(), executable=True)
-        _put(packed, "run_autograder", _RUN.encode(), executable=True)
+        _put(packed, "run_autograder", _RUN.replace("{module}", CONTAINER.module).encode(), executable=True)
         _put(packed, "config.json", json.dumps(config, indent=1).encode())
         for name, source in _files(catalog, exercises):
             _put(packed, name, source.read_bytes())
@@ -116,7 +114,7 @@ def write_autograder(
     notes = [
         "The zip holds hidden graders and model solutions: upload it, and give it to nobody.",
         "The container's protection level is in the output that only you see; below L2 a hostile submission "
-        "could read the graders.",
+        "could read the graders, and write its own result.",
     ]
     return Written(paths=[path], rows=len(exercises), notes=notes)
 

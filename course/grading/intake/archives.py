@@ -12,7 +12,6 @@ import hashlib
 import json
 import stat
 import zipfile
-import zlib
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -101,7 +100,7 @@ def module_in(path: Path, exercise: Exercise) -> Held | None:
                 "Make the archive again with `course submit` and upload it unchanged.",
             )
         raw = members[name].filename
-        notes = tuple(_notes(path, name, raw, wanted, exercise))
+        notes = tuple(one_line(note) for note in _notes(path, name, raw, wanted, exercise))
         return Held(raw, content, notes, tuple(members[other].filename for other in wanted))
 
     return _opened(path, read)
@@ -179,10 +178,12 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
             raise _refused(path, "it is larger than 6 MB")
         with zipfile.ZipFile(path) as archive:
             return read(archive, _checked_members(path, archive.infolist()))
-    except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError, ValueError) as error:
-        raise _refused(path, f"it cannot be read ({error})") from None
+    except RefusedError:
+        raise
     except OSError as error:
         raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
+    except Exception as error:  # noqa: BLE001 - zipfile and what unpacks for it raise all kinds at damage
+        raise _refused(path, f"it cannot be read ({error or type(error).__name__})") from None
 
 
 def _refused(path: Path, why: str) -> RefusedError:

@@ -35,7 +35,7 @@ from course.grading.intake.archives import (
 )
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
 from course.grading.quiz import checked_record
-from course.handed_in.cells import MAX_NOTEBOOK
+from course.handed_in.cells import MAX_CODE, MAX_NOTEBOOK
 from course.handed_in.notebook import notebook_source
 from course.printable import one_line
 from course.scoring.verdict import Problem
@@ -76,8 +76,9 @@ class _Ask(msgspec.Struct, frozen=True):
     skip: tuple[str, ...] = ()
 
 
-#: A file by its name in its archive, the digest of its content, and the names of the functions in it.
-Outline = tuple[str, str, tuple[str, ...]]
+#: A file by its name in its archive, the digest of its content, the names of the functions in it, and how
+#: much code was parsed to find them.
+Outline = tuple[str, str, tuple[str, ...], int]
 
 
 class _Told(msgspec.Struct, frozen=True):
@@ -287,32 +288,35 @@ def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> 
             content = handle.read(MAX_NOTEBOOK + 1)
         files = [("", content)] if len(content) <= MAX_NOTEBOOK else []
     for name, content in files:
-        yield name, hashlib.sha256(content).hexdigest(), _defined(name or path.name, content, functions)
+        yield name, hashlib.sha256(content).hexdigest(), *_defined(name or path.name, content, functions)
 
 
-def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[str, ...]:
-    """Which of these functions a file's top level defines; none if it is no Python."""
+def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
+    """Which of these functions a file's top level defines, and how much code was parsed for that."""
     if not any(function.encode() in content for function in functions):
-        return ()  # parsing takes a hundred times as long as looking
+        return (), 0  # parsing takes a hundred times as long as looking
+    pieces: list[str | bytes] = [content]
     try:
         if name.casefold().endswith(".ipynb"):
             cells = json.loads(content).get("cells", ())
-            code = [cell for cell in cells if cell.get("cell_type") == "code"]
-            trees = [_parsed("".join(cell.get("source", ()))) for cell in code]
-        else:
-            trees = [_parsed(content)]
+            pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):
-        return ()
-    found = [node for tree in trees if tree for node in tree.body]
+        return (), 0
+    size = sum(map(len, pieces))
+    if size > MAX_CODE:
+        return (), 0  # nor could it be graded
+    found = [node for tree in map(_parsed, pieces) if tree for node in tree.body]
     names = {node.name for node in found if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)}
-    return tuple(function for function in functions if function in names)
+    return tuple(function for function in functions if function in names), size
 
 
 def _parsed(source: str | bytes) -> ast.Module | None:
-    with contextlib.suppress(SyntaxError, ValueError), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a stranger's escapes
-        return ast.parse(source)
-    return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a stranger's escapes
+            return ast.parse(source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None  # the last two: nesting that the parser does not follow
 
 
 if __name__ == "__main__":

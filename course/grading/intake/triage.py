@@ -22,7 +22,7 @@ from course.grading.intake.reading import reader
 from course.printable import one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
 
     from course.catalog.models import Exercise
     from course.grading.intake.downloads import Place
@@ -33,6 +33,8 @@ _KINDS = (".py", ".ipynb", ".zip")
 #: How far one student's folder is searched: folders deep, entries looked at, files read, and files that took
 #: the process that reads with them, which may have had ten seconds each.
 _DEEP, _ENTRIES, _READ, _FATAL = 6, 2000, 60, 3
+#: Code of one student that is parsed, in characters; a million of the densest take about 3 s of CPU.
+_CODE = 3 << 20
 #: How alike two names are, of 1, before one is taken for a slip in the other: ``integrator`` for
 #: ``integrators`` is 0.95, ``collision`` for ``integrators`` 0.3.
 _ALIKE = 0.75
@@ -87,13 +89,16 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
     """
     functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
     candidates: list[Candidate] = []
+    left = _CODE
     for name, path in _files(place):
         fatal = sum(not one.sha256 for one in candidates)
         if len(candidates) >= _READ or fatal >= _FATAL:
             break
         if (str(path), "") not in used:
             skip = tuple(member for archive, member in used if archive == str(path) and member)
-            candidates += _outlined(name, path, skip, functions)
+            found, parsed = _outlined(name, path, skip, functions if left > 0 else ())
+            candidates += found
+            left -= parsed
     return candidates[:_READ]
 
 
@@ -129,17 +134,20 @@ def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
 
 def _outlined(
     name: str, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]
-) -> Iterator[Candidate]:
-    """What is in a file, or in each file of an archive but those to skip."""
+) -> tuple[list[Candidate], int]:
+    """What is in a file, or in each file of an archive but those to skip; how much code was parsed for it."""
     shown = one_line(os.fsencode(name).decode("utf-8", "backslashreplace"))
     try:
         outlines = reader.outlines(path, skip, functions)
     except RefusedError:
-        yield Candidate(shown, os.fsencode(path))
-        return
-    for member, sha256, defines in outlines:
-        inner = f"{shown}/{one_line(member)}" if member else shown
-        yield Candidate(inner, os.fsencode(path), member, sha256, defines)
+        return [Candidate(shown, os.fsencode(path))], 0
+    candidates = [
+        Candidate(
+            f"{shown}/{one_line(member)}" if member else shown, os.fsencode(path), member, sha256, defines
+        )
+        for member, sha256, defines, _ in outlines
+    ]
+    return candidates, sum(parsed for *_, parsed in outlines)
 
 
 def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: bool) -> tuple[Candidate, ...]:

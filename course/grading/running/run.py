@@ -22,7 +22,7 @@ from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Results
 from course.grading.running.batch import grade_all
 from course.grading.running.folder import BOOK, begin, export_all, remember, taken_back
-from course.grading.running.snapshot import Snapshot, frozen, kept
+from course.grading.running.snapshot import Snapshot, among_graders, frozen, kept
 from course.grading.running.summary import Summary
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
@@ -110,6 +110,12 @@ def grade_class(
         )
     _exercises(catalog, options.exercises)
     members = _members(folder, options)
+    if among_graders(folder, catalog.content):
+        raise UsageError(
+            f"{folder} lies among the course's own exercises and graders.",
+            help="Move the submissions elsewhere: what lies there is kept and run as part of the graders.",
+            code="submissions_among_graders",
+        )
     started = time.monotonic()
     with (
         taken_back(out) as taken,

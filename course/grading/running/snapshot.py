@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from course.grading.gradebook.book import Gradebook
 
-__all__ = ["Frozen", "Snapshot", "frozen", "in_use", "kept"]
+__all__ = ["Frozen", "Snapshot", "among_graders", "frozen", "in_use", "kept"]
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 #: Of this package, what a grader process imports, and what checks may.
@@ -101,14 +101,22 @@ def kept(book: Gradebook, sha256: str | None) -> Snapshot | None:
     return Snapshot.of(packed, sha256) if packed and sha256 else None
 
 
+def among_graders(folder: Path, content: Content) -> bool:
+    """Whether a folder is one of those that a snapshot is taken of, or lies in one."""
+    return any(folder.resolve().is_relative_to(one.resolve()) for one in _folders(content).values())
+
+
+def _folders(content: Content) -> dict[str, Path]:
+    """Those of the content, by their names in a snapshot."""
+    found = {"exercises": content.exercises, "quiz": content.quiz}
+    found |= {"solutions": content.solutions} if content.solutions is not None else {}
+    return found | ({"graders": content.graders} if content.graders is not None else {})
+
+
 def _files(content: Content) -> Iterator[tuple[str, Path]]:
     """What belongs into a snapshot: its name there, and where it is."""
     folders = {f"course/{name}": _PACKAGE / name for name in _CODE}
-    folders |= {"content/exercises": content.exercises, "content/quiz": content.quiz}
-    if content.solutions is not None:
-        folders["content/solutions"] = content.solutions
-    if content.graders is not None:
-        folders["content/graders"] = content.graders
+    folders |= {f"content/{name}": folder for name, folder in _folders(content).items()}
     for name, folder in folders.items():
         for path in folder.rglob("*"):
             inner = path.relative_to(folder)

@@ -73,7 +73,10 @@ def _here(config: dict[str, Any]) -> socket.socket:
     with contextlib.suppress(ImportError):  # Windows has no limits of this kind
         import resource
 
-        for kind, name in ((resource.RLIMIT_FSIZE, "file_size"), (resource.RLIMIT_CPU, "cpu_s")):
+        kinds = [(resource.RLIMIT_FSIZE, "file_size"), (resource.RLIMIT_CPU, "cpu_s")]
+        if sys.platform == "linux":  # macOS has the name and not the limit
+            kinds.append((resource.RLIMIT_AS, "memory"))
+        for kind, name in kinds:
             limit, (_, hard) = config["limits"][name], resource.getrlimit(kind)
             resource.setrlimit(kind, (limit, limit if hard < 0 else min(hard, limit)))
     sock.setblocking(True)

@@ -11,6 +11,8 @@ import random
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from course.errors import UsageError
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -132,6 +134,12 @@ def _part(body: Body, material: Material, name: str, place: Vector, colour: str)
     vx, vy = _turned(*body.velocity, turn)
     mass = 0.0 if body.fixed else body.mass or material.density * _area(body, outline)
     moment = 0.0 if body.fixed else _moment(body, outline, mass) if body.rotates else math.inf
+    if not (body.fixed or (mass > 0.0 and moment > 0.0)):
+        raise UsageError(
+            f"{name} has a mass of {mass:g} kg and a moment of {moment:g} kg m², too small to count.",
+            help="Make it larger or heavier.",
+            code="bad_scene",
+        )
     return Part(
         name=name,
         shape="polygon" if body.shape == "box" else body.shape,

@@ -1,7 +1,7 @@
 """Thirteen plain attacks on nbgrader, otter, check50, a plain pytest process, and on this course's grader.
 
     python tests/benchmarks/peers/withstand.py [--only check50] [--attack hang] [--venvs DIR] [--out DIR]
-                                               [--patience 300]
+                                               [--page docs/peers.md] [--patience 300]
 
 Every grader gets the same exercise (`double` of the miniature course in tests/fixtures): a public test and a
 hidden one with a number and a word drawn for the run. A peer is installed by pip in a virtual environment of
@@ -9,7 +9,8 @@ its own and used as its documentation tells an instructor to use it on one machi
 addresses. A right and a wrong answer are graded first: whoever does not tell them apart is not measured. What
 an attack is, and what counts as its success, is in attacks.py; what it left running is killed afterwards.
 
-Linux only: who is running is read from /proc. Writes peers.json and peers.md to ``--out``.
+Linux only: who is running is read from /proc. Writes peers.json and peers.md to ``--out``; what peers.json
+has from earlier runs stays until it is tried again, and stands in both tables.
 """
 
 from __future__ import annotations
@@ -53,6 +54,7 @@ PACKAGES = {
     "check50": ["check50"],
     "pytest": ["pytest"],
 }
+OURS = {"course at L3": ("--isolation", "strict"), "course at L1": ("--isolation", "process")}
 DISTRIBUTION = {"otter": "otter-grader"}
 INSTALL_S = 600
 HELD = 2_500_000_000  # bytes in the memory of one process; a worker of ours may have 2 GB
@@ -514,7 +516,8 @@ def measure(grader: Grader, names: list[str], patience_s: float) -> Iterator[tup
 
 def table(found: dict[str, dict[str, Any]], patience_s: float) -> str:
     """Markdown: an attack a row, a grader a column."""
-    head = [f"{name} {one['version']}" for name, one in found.items()]
+    found = {name: found[name] for name in (*PACKAGES, *OURS) if name in found}
+    head = [f"{name} {one['version']}".strip() for name, one in found.items()]
     lines = ["| attack | what counts as success | " + " | ".join(head) + " |", "|---" * (len(head) + 2) + "|"]
     for name, (_, success) in ATTACKS.items():
         cells = []
@@ -533,16 +536,24 @@ def table(found: dict[str, dict[str, Any]], patience_s: float) -> str:
     return "\n".join(lines + notes) + "\n"
 
 
+def in_place(page: str, made: str) -> str:
+    """A page with its table of attacks exchanged for another."""
+    lines = page.split("\n")
+    first = next(number for number, line in enumerate(lines) if line.startswith("| attack |"))
+    after = next(number for number in range(first, len(lines)) if not lines[number].strip())
+    return "\n".join([*lines[:first], *made.strip().split("\n"), *lines[after:]])
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     kinds = {"nbgrader": Nbgrader, "otter": Otter, "check50": Check50, "pytest": Pytest}
-    ours = {"course at L3": ("--isolation", "strict"), "course at L1": ("--isolation", "process")}
-    parser.add_argument("--only", action="append", choices=[*kinds, *ours])
+    parser.add_argument("--only", action="append", choices=[*kinds, *OURS])
     parser.add_argument("--attack", action="append", choices=list(ATTACKS))
     parser.add_argument("--venvs", type=Path, help="folder to keep the peers' environments in")
     parser.add_argument("--out", type=Path, default=Path("peers"))
+    parser.add_argument("--page", type=Path, help="Markdown whose table is replaced by the one of this run")
     parser.add_argument("--patience", type=float, default=300.0, help="wall seconds until a run is given up")
     options = parser.parse_args()
     if sys.platform != "linux":
@@ -552,7 +563,7 @@ def main() -> None:
     found: dict[str, dict[str, Any]] = json.loads(written.read_text("utf-8")) if written.exists() else {}
     with contextlib.ExitStack() as stack:
         venvs = options.venvs or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="peers-venvs-")))
-        for name in options.only or [*kinds, *ours]:
+        for name in options.only or [*kinds, *OURS]:
             one = found.setdefault(name, {"version": "", "attacks": {}})
             print(name, flush=True)
             try:
@@ -561,7 +572,7 @@ def main() -> None:
                     one["version"] = version(name, programs)
                     grader: Grader = kinds[name](programs)
                 else:
-                    grader = Ours(name, *ours[name])
+                    grader = Ours(name, *OURS[name])
                 for attacked, result in measure(grader, options.attack or list(ATTACKS), options.patience):
                     one["attacks"][attacked] = result
                     written.write_text(json.dumps(found, indent=1) + "\n", "utf-8")
@@ -570,7 +581,10 @@ def main() -> None:
                 one["why"] = " ".join(str(reason).split())
                 print(f"  not measured: {one['why']}")
             written.write_text(json.dumps(found, indent=1) + "\n", "utf-8")
-            (options.out / "peers.md").write_text(table(found, options.patience), "utf-8")
+            made = table(found, options.patience)
+            (options.out / "peers.md").write_text(made, "utf-8")
+            if options.page:
+                options.page.write_text(in_place(options.page.read_text("utf-8"), made), "utf-8")
 
 
 if __name__ == "__main__":

@@ -244,3 +244,38 @@ def test_a_checkout_without_the_record_is_checked(course, write, workspace):
     ran = course("check", "--all", "--format", "github")
     assert ran.code == 1
     assert len(annotations(ran.out)) == 1
+
+
+#: What the runner knows, and a folder or an exception may be called; ``##[`` counts anywhere in a line.
+FORGED = "::error::forged\n::stop-commands::x ##[add-mask]root ##[stop-commands]x"
+
+
+def heeded(line):
+    """A command of the first or the second form, as the runner looks for them in every line."""
+    return parse(line) or ("##[" in line and "]" in line.partition("##[")[2])
+
+
+def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
+    """A folder called as a command was one in every list of a run, and so was what an exception said."""
+    import io
+
+    from course.cli.frame.console import Console
+    from course.cli.work.annotations import _shown
+
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    out, err = io.StringIO(), io.StringIO()
+    console = Console(stdout=out, stderr=err)
+    console.line("  ", FORGED.partition("\n")[0])
+    console.block(FORGED)
+    console.warn(FORGED)
+    console.error(FORGED, FORGED)
+    console.item("::error::x", "##[error]")
+    console.raw(_shown("lines", "error", "::error::a.py", 1, FORGED, FORGED))
+    said = (out.getvalue() + err.getvalue()).splitlines()
+    assert len(said) > 8
+    assert not [line for line in said if heeded(line)]
+    (line,) = _shown("github", "error", "a.py", 1, FORGED, FORGED).splitlines()
+    assert parse(line) == ("error", {"file": "a.py", "line": "1", "title": FORGED}, FORGED)
+    monkeypatch.delenv("GITHUB_ACTIONS")
+    console.line("a[::2]")
+    assert out.getvalue().endswith("a[::2]\n")

@@ -61,6 +61,34 @@ def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
     assert "doctor.py" in text
 
 
+@pytest.mark.parametrize(
+    "written",
+    [
+        "/srv/Jürgen_thesis/x.py", "/home/Ju\u0308rgen/x", "file:///home/J%C3%BCrgen/x", r"'J\xfcrgen'",
+        r'"J\u00fcrgen"', "JU\u0308RGEN", "planted-laptop_backup", "/media/Jürgen Planted/x",
+    ],
+)  # fmt: skip
+def test_a_name_is_known_however_it_is_spelt(monkeypatch, written):
+    """In a folder's name, with its accents apart, and as a string or an address has it."""
+    from course.cli.work import bug
+
+    monkeypatch.setattr(bug, "_places", lambda: [("/home/Jürgen", "~")])
+    names = [("Jürgen Planted", "<user>"), ("Jürgen", "<user>"), (HOST, "<machine>")]
+    monkeypatch.setattr(bug, "_names", lambda: names)
+    found = bug.redacted(written).casefold()
+    assert not [part for part in ("rgen", "planted") if part in found]
+
+
+def test_the_name_in_full_is_one_of_them(somebody, monkeypatch):
+    pwd = pytest.importorskip("pwd")
+    from types import SimpleNamespace
+
+    from course.cli.work.bug import redacted
+
+    monkeypatch.setattr(pwd, "getpwuid", lambda _: SimpleNamespace(pw_gecos="Ada Planted,,,", pw_name=USER))
+    assert redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"
+
+
 def test_a_report_has_versions_and_the_level(course, somebody):
     from course import __version__
 

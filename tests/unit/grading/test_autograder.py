@@ -90,6 +90,7 @@ def test_it_installs_the_versions_this_project_states(unpacked: Path) -> None:
 def test_its_scripts_are_shell(unpacked: Path, script: str) -> None:
     path = unpacked / "source" / script
     assert path.read_bytes().startswith(b"#!/usr/bin/env bash\n")
+    assert not re.search(rb"[^$]\{[a-z]+\}", path.read_bytes()), "a place that was not filled in"
     done = subprocess.run(["bash", "-n", path], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
 

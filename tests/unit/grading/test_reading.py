@@ -19,6 +19,7 @@ from course.grading.quiz import grade_quiz
 from course.handed_in.cells import MAX_CELLS
 from course.handed_in.notebook import MAX_NOTES, notebook_source
 from course.quizzing.bank import Bank
+from tests.benchmarks.fuzz.run import run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -154,6 +155,53 @@ def test_an_archive_is_read_over_there_too(tmp_path: Path, doubling: Exercise, s
     path.write_bytes(b"PK")
     with pytest.raises(RefusedError, match="cannot be read"):
         strict.module_in(path, doubling)
+
+
+def test_what_unpacks_a_damaged_archive_raises_as_it_likes(
+    tmp_path: Path, doubling: Exercise, strict: Reader
+) -> None:
+    """LZMA has an error of its own; that ended the process, and the file had "taken too much time"."""
+    path = tmp_path / "m.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_LZMA) as target:
+        target.writestr("doubling.py", _DOUBLE * 50)
+    packed = bytearray(path.read_bytes())
+    properties = packed.index(b"\x5d\0\0")  # of the compression, and how large a dictionary it takes
+    for at, damage in ((properties + 1, b"\xff" * 4), (properties + 9, b"\xff" * 30)):
+        path.write_bytes(packed[:at] + damage + packed[at + len(damage) :])
+        with pytest.raises(RefusedError) as caught:
+            strict.module_in(path, doubling)
+        assert caught.value.problem.code == "refused_archive"
+
+
+def test_nesting_that_no_parser_follows_costs_one_file_of_an_archive(tmp_path: Path, strict: Reader) -> None:
+    path = tmp_path / "m.zip"
+    with zipfile.ZipFile(path, "w") as target:
+        target.writestr("bomb.py", f"double = {'-' * 6000}1")
+        target.writestr("mine.py", _DOUBLE)
+    found = {name: functions for name, _, functions, _ in strict.outlines(path, (), ("double",))}
+    assert found == {"bomb.py": (), "mine.py": ("double",)}
+
+
+def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(
+    tmp_path: Path, doubling: Exercise, strict: Reader
+) -> None:
+    """A name that is no text ended the process; a line end in a folder's name was a line of a report."""
+    path = tmp_path / "m\udce9.zip"
+    with zipfile.ZipFile(path, "w") as target:
+        target.writestr("a\n\x1b[2Jb\u202e/doubling.py", _DOUBLE)
+    held = strict.module_in(path, doubling)
+    assert held is not None
+    (note,) = held.notes
+    assert note.isprintable()
+    assert r"m\udce9.zip" in note
+
+
+@pytest.mark.parametrize("kind", ["notebooks", "zips", "frames", "scenes"])
+def test_random_input_meets_words_and_no_fault(kind: str) -> None:
+    """A glance: tests/benchmarks/fuzz/run.py runs for as long as it is told."""
+    outcomes, faults = run(kind, seed=7, numbers=range(60))
+    assert not faults
+    assert len(outcomes) > 1, "inputs that get in, and inputs that do not"
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ import msgspec
 import pytest
 
 from course.catalog.load import Catalog
+from course.catalog.locate import chosen
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake.students import read_class
@@ -97,6 +98,23 @@ def test_results_do_not_go_among_the_submissions(tmp_path: Path, catalog: Catalo
     make_class(tmp_path / "class", solution, 1)
     with pytest.raises(UsageError, match="among the submissions"):
         grade_class(tmp_path / "class", tmp_path / "class" / "out", catalog, RunOptions(), lambda *_: None)
+
+
+def test_submissions_are_no_part_of_the_graders(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
+    """A large file of a student's was: the run was refused, with its graders "damaged"."""
+    content = tmp_path / "content"
+    shutil.copytree(catalog.content.root, content)
+    for kind in ("exercises/doubling", "graders"):
+        make_class(content / kind / "class", solution, 1)
+        with pytest.raises(UsageError, match="among the course's own"):
+            grade_class(
+                content / kind / "class",
+                tmp_path / "out",
+                Catalog(chosen(content)),
+                RunOptions(),
+                lambda *_: None,
+            )
+    assert not (tmp_path / "out").exists()
 
 
 def test_resume_grades_only_what_is_new_and_with_the_same_seed(

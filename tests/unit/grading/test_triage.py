@@ -15,7 +15,7 @@ from course.errors import MissingCapabilityError, NotFoundError, UngradableError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
-from course.grading.intake import students
+from course.grading.intake import students, triage
 from course.grading.intake.students import Entry, read_class
 from course.grading.intake.triage import Candidate, found_for
 from course.grading.results.override import override
@@ -184,6 +184,30 @@ def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: 
     assert entry.found is not None
     assert [one.name for one in entry.found.candidates if one.proposed] == ["hw.py"]
     assert "link.py" not in {one.name for one in entry.found.candidates}
+
+
+def test_only_so_much_code_of_one_student_is_looked_through(
+    tmp_path: Path, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Sixty files, each just below what ends the process that reads, held up the run for minutes."""
+    padded = SOURCE + b"#" * 1000
+    lay(tmp_path, **{f"copy {number}.py": padded + b"%d" % number for number in range(9)})
+    monkeypatch.setattr(triage, "_CODE", 3 * len(padded))
+    found = read(tmp_path, doubling).found
+    assert found is not None
+    assert len(found.candidates) == 9, "all are listed"
+    assert sum(bool(one.defines) for one in found.candidates) == 3
+    assert all(one.sha256 for one in found.candidates)
+
+
+def test_more_code_than_could_be_graded_is_not_looked_through(tmp_path: Path, doubling: Exercise) -> None:
+    lay(tmp_path, **{"large.py": SOURCE + b"#" * (1 << 20), "large.ipynb": NOTEBOOK + b" " * (1 << 20)})
+    found = read(tmp_path, doubling).found
+    assert found is not None
+    assert {one.name: bool(one.defines) for one in found.candidates} == {
+        "large.py": False,
+        "large.ipynb": True,
+    }
 
 
 def test_one_file_is_proposed_where_its_functions_are(catalog: Catalog) -> None:

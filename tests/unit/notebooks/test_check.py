@@ -80,6 +80,11 @@ def test_code_that_cannot_be_run_is_recorded_as_that(here: Workspace) -> None:
     assert [attempt["state"] for attempt in attempts(here)] == ["ungradable"]
 
 
+def test_half_a_surrogate_in_a_source_is_one_wrong_character(here: Workspace) -> None:
+    for source in ("x = '\ud800'\n" + DOUBLE, ["x = '\ud800'", DOUBLE]):
+        assert check("doubling", "double", source=source).passed
+
+
 def test_outside_of_a_workspace_nothing_is_recorded_and_nothing_said(
     here: Workspace, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -16,7 +16,7 @@ from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import NotFoundError
 from course.notebooks.predict_widget import Predict
-from course.notebooks.predicting import predict
+from course.notebooks.predicting import Asked, predict
 from course.notebooks.sandbox import Film, play
 from course.notebooks.take_widget import Take
 from course.notebooks.taking import Taken, take
@@ -112,6 +112,12 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
     assert said is not None
     assert said.text == "it *grows*"
     assert len(workspace.store.events("prediction", "accuracy")) == 1
+
+    asked = Asked("numerical-integration", 1)
+    asked.say("\ud83d and " + "x" * 10**6)  # whatever a page sends
+    assert asked.said is not None
+    assert asked.said.startswith("? and xx")
+    assert len(asked.said) <= 4000
 
     again = predict("accuracy", 1)  # in a notebook that is opened again, and in the reader
     assert again.said == "it *grows*"

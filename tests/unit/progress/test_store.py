@@ -179,3 +179,9 @@ def test_what_was_written_survives_kill_9_at_any_moment(store):
     database = sqlite3.connect(store.path)
     assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
     database.close()
+
+
+def test_half_a_surrogate_is_kept_as_a_question_mark(store):
+    """A page can send one in a prediction, and a terminal in a cell; it ended what wanted to note it."""
+    store.append("prediction", "lesson", {"text": "\ud83d and \U0001f600", "\udce9": 1})
+    assert store.last("prediction").data == {"text": "? and \U0001f600", "?": 1}

@@ -4,7 +4,8 @@
     python tests/benchmarks/mended/mended.py score DIR   what became of them after one edit each
 
 ``mistakes/EXERCISE/NAME.py`` holds the definitions that differ from the model solution. They were written
-from READMEs, stubs and solutions, not from checks. A folder of ``ask`` says nothing of the mistake but what
+from READMEs, stubs and solutions, not from checks; ``told.md`` says of which functions hypotheses had been
+seen, and what each mistake is told. A folder of ``ask`` says nothing of the mistake but what
 the course says; ``DIR/manifest.json``, which whoever mends must not see, says which mistake it is.
 """
 

@@ -1,0 +1,176 @@
+"""Mended in one: is what a student is told of a mistake enough to mend it, without knowing the course?
+
+    python tests/benchmarks/mended/mended.py ask DIR     a folder for each: README, wrong module, finding
+    python tests/benchmarks/mended/mended.py score DIR   what became of them after one edit each
+
+``mistakes/EXERCISE/NAME.py`` holds the definitions that differ from the model solution. They were written
+from READMEs, stubs and solutions, not from checks; ``told.md`` says of which functions hypotheses had been
+seen, and what each mistake is told. A folder of ``ask`` says nothing of the mistake but what
+the course says; ``DIR/manifest.json``, which whoever mends must not see, says which mistake it is.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+ROOT = Path(__file__).resolve().parents[3]
+MISTAKES = Path(__file__).with_name("mistakes")
+sys.path.insert(0, str(ROOT))
+
+from course.authoring.exercises.variants import compose, solution_path  # noqa: E402
+from course.catalog.load import Catalog  # noqa: E402
+from course.grading.exports.handout import checks_for_student  # noqa: E402
+from course.grading.intake.students import Entry  # noqa: E402
+from course.grading.running.batch import grade_all  # noqa: E402
+from course.scoring.submission import Submission  # noqa: E402
+from course.scoring.terms import Terms  # noqa: E402
+
+if TYPE_CHECKING:
+    from course.scoring.verdict import Verdict
+
+FATES = ("mended", "more", "not mended")
+
+
+def joined(solution: Path, mistake: Path) -> str:
+    """The model solution with a mistake's definitions in the place of its own, and without its comment."""
+    lines = compose(solution, mistake).decode().splitlines()
+    places: dict[str, list[tuple[int, int]]] = {}
+    for node in ast.parse("\n".join(lines)).body:
+        names = [getattr(node, "name", None), *(getattr(t, "id", None) for t in getattr(node, "targets", []))]
+        for name in filter(None, names):
+            places.setdefault(name, []).append((node.lineno - 1, node.end_lineno or node.lineno))
+    # From below, so that the lines above stay where they are.
+    twice = sorted((found for found in places.values() if len(found) > 1), reverse=True)
+    text = solution.read_text(encoding="utf-8").rstrip().splitlines()
+    for (begin, end), (own, own_end) in twice:
+        text[begin:end] = lines[own:own_end]
+    return "\n".join(text) + "\n"
+
+
+def graded(sources: dict[str, tuple[str, str]]) -> dict[str, Verdict]:
+    """Verdicts of a grading run, by name, on sources by name: exercise and text of each."""
+    catalog = Catalog()
+    entries = []
+    for name, (exercise_id, source) in sources.items():
+        exercise = catalog.exercise(exercise_id)
+        entries.append(Entry(name, exercise, Submission({exercise.module: source.encode()})))
+    return {done.entry.student: done.verdict for done in grade_all(entries, Terms(), graders=2)}
+
+
+def points_by_task(verdict: Verdict) -> dict[str, tuple[float, float]]:
+    """Points reached and points to be had, of each task; none of a submission that was not graded."""
+    tasks = {check.task for check in verdict.checks}
+    return {
+        task: (
+            sum(check.points for check in verdict.checks if check.task == task),
+            sum(check.max_points for check in verdict.checks if check.task == task),
+        )
+        for task in sorted(tasks)
+    }
+
+
+def at_home(exercise: str, module: str, source: str) -> tuple[str, bool]:
+    """What ``course check`` prints, and whether a check failed."""
+    course = [sys.executable, "-m", "course"]
+    with tempfile.TemporaryDirectory() as folder:
+        where = {"cwd": folder, "env": {"PATH": "/usr/bin:/bin", "HOME": folder, "PYTHONPATH": str(ROOT)}}
+        for words in (("init", "."), ("start", exercise)):
+            subprocess.run([*course, *words], check=True, capture_output=True, **where)
+        (Path(folder) / exercise / module).write_text(source, encoding="utf-8")
+        done = subprocess.run(
+            [*course, "check", exercise], check=False, capture_output=True, text=True, **where
+        )
+    if done.returncode not in {0, 1}:
+        raise RuntimeError(done.stdout + done.stderr)
+    return done.stdout, done.returncode == 1
+
+
+def handed_in(verdict: Verdict) -> str:
+    """What the page of a grading run says of what failed."""
+    failed = [check for check in checks_for_student(verdict) if check.status != "pass"]
+    return "\n\n".join(f"{check.title}\n{check.message}\n{check.help}".rstrip() for check in failed) + "\n"
+
+
+def ask(folder: Path) -> None:
+    """Write the folders and the manifest; say which mistakes nobody catches."""
+    catalog, sources = Catalog(), {}
+    for path in sorted(MISTAKES.glob("*/*.py")):
+        exercise = catalog.exercise(path.parent.name)
+        sources[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
+    verdicts, manifest, counts = graded(sources), {}, dict[str, int]()
+    for name, (exercise_id, source) in sources.items():
+        before = points_by_task(verdicts[name])
+        wrong = [task for task, (points, most) in before.items() if points < most]
+        if verdicts[name].state == "graded" and not wrong:
+            print(f"loses no point, left out: {name}")
+            continue
+        counts[exercise_id] = counts.get(exercise_id, 0) + 1
+        exercise = catalog.exercise(exercise_id)
+        finding, seen = at_home(exercise_id, exercise.module, source)
+        place = folder / f"{exercise_id}-{counts[exercise_id]:02}"
+        place.mkdir(parents=True)
+        shutil.copy(Path(exercise.folder) / "README.md", place)
+        (place / exercise.module).write_text(source, encoding="utf-8")
+        (place / "finding.txt").write_text(finding if seen else handed_in(verdicts[name]), encoding="utf-8")
+        manifest[place.name] = {
+            "mistake": name,
+            "exercise": exercise_id,
+            "module": exercise.module,
+            "hidden": not seen,
+            "wrong": wrong,
+            "points": sum(points for points, _ in before.values()),
+        }
+    (folder / "manifest.json").write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+    hidden = sum(one["hidden"] for one in manifest.values())
+    print(f"{len(manifest)} asked, {hidden} of them told by hidden checks alone")
+
+
+def fate(one: dict[str, Any], verdict: Verdict) -> str:
+    """What became of a mistake: full marks for everything; some more of what was wrong; neither."""
+    after = points_by_task(verdict)
+    if after and all(points >= most for points, most in after.values()):
+        return "mended"
+    kept = all(points >= most for task, (points, most) in after.items() if task not in one["wrong"])
+    return "more" if kept and sum(points for points, _ in after.values()) > one["points"] else "not mended"
+
+
+def score(folder: Path) -> None:
+    """Print what became of each mistake, by exercise; the last column is for whoever reads the findings."""
+    manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+    sources = {
+        name: (one["exercise"], (folder / name / one["module"]).read_text(encoding="utf-8"))
+        for name, one in manifest.items()
+    }
+    verdicts = graded(sources)
+    fates = {name: fate(one, verdicts[name]) for name, one in manifest.items()}
+    print("| exercise | asked | mended | same function passes more | not mended |\n|---|---|---|---|---|")
+    exercises = sorted({one["exercise"] for one in manifest.values()})
+    for exercise in [*exercises, "all"]:
+        own = [fates[name] for name, one in manifest.items() if exercise in {one["exercise"], "all"}]
+        print("|", " | ".join([exercise, str(len(own)), *(str(own.count(kind)) for kind in FATES)]), "|")
+    print("\n| folder | mistake | told | became | finding true |\n|---|---|---|---|---|")
+    for name, one in manifest.items():
+        told = "hidden" if one["hidden"] else "at home"
+        print(f"| {name} | {one['mistake']} | {told} | {fates[name]} | |")
+    print("\nNot mended:", ", ".join(n for n, kind in fates.items() if kind != "mended") or "none")
+
+
+def main() -> None:
+    """Ask, or score."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("verb", choices=("ask", "score"))
+    parser.add_argument("folder", type=Path, metavar="DIR")
+    given = parser.parse_args()
+    {"ask": ask, "score": score}[given.verb](given.folder)
+
+
+if __name__ == "__main__":
+    main()

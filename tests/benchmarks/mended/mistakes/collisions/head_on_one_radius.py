@@ -1,0 +1,18 @@
+# The gap is reckoned with one radius.
+
+
+def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+    n = round(t_end / h)
+    t, x, v = h * np.arange(n + 1), np.empty((n + 1, 2)), np.empty((n + 1, 2))
+    x[0], v[0] = x0, v0
+    for i in range(n):
+        (xa, xb), (va, vb) = x[i], v[i]
+        closing, gap = va - vb, max(xb - xa - radius, 0.0)
+        wait = gap / closing if 0 < closing and gap <= closing * h else h
+        xa, xb = xa + va * wait, xb + vb * wait
+        if wait < h:
+            blow = _impulse(m[0], m[1], closing, restitution)
+            va, vb = va - blow / m[0], vb + blow / m[1]
+        x[i + 1] = xa + va * (h - wait), xb + vb * (h - wait)
+        v[i + 1] = va, vb
+    return t, x, v

@@ -1,0 +1,9 @@
+# Every stage is told the time of the start.
+
+
+def rk4_step(accel, t, q, v, h):
+    k1q, k1v = v, accel(t, q, v)
+    k2q, k2v = v + h / 2 * k1v, accel(t, q + h / 2 * k1q, v + h / 2 * k1v)
+    k3q, k3v = v + h / 2 * k2v, accel(t, q + h / 2 * k2q, v + h / 2 * k2v)
+    k4q, k4v = v + h * k3v, accel(t, q + h * k3q, v + h * k3v)
+    return q + h / 6 * (k1q + 2 * k2q + 2 * k3q + k4q), v + h / 6 * (k1v + 2 * k2v + 2 * k3v + k4v)

@@ -1,0 +1,8 @@
+# The second half of the kick is taken at the old position.
+
+
+def velocity_verlet_step(accel, t, q, v, h):
+    v_half = v + h / 2 * accel(t, q, v)
+    q_next = q + h * v_half
+    v_next = v_half + h / 2 * accel(t + h, q, v_half)
+    return q_next, v_next

@@ -93,6 +93,7 @@ class Student:
             self.terminal.keys("C-Home")
             self.terminal.type("print('mine', 6 * 7)")
             self.terminal.keys("Enter")
+            self.terminal.still()
             self.terminal.keys("C-r")
             self.terminal.wait("mine 42")
         self.done.append("ran")

@@ -383,7 +383,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
     "deterministic": [
         ("DETERMINISM_ONE_RUN", _repeated(0)),
         ("DETERMINISM_AT_REST", _repeated(1)),
-        ("DETERMINISM_TOLERANCE", _repeated(2)),
+        ("DETERMINISM_NOT_COMPARED", _repeated(2)),
         ("DETERMINISM_OTHER_RUN", _always(False)),
     ],
 }

@@ -7,7 +7,6 @@ import numpy as np
 from course.grading import kit
 
 probes = kit.companion("validation", "probes")
-runs = kit.companion("validation", "probes_runs")
 shared = kit.companion("validation", "expectations")
 
 
@@ -34,15 +33,15 @@ def expect_width(submission, rng, scale, offset):
         input=shown,
         message="The intervals do not have the width that the scatter of the mean asks for.",
         help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
-        diagnose=lambda: runs.of_interval(submission, 1),
+        diagnose=lambda: probes.of_interval(submission, 1),
     )
     expect_centred(submission, ends, np.mean(series, axis=1), shown)
 
 
 def expect_resamples(submission, seed):
     """The resamples are n_boot, as long as the series, of blocks as asked for; the series stays as it was."""
-    found = runs.resample(submission, seed)
-    code = runs.of_resamples(found)
+    found = probes.resample(submission, seed)
+    code = probes.of_resamples(found)
     if code is not None:
         kit.fail(
             "The resamples that the statistic is asked about are not made as they should be.",
@@ -55,12 +54,11 @@ def expect_resamples(submission, seed):
                 "they begin": [samples[:8] for samples in found.asked[:3]],
             },
         )
-    code = runs.of_ends(found)
-    if code is not None:
+    if probes.of_ends(found) is not None:
         kit.fail(
             "The ends of the interval are not the quantiles that they should be.",
             help="The alpha/2 and the 1 - alpha/2 quantile of the statistic over the resamples.",
-            diagnose=probes.named(code),
+            diagnose=lambda: probes.of_interval(submission, seed, found),
             expected="quantiles at 0.1 and 0.9 of what the statistic said",
             actual=found.inspected.value,
         )
@@ -70,7 +68,7 @@ def expect_resamples(submission, seed):
 def expect_centred(submission, ends, statistics, shown):
     """Each interval has its statistic about in its middle, in the mean over all."""
     middle = np.mean(ends, axis=1)
-    width = np.mean(ends[:, 1] - ends[:, 0])
+    width = float(np.mean(ends[:, 1] - ends[:, 0])) or 1e-12  # a point has no width to divide by
     kit.expect_bounded(
         float(np.mean(np.abs(middle - statistics)) / width),
         high=0.35,
@@ -79,7 +77,7 @@ def expect_centred(submission, ends, statistics, shown):
         input=shown,
         message="The intervals do not lie where they should.",
         help="The ends are quantiles of the statistic over the resamples.",
-        diagnose=lambda: runs.of_interval(submission, 1) or probes.named("NOT_CENTRED"),
+        diagnose=lambda: probes.of_interval(submission, 1) or probes.named("NOT_CENTRED"),
     )
 
 
@@ -109,7 +107,7 @@ def expect_level(submission, rng, statistic):
         input=shown,
         message="The width of the interval does not follow alpha as it should.",
         help="alpha is the share outside, both sides together.",
-        diagnose=lambda: runs.of_interval(submission, 1) or probes.named("ONE_STANDARD_ERROR"),
+        diagnose=lambda: probes.of_interval(submission, 1) or probes.named("ONE_STANDARD_ERROR"),
     )
 
 
@@ -127,5 +125,5 @@ def _expect_chance(submission, ends, shown):
         "Two calls with different generators give the same interval.",
         help="All chance has to come from rng.",
         input=shown,
-        diagnose=lambda: runs.of_interval(submission, 1) or probes.named("FIXED_SEED"),
+        diagnose=lambda: probes.of_interval(submission, 1) or probes.named("FIXED_SEED"),
     )

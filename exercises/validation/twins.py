@@ -30,6 +30,18 @@ class Drive:
 
 
 @dataclass(frozen=True)
+class Wave:
+    """A speed that swings about a middle once a second, in the place of a drive (m/s)."""
+
+    middle: float
+    size: float
+
+    def speed(self, t, mass=MASS):
+        """Speed at times t (s), m/s."""
+        return self.middle + self.size * np.sin(2 * np.pi * np.asarray(t))
+
+
+@dataclass(frozen=True)
 class Recording:
     """One run: its id, times (s), force, measured speed (m/s) and the std of the measurement's noise."""
 

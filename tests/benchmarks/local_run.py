@@ -26,12 +26,16 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 from local_submission import LocalSubmission  # noqa: E402
 
-from course.grading.kit import CheckFailed, Finding, StudentFailure  # noqa: E402
+from course.grading import kit  # noqa: E402
+from course.scoring.explaining import Explainer  # noqa: E402
 from course.scoring.failures import finding_of  # noqa: E402
+from course.scoring.outcomes import found  # noqa: E402
+from course.scoring.verdict import CheckResult, Status, Visibility  # noqa: E402
 
 
 @dataclass
 class Check:
+    exercise: str
     id: str
     title: str
     task: str
@@ -39,12 +43,16 @@ class Check:
     hidden: bool
     fn: Any
 
+    @property
+    def visibility(self) -> Visibility:
+        return Visibility.HIDDEN if self.hidden else Visibility.PUBLIC
+
 
 @dataclass
 class Result:
     check: Check
     status: str
-    finding: Finding | None
+    finding: CheckResult | None
 
 
 def load_checks(exercise: str) -> list[Check]:
@@ -64,26 +72,38 @@ def load_checks(exercise: str) -> list[Check]:
             if name.startswith("test_"):
                 marks = {mark.name: mark.args[0] for mark in fn.pytestmark}
                 title = (fn.__doc__ or "").splitlines()[0]
-                checks.append(Check(name[5:], title, marks["task"], marks["points"], hidden, fn))
+                checks.append(Check(exercise, name[5:], title, marks["task"], marks["points"], hidden, fn))
     return checks
 
 
 def run(source: str, checks: list[Check], seed: int) -> list[Result]:
-    """Run every check on a fresh copy of the module."""
-    results = []
+    """Run every check on one copy of the module, as in a grading run: inputs drawn, failures explained."""
     submission = LocalSubmission(source, seed)
+    told: dict[str, CheckResult] = {}
+    status, failed = dict.fromkeys((check.id for check in checks), "pass"), {}
     for check in checks:
-        kwargs: dict[str, Any] = {"submission": submission}
-        if "rng" in inspect.signature(check.fn).parameters:
-            kwargs["rng"] = np.random.default_rng([seed, zlib.crc32(check.id.encode())])
+        drawn = {name: _generator(check, seed) for name in {"rng", "draw"} & _asked(check)}
         try:
-            check.fn(**kwargs)
-            results.append(Result(check, "pass", None))
-        except CheckFailed as failed:
-            results.append(Result(check, "fail", failed.finding))
-        except StudentFailure as failure:
-            results.append(Result(check, failure.kind, finding_of(failure)))
-    return results
+            check.fn(submission=submission, **drawn)
+        except kit.CheckFailed as failure:
+            status[check.id], failed[check.id] = "fail", failure
+            told[check.id] = found(check, Status.FAIL, failure.finding, 0.0)
+        except kit.StudentFailure as failure:
+            status[check.id] = failure.kind
+            told[check.id] = found(check, Status.ERROR, finding_of(failure), 0.0)
+    if failed:
+        folder = ROOT / "exercises" / checks[0].exercise
+        questions = kit.companion(checks[0].exercise, "questions")
+        Explainer(folder, questions).explain(told, failed, submission, source.encode())
+    return [Result(check, status[check.id], told.get(check.id)) for check in checks]
+
+
+def _asked(check: Check) -> set[str]:
+    return set(inspect.signature(check.fn).parameters)
+
+
+def _generator(check: Check, seed: int) -> np.random.Generator:
+    return np.random.default_rng([seed, zlib.crc32(f"test_{check.id}".encode())])
 
 
 def sources(exercise: str) -> dict[str, str]:

@@ -13,31 +13,13 @@ import argparse
 import math
 import tomllib
 from collections import defaultdict
-from dataclasses import replace
 
 import numpy as np
-from recorder import ROOT, Recorder, Tables, local_run, report, tasks_of
+from recorder import ROOT, Recorder, Tables, local_run, noting, report, tasks_of
 
 from course.grading import kit
 
 EXERCISE = "engine-comparison"
-
-
-def noting(checks, recorder: Recorder, shares: dict[str, float]):
-    """The checks, each noting the share of its tolerance that was used."""
-
-    def wrap(check):
-        def run(**fixtures):
-            recorder.share = 0.0
-            try:
-                check.fn(**fixtures)
-            finally:
-                shares[check.id] = recorder.share
-
-        run.__signature__ = local_run.inspect.signature(check.fn)
-        return replace(check, fn=run)
-
-    return [wrap(check) for check in checks]
 
 
 def calibrate(seeds: int, mutant_seeds: int) -> Tables:

@@ -7,10 +7,9 @@ import numpy as np
 from course.grading import kit
 
 probes = kit.companion("validation", "probes")
-runs = kit.companion("validation", "probes_runs")
 shared = kit.companion("validation", "expectations")
 twins = kit.companion("validation", "twins")
-verdicts = kit.companion("validation", "verdicts")
+bundles = kit.companion("validation", "bundles")
 
 #: Limits that a good twin keeps and a bad one breaks by far: the noise is 0.02 to 0.03, sines have an
 #: amplitude of 0.4 to 0.7, a mass that is off by a quarter or a lag of 0.04 s costs at least 0.1.
@@ -64,20 +63,18 @@ def recordings(rng, count=4, dts=(0.01, 0.02), swings=(1.0,)):
 
 def expect_verdict(submission, rng, recorded, sim, lates=0.0, **limits):
     """``validate`` reports what the samples say, and what the limits make of it."""
-    sim, real = _scrambled(rng, recorded, sim)
-    spec = SPEC | limits
-    right = verdicts.facts(recorded, sim, real, lates)
-    verdicts.expect_report(submission, sim, real, spec, right, _shown(sim, spec))
+    case, spec = _scrambled(rng, recorded, sim, lates=lates), SPEC | limits
+    bundles.expect_report(submission, case, spec, bundles.facts(case), _shown(case.sim, spec))
 
 
 def expect_refused(submission, rng, recorded, sim, mass):
     """``validate`` refuses; which of lag and bias go with a large error is left open."""
-    sim, real = _scrambled(rng, recorded, sim)
-    right = verdicts.facts(recorded, sim, real, mass=mass)
-    shown = _shown(sim, SPEC)
-    report = kit.as_record(submission.call("validate", sim, real, SPEC), verdicts.KEYS, "the report")
-    verdicts.expect_numbers(report, sim, real, right, shown)
-    reasons = set(verdicts.reasons_of(report))
+    case = _scrambled(rng, recorded, sim, mass=mass)
+    shown = _shown(case.sim, SPEC)
+    value = submission.call("validate", case.sim, case.real, SPEC)
+    report = kit.as_record(value, bundles.KEYS, "the report")
+    bundles.expect_numbers(report, case.sim, bundles.facts(case), shown)
+    reasons = set(bundles.reasons_of(report))
     kit.expect_true(
         {"coverage", "rmse"} <= reasons <= {"bias", "coverage", "lag", "rmse"},
         "A simulation that is far off is not refused for the reasons that it gives.",
@@ -86,10 +83,10 @@ def expect_refused(submission, rng, recorded, sim, mass):
         actual=sorted(reasons),
         diagnose=probes.named("REASON_MISSING"),
     )
-    verdicts.expect_accepted(report, False, shown)
+    bundles.expect_accepted(report, False, shown)
 
 
-def _scrambled(rng, recorded, sim):
+def _scrambled(rng, recorded, sim, **rest):
     """Both sides in orders of their own, and each with a run that the other lacks."""
     real = twins.measured(recorded)
     extra = twins.record(rng, "elsewhere", 6.0, 0.02, 0.02)
@@ -97,13 +94,12 @@ def _scrambled(rng, recorded, sim):
     ahead = twins.simulated([extra], mass=9.0)["runs"]
     ahead[0]["id"] = "never driven"
     runs_sim, runs_real = sim["runs"] + ahead, real["runs"] + lonely
-    return (
-        {
-            "calibrated_on": sim["calibrated_on"],
-            "runs": [runs_sim[i] for i in rng.permutation(len(runs_sim))],
-        },
-        {"runs": [runs_real[i] for i in rng.permutation(len(runs_real))]},
-    )
+    mixed = {
+        "calibrated_on": sim["calibrated_on"],
+        "runs": [runs_sim[i] for i in rng.permutation(len(runs_sim))],
+    }
+    real = {"runs": [runs_real[i] for i in rng.permutation(len(runs_real))]}
+    return bundles.Case(recorded, mixed, real, **rest)
 
 
 def _shown(sim, spec):

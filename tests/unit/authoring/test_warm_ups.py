@@ -138,6 +138,19 @@ def test_a_stale_table_is_refused(tripling: Path) -> None:
     assert any("made from other questions" in message for message in problems())
 
 
+def test_a_table_is_the_same_whenever_it_is_built(tripling: Path, mini: Path) -> None:
+    """A wrong program with chance of its own answers otherwise each time, so no answer is known of it."""
+    wrong = mini / "solutions/warm-ups/tripling/mutants/triple_wrong_3.py"
+    wrong.write_text('"""Guesses."""\n\n\ndef triple(x):\n    import random\n    return random.random()\n')
+    built = []
+    for _ in range(2):
+        rebuilt()
+        built.append((tripling / "hypotheses.json").read_bytes())
+    assert built[0] == built[1]
+    rows = read_table(tripling / "hypotheses.json").rows["triple"]
+    assert {row.codes for row in rows} == {("DOUBLES",), ("ADDS_THREE",)}
+
+
 def test_a_warm_up_lies_with_the_warm_ups(tripling: Path) -> None:
     path = tripling / "exercise.toml"
     path.write_text(path.read_text().replace('kind = "warm-up"\n', ""))

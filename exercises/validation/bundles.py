@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -33,45 +34,115 @@ LENIENT = {
 }
 
 
-def curves(recorded, sim, lates, mass=twins.MASS):
-    """What ``probes_verdict.Lags`` needs to know of recordings and of a simulation that is ``lates`` late."""
-    offsets = {run["id"]: run["y"][0] for run in sim["runs"]}
-    known = {}
-    for run, late in zip(recorded, np.broadcast_to(lates, len(recorded)), strict=True):
-        clean = lambda t, run=run, late=late: run.drive.speed(t - late, mass)  # noqa: E731
-        offset = offsets[run.id] - float(clean(run.t[:1])[0])
-        known[run.id] = (run.t, run.y, lambda t, clean=clean, offset=offset: clean(t) + offset)
-    return known
+@dataclass(frozen=True)
+class Case:
+    """A simulation of recorded carts: how late it is, in all or in each (s), and the mass it believes in."""
+
+    recorded: list
+    sim: dict
+    real: dict
+    lates: object = 0.0
+    mass: float = twins.MASS
 
 
-def facts(recorded, sim, real, lates=0.0, mass=twins.MASS):
-    """The facts about a simulation of recorded carts."""
-    reach = float(np.max(np.abs(lates)))
-    return probes.facts(sim, real, probes.Lags(curves(recorded, sim, lates, mass), reach))
+def facts(case):
+    """What a report of it should say; where there is a model, that is in a grading run."""
+    known = kit.reference("validation", "facts").facts(
+        case.recorded, case.sim, case.real, case.lates, case.mass
+    )
+    return probes.Facts(**known)
 
 
-def expect_report(submission, sim, real, spec, right, shown):
+def public(check, draw):
+    """(case, facts) of a public check: the same at home every time, drawn in a grading run."""
+    cases = _PUBLIC[check](draw)
+    if kit.reference("validation", "facts") is not None:
+        return [(case, facts(case)) for case in cases]
+    known = kit.known_answers("validation", check)
+    return [(case, probes.Facts(**one)) for case, one in zip(cases, known, strict=True)]
+
+
+def known():
+    """What public checks expect for their fixed inputs, for ``course author build``."""
+    return {check: [asdict(facts(case)) for case in cases(None)] for check, cases in _PUBLIC.items()}
+
+
+def _late(draw):
+    """Carts with steps and sizes of their own, each simulated as late as it pleases."""
+    recorded, lates = [], []
+    # id: samples, dt, what it swings about, amplitude, how late the simulation is
+    for name, n, dt, middle, size, late in (
+        ("a", 400, 0.02, 1.5, 1.0, 0.06),
+        ("b", 600, 0.01, -1.0, 0.5, 0.02),
+        ("c", 300, 0.02, 0.4, 0.7, 0.04),
+    ):
+        more = 1.0 if draw is None else draw.uniform(0.93, 1.07)
+        drive, t = twins.Wave(more * middle, more * size), dt * np.arange(n)
+        recorded.append(twins.Recording(name, t, drive, drive.speed(t), 0.4))
+        lates.append(more * late)
+    sim, real = twins.simulated(recorded, late=lates), twins.measured(recorded)
+    return [Case(recorded, sim, real, tuple(lates))]
+
+
+def _accepts(draw):
+    """A good simulation of carts, but of the one it was calibrated on; then calibrated on more of them."""
+    rng = np.random.default_rng(54) if draw is None else draw
+    recorded = [twins.record(rng, name, 7.0, 0.02, 0.03) for name in "abcd"]
+    good, bad = twins.simulated(recorded, offset=-0.005), twins.simulated(recorded, mass=3.0)
+    runs, real = [bad["runs"][1], *(good["runs"][i] for i in (3, 0, 2))], twins.measured(recorded)
+    return [
+        Case(recorded, {"calibrated_on": list(fitted), "runs": runs}, real) for fitted in ("b", "abcd", "abc")
+    ]
+
+
+def apart(rng, count):
+    """Carts that a simulation is early for and too slow, by amounts of their own: whoever looks at the upper
+    end alone lets both pass."""
+    recorded = [
+        twins.record(rng, f"run {i}", rng.uniform(5, 7), 0.02, rng.uniform(0.02, 0.03)) for i in range(count)
+    ]
+    lates = -rng.permutation(np.linspace(0.01, 0.07, count))
+    sim = twins.simulated(
+        recorded,
+        late=lates,
+        offset=-rng.permutation(np.linspace(0.01, 0.05, count)),
+        sigma_factor=rng.permutation(np.linspace(2.0, 8.0, count)),
+    )
+    return Case(recorded, sim, twins.measured(recorded), tuple(lates))
+
+
+_PUBLIC = {
+    "validate_late": _late,
+    "validate_accepts": _accepts,
+    "validate_margins_apart": lambda draw: [apart(np.random.default_rng(31) if draw is None else draw, 3)],
+}
+
+# -- comparisons ----------------------------------------------------------------------------------------
+
+
+def expect_report(submission, case, spec, right, shown):
     """``validate`` tells these facts, concludes from them what the limits say, and leaves its arguments.
 
     Args:
         right: the facts.
         shown: what a finding says about the case.
     """
+    sim, real = case.sim, case.real
     inspected = submission.call_inspect("validate", sim, real, spec)
     report = kit.as_record(inspected.value, KEYS, "the report")
-    expect_measures(report, sim, real, right, shown)
+    expect_measures(report, sim, right, shown)
     _expect_conclusion(report, right, spec, shown)
     shared.expect_left_alone(inspected, [sim, real, spec], ["sim", "real", "spec"])
 
 
-def expect_measures(report, sim, real, right, shown):
+def expect_measures(report, sim, right, shown):
     """The runs, the four numbers and their intervals are right."""
-    expect_numbers(report, sim, real, right, shown)
+    expect_numbers(report, sim, right, shown)
     _expect_lag(report, right, shown)
     _expect_intervals(report, right, shown)
 
 
-def expect_numbers(report, sim, real, right, shown):
+def expect_numbers(report, sim, right, shown):
     """The right runs, with the right rmse, bias and coverage."""
     used = [str(item) for item in kit.as_list(report["runs_used"], "runs_used")]
     kit.expect_equal(
@@ -80,7 +151,7 @@ def expect_numbers(report, sim, real, right, shown):
         message="The verdict rests on other runs than it should.",
         help="Use the runs that both sides have, without those the simulation was calibrated on.",
         input=shown,
-        diagnose=lambda: probes.of_used(used, sim, real),
+        diagnose=lambda: probes.of_used(used, sim),
     )
     for key in probes.NUMBERS:
         value = kit.as_number(report[key], key)
@@ -94,7 +165,7 @@ def expect_numbers(report, sim, real, right, shown):
             message=f"`{key}` is wrong.",
             help="Pool the samples of all runs that count, with errors simulated minus real.",
             input=shown,
-            diagnose=lambda key=key, value=value: probes.of_number(key, value, sim, real),
+            diagnose=lambda key=key, value=value: probes.of_number(key, value, right),
         )
 
 
@@ -134,17 +205,17 @@ def _expect_intervals(report, right, shown):
     for key in probes.NUMBERS:
         kit.expect_array(
             ends[key],
-            right.interval(key),
+            right.intervals[key],
             abs=1e-9 + END_SHARE * right.half(key),
             source="three digits of Student's t",
             quantity=f"{key} interval",
             message=f"The interval of `{key}` does not reach from lo to hi as it should.",
-            diagnose=lambda: probes.of_intervals(ends, right),
+            diagnose=lambda: probes.of_interval(ends, right),
             **words,
         )
     kit.expect_array(
         ends["lag_s"],
-        right.interval("lag_s"),
+        right.intervals["lag_s"],
         abs=LAG_END_SHARE * right.dt + 0.03 * right.half("lag_s"),
         source="the search for the lag with one run or another left out",
         quantity="lag_s interval",
@@ -168,7 +239,7 @@ def _expect_conclusion(report, right, spec, shown):
         message="The reasons are not the ones that apply.",
         help="A reason for each interval that leaves its margin, sorted by alphabet.",
         input=shown,
-        diagnose=lambda: probes.of_verdicts([(reasons, right, spec)]),
+        diagnose=lambda: probes.of_reasons([(reasons, expected)]),
     )
     expect_accepted(report, not expected, shown)
 
@@ -185,29 +256,17 @@ def expect_accepted(report, accepted, shown):
     )
 
 
-def expect_margins(submission, rng, count):
+def expect_margins(submission, case, right):
     """Each measure is judged apart from the others, by its interval and not by the number alone.
 
     The same runs are judged by many limits: some let everything pass, the others leave out one measure's
     number, or the number lies inside and its interval does not.
     """
-    recorded = [
-        twins.record(rng, f"run {i}", rng.uniform(5, 7), 0.02, rng.uniform(0.02, 0.03)) for i in range(count)
-    ]
-    # Early and too low: whoever looks at the upper end alone lets both pass.
-    lates = -rng.permutation(np.linspace(0.01, 0.07, count))
-    sim = twins.simulated(
-        recorded,
-        late=lates,
-        offset=-rng.permutation(np.linspace(0.01, 0.05, count)),
-        sigma_factor=rng.permutation(np.linspace(2.0, 8.0, count)),
-    )
-    real = twins.measured(recorded)
-    right = facts(recorded, sim, real, lates)
+    sim, real, count = case.sim, case.real, len(case.recorded)
     specs = _specs(right)
     reports = submission.call_each("validate", [(sim, real, spec) for spec in specs])
     found = [reasons_of(kit.as_record(report, KEYS, "the report")) for report in reports]
-    expect_measures(reports[0], sim, real, right, {"runs": count, "spec": specs[0]})
+    expect_measures(reports[0], sim, right, {"runs": count, "spec": specs[0]})
     for spec, report, reasons in zip(specs, reports, found, strict=True):
         expected = right.reasons(spec)
         shown = {"runs": count, "spec": spec}
@@ -217,17 +276,19 @@ def expect_margins(submission, rng, count):
             message="The reasons are not the ones that apply.",
             help="A reason for each interval that leaves its margin: no more, and no fewer.",
             input=shown,
-            diagnose=lambda: probes.of_verdicts([(r, right, s) for r, s in zip(found, specs, strict=True)]),
+            diagnose=lambda: probes.of_reasons(
+                [(r, right.reasons(s)) for r, s in zip(found, specs, strict=True)]
+            ),
         )
         expect_accepted(report, not expected, shown)
 
 
 def _specs(right):
     """Limits: nothing is broken; one number is; one interval is, though its number is not."""
-    largest = {key: max(map(abs, right.interval(key))) for key in probes.MEASURES}
+    largest = {key: max(map(abs, right.intervals[key])) for key in probes.MEASURES}
     number = {key: abs(right.numbers[key]) for key in probes.MEASURES}
     names = {"rmse": "rmse_max", "bias": "bias_max", "lag_s": "lag_max_s"}
-    lo, hi = right.interval("coverage")
+    lo, hi = right.intervals["coverage"]
     share, half = right.numbers["coverage"], right.half("coverage")
     kept = {name: 1.3 * largest[key] for key, name in names.items()}
     limits = [kept | {"coverage_min": lo - 0.02, "coverage_max": hi + 0.02}]
@@ -237,13 +298,13 @@ def _specs(right):
     return [LENIENT | changed for changed in limits]
 
 
-def expect_nothing(submission, sim, real, spec, right, shown):
+def expect_nothing(submission, case, spec, right, shown):
     """``validate`` says that no run, or a single one, is nothing to judge by."""
-    report = kit.as_record(submission.call("validate", sim, real, spec), KEYS, "the report")
+    report = kit.as_record(submission.call("validate", case.sim, case.real, spec), KEYS, "the report")
     reasons, used = reasons_of(report), kit.as_list(report["runs_used"], "runs_used")
     single = bool(right.used)
     if single:
-        expect_numbers(report, sim, real, right, shown)
+        expect_numbers(report, case.sim, right, shown)
         _expect_lag(report, right, shown)
     told = report["intervals"] is None and (single or all(report[key] is None for key in probes.MEASURES))
     kit.expect_true(

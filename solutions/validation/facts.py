@@ -1,0 +1,110 @@
+"""What a right report of ``validate`` says about carts whose speeds are known at every time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+model = kit.sibling(__file__, "validation")
+MEASURES = ("rmse", "bias", "lag_s", "coverage")
+
+
+def facts(recorded, sim, real, lates, mass):
+    """The facts as ``bundles.Facts`` has them, plain.
+
+    Args:
+        recorded: what was driven; ``lates``: how late the simulation of each is, s.
+    """
+    lags = _Lags(_curves(recorded, sim, lates, mass), float(np.max(np.abs(lates))))
+    pairs = model.held_out_pairs(sim, real)
+    alone = [_measure([pair], lags) for pair in pairs]
+    several, n = len(pairs) > 1, np.arange(len(pairs))
+    counts = [len(s["t"]) for s, _ in pairs]
+    known = {
+        "used": [s["id"] for s, _ in pairs],
+        "numbers": _measure(pairs, lags) if pairs else None,
+        "intervals": None,
+        "steps": [float(s["t"][1] - s["t"][0]) for s, _ in pairs],
+        "means": {key: float(np.mean([run[key] for run in alone])) for key in MEASURES} if several else {},
+        "averages": [_average(alone, np.array(w)) for w in (n**0, counts)] if several else [],
+    }
+    if several:
+        without = [_measure(pairs[:i] + pairs[i + 1 :], lags) for i in n]
+        halves = {key: half([left[key] for left in without]) for key in MEASURES}
+        known["intervals"] = {k: (v - halves[k], v + halves[k]) for k, v in known["numbers"].items()}
+    return known
+
+
+def _measure(pairs, lags):
+    e, sigma = together(pairs)
+    numbers = {key: float(number(key, e, sigma)) for key in ("rmse", "bias", "coverage")}
+    return numbers | {"lag_s": lags.of([s["id"] for s, _ in pairs])}
+
+
+def together(pairs):
+    """The errors of all samples of these pairs, and the sigmas."""
+    y, sigma, measured = (np.concatenate(column) for column in zip(*map(model.columns, pairs), strict=True))
+    return y - measured, sigma
+
+
+def number(key, e, sigma):
+    """rmse, bias or coverage."""
+    if key == "coverage":
+        return np.mean(np.abs(e) <= 1.96 * sigma)
+    return np.sqrt(np.mean(e**2)) if key == "rmse" else np.mean(e)
+
+
+def error(without):
+    """The jackknife's standard error."""
+    n, x = len(without), np.array(without)
+    return math.sqrt((n - 1) / n * np.sum((x - x.mean()) ** 2))
+
+
+def half(without):
+    """Half the width of an interval."""
+    return float(model.T95[len(without) - 2] * error(without))
+
+
+def _average(alone, weights):
+    """A mean of the runs' own lags, and half the width of the interval that it would have."""
+    n, lags = np.arange(len(alone)), np.array([run["lag_s"] for run in alone])
+    without = [np.average(lags[n != i], weights=weights[n != i]) for i in n]
+    return float(np.average(lags, weights=weights)), half(without)
+
+
+def _curves(recorded, sim, lates, mass):
+    """For each id, (t, y_real, speed), where speed(times) is what the simulation says then."""
+    starts = {run["id"]: run["y"][0] for run in sim["runs"]}
+    known = {}
+    for run, late in zip(recorded, np.broadcast_to(lates, len(recorded)), strict=True):
+        clean = lambda t, run=run, late=late: run.drive.speed(t - late, mass)  # noqa: E731
+        offset = starts[run.id] - float(clean(run.t[:1])[0])
+        known[run.id] = (run.t, run.y, lambda t, clean=clean, offset=offset: clean(t) + offset)
+    return known
+
+
+class _Lags:
+    """The best shift of any of the runs; ``reach``: the largest lag of any run, s."""
+
+    STEP = 1e-3  # s; the cost is smooth on the scale of a tenth of a second
+
+    def __init__(self, curves, reach):
+        most = round((reach + 0.01) / self.STEP)
+        self._shifts = np.arange(-most, most + 1)
+        self._costs = {}
+        shifts = self._shifts * self.STEP
+        for run_id, (t, y, speed) in curves.items():
+            later = t + shifts[:, None]
+            inside = (later >= t[0] - 1e-9) & (later <= t[-1] + 1e-9)
+            squares = np.where(inside, (speed(later) - y) ** 2, 0.0)
+            self._costs[run_id] = squares.sum(axis=1), inside.sum(axis=1)
+
+    def of(self, ids):
+        """How late the simulation of these runs is, s: lowest point of the mean square of their samples."""
+        cost = sum(self._costs[i][0] for i in ids) / sum(self._costs[i][1] for i in ids)
+        i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
+        a, b, c = cost[i - 1 : i + 2]
+        return float(self.STEP * (self._shifts[i] + 0.5 * (a - c) / (a - 2 * b + c)))

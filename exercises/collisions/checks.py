@@ -62,7 +62,7 @@ def test_impulse_separating(submission, draw):
         bundles.IMPULSE,
         "impulse_separating",
         draw,
-        "Which pairs get an impulse is wrong: a is left of b, so they approach where va > vb.",
+        "The impulse of this pair is wrong: a is left of b, so they approach, and get one, where va > vb.",
         "Return 0.0 unless va > vb.",
     )
 
@@ -97,7 +97,7 @@ def test_resolve_separating(submission, draw):
         bundles.RESOLVE,
         "resolve_separating",
         draw,
-        "Which pairs get a blow is wrong: they approach where (va - vb) . n > 0.",
+        "The velocities of this pair are wrong: they approach where (va - vb) . n > 0, and only then change.",
         "Return the velocities as they came unless (va - vb) . n > 0.",
     )
 
@@ -167,7 +167,7 @@ def test_moment_never(submission, draw):
         bundles.MOMENT,
         "moment_never",
         draw,
-        "Whether two moving spheres touch within the step is wrong.",
+        "The answer for this pair is wrong: a time where the spheres touch within the step, else None.",
         "None if the centres do not come nearer, if the quadratic has no real root, or if t > dt.",
     )
 

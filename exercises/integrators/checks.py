@@ -141,10 +141,15 @@ def test_integrate_samples(submission, draw):
     q_true = left * (np.cos(turned) * q0 + np.sin(turned) * p0)
     v_true = omega * left * (np.cos(turned) * p0 - np.sin(turned) * q0)
     times = h * np.arange(n + 1)
-    for actual, expected, quantity, units in (
-        (t, times, "t", "s"),
-        (q, q_true, "q", "m"),
-        (v, v_true, "v", "m/s"),
+    states = (
+        "The samples are not the states that the step goes through.",
+        "Row 0 is the initial state; row i + 1 is what the step makes of row i.",
+    )
+    times_of = ("The times of the samples are wrong.", "Sample i belongs to the time i h.")
+    for actual, expected, quantity, units, (message, advice) in (
+        (t, times, "t", "s", times_of),
+        (q, q_true, "q", "m", states),
+        (v, v_true, "v", "m/s", states),
     ):
         kit.expect_array(
             actual,
@@ -155,8 +160,8 @@ def test_integrate_samples(submission, draw):
             units=units,
             t=times,
             input=given,
-            message="The samples are not the states that the step goes through.",
-            help="Row 0 is the initial state; row i + 1 is what the step makes of row i.",
+            message=message,
+            help=advice,
             diagnose=lambda: probes.of_rows(t, q, v, h, (q_true, v_true)),
         )
 

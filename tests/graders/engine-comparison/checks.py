@@ -272,7 +272,7 @@ def _expect_step(engine, value):
     if not close:
         kit.fail(
             "A default step is not the engine's own.",
-            help="Look at the function that takes a step: has it a default for the step, or does it ask?",
+            help="Where is the step said: as an argument of what takes a step, or as an option? Has it a default?",
             diagnose=named("STEP_OF_A_HABIT") if own == (None,) else None,
             input={"engine": engine},
             expected=list(own),

@@ -272,7 +272,7 @@ def _expect_step(engine, value):
     if not close:
         kit.fail(
             "A default step is not the engine's own.",
-            help="Where is the step said: as an argument of what takes a step, or as an option? Has it a default?",
+            help="Where is the step said, as an argument or as an option, and has it a default there?",
             diagnose=named("STEP_OF_A_HABIT") if own == (None,) else None,
             input={"engine": engine},
             expected=list(own),

@@ -17,6 +17,7 @@ from textual.screen import ModalScreen
 from textual.widgets import Static
 
 if TYPE_CHECKING:
+    import threading
     from collections.abc import Callable, Sequence
 
     from rich.console import RenderableType
@@ -55,8 +56,14 @@ class FullScreenApp(App[None]):
 
     def play(self) -> None:
         """Run until its user leaves, and raise what went wrong inside."""
-        with contextlib.suppress(KeyboardInterrupt):
-            self.run()
+        try:
+            with contextlib.suppress(KeyboardInterrupt):
+                self.run()
+        finally:
+            # Where the terminal goes away while this ends, Textual's thread that reads it goes on for ever.
+            reading: threading.Event | None = getattr(self._driver, "exit_event", None)
+            if reading is not None:
+                reading.set()
         if self.failure is not None:
             raise self.failure
 
@@ -122,9 +129,14 @@ class Overlay(ModalScreen[Answer | None]):
     """
     BINDINGS: ClassVar[list[Any]] = [Binding("escape", "leave", show=False)]
 
+    def close(self, answer: Answer | None) -> None:
+        """Dismiss it, once: a second key that closes it may be on its way already."""
+        if self.is_current:
+            self.dismiss(answer)
+
     def action_leave(self) -> None:
         """Back to what is below."""
-        self.dismiss(None)
+        self.close(None)
 
 
 class Tell(Overlay[str]):
@@ -171,4 +183,4 @@ class Tell(Overlay[str]):
         """Close with a key that means something to what is below."""
         if event.character in self._keys:
             event.stop()
-            self.dismiss(event.character)
+            self.close(event.character)

@@ -7,6 +7,8 @@ in an editor and goes on; nothing but the editor is outside the reader.
 from __future__ import annotations
 
 import contextlib
+import os
+import signal
 import sys
 import time
 from typing import TYPE_CHECKING
@@ -150,3 +152,24 @@ def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(
     passed = {event.subject for event in events if event.data["all_pass"]}
     assert passed == set(student.tasks)
     assert {event.subject for event in events if not event.data["all_pass"]} == passed
+
+
+@pytest.mark.parametrize("terminal", [(80, 24)], indirect=True, ids=["80x24"])
+@pytest.mark.parametrize("after", [0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5])
+def test_a_window_that_closes_while_the_reader_ends_leaves_nothing_running(
+    terminal: Terminal, workspace: Workspace, after: float
+) -> None:
+    """Textual's thread that reads the keyboard went on, at full speed, where the terminal was gone."""
+    terminal.line(f"sh -c 'echo $$ > pid; exec {sys.executable} -m course lesson {LESSON}'")
+    terminal.wait("Space on")
+    pid = int((workspace.root / "pid").read_text())
+    terminal.keys("q")
+    time.sleep(after)
+    terminal.close()
+    until = time.monotonic() + 30.0
+    with contextlib.suppress(ProcessLookupError):
+        while time.monotonic() < until:
+            os.kill(pid, 0)
+            time.sleep(0.1)
+        os.kill(pid, signal.SIGKILL)
+        pytest.fail("it still runs")

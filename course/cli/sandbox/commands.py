@@ -61,15 +61,12 @@ def menu(
             raise UsageError("--list stands alone.", help="Try `course sandbox --list`.")
         return None
     console = current()
-    scenes = _list(console, None)
+    _list(console, None)
     if list_ or not console.interactive or not console.fancy:
         return 0
     answer = console.ask("Which one? A number or a name, Enter for none: ")
     if not answer:
         return 0
-    if answer.isdigit() and 1 <= int(answer) <= len(scenes):
-        answer = scenes[int(answer) - 1].id
-
     return play(answer)
 
 

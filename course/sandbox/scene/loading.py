@@ -90,7 +90,7 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
     """A scene by its id, or a file by its path, with parameters and settings.
 
     Args:
-        name: an id of the course's scenes, or a path that ends in ``.toml``.
+        name: an id of the course's scenes, its number in their list, or a path that ends in ``.toml``.
         settings: values for the scene's parameters, for ``seed``, and for ``SETTINGS``.
 
     Raises:
@@ -98,6 +98,8 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
         UsageError: a student's file is wrong, or a parameter unknown or out of range.
         ContentError: one of the course's files is wrong.
     """
+    if name.isdecimal() and 1 <= int(name) <= len(scene_ids()):
+        name = scenes()[int(name) - 1].id
     own = name.endswith(".toml") or "/" in name
     path = Path(name).expanduser() if own else FOLDER / f"{name}.toml"
     if own:

@@ -144,6 +144,42 @@ def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
     assert kept[1]["judged"] == "wrong"
 
 
+def test_a_second_key_that_closes_a_box_closes_nothing_else(catalog):
+    async def journey(app, pilot):
+        await pilot.press("question_mark")
+        await pilot.pause(0.2)
+        await pilot.press("escape")
+        await pilot.pause(0.2)
+        assert len(app.screen_stack) == 1
+        await pilot.press("t")
+        await pilot.pause(0.2)
+        box = app.screen
+        box.close(None)
+        box.close(None)  # was on its way
+        await pilot.pause(0.2)
+        assert len(app.screen_stack) == 1
+
+    reading(catalog, journey)
+
+
+def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tmp_path):
+    store = Store(tmp_path / "progress.sqlite")
+
+    async def journey(app, pilot):
+        question = app.progress.script.questions[0]
+        app.progress.predict(question, "half")
+        app._rebuild(*range(question.index, question.end))
+        cell = next(c for c in app.progress.script.shown_cells if question.index < c.index < question.end)
+        app._chosen(f"block:{cell.index}")
+        await pilot.pause(0.2)
+        assert app.page.item.kind == "cell"
+        assert "Were you?" in screen(app)
+        await pilot.press("2")
+        assert app.progress.prediction(question).judged == "nearly"
+
+    reading(catalog, journey, size=(80, 50), store=store)
+
+
 def test_a_skip_is_kept_too(catalog, tmp_path):
     store = Store(tmp_path / "progress.sqlite")
 

@@ -191,3 +191,12 @@ def test_the_template_of_a_new_scene_runs_as_it_is(tmp_path: Path) -> None:
     comparison = run(choose(str(write(tmp_path, text)))).comparison
     assert comparison is not None
     assert comparison.agree
+
+
+def test_a_scene_has_its_number_in_the_list_too():
+    assert [choose(str(number)).scene.id for number in (1, len(scenes()))] == [
+        scenes()[0].id,
+        scenes()[-1].id,
+    ]
+    with pytest.raises(NotFoundError):
+        choose(str(len(scenes()) + 1))

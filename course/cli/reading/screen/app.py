@@ -185,8 +185,11 @@ class ReaderApp(TasksApp):
     def action_judge(self, key: str) -> None:
         """How a prediction did, by the reader's own word."""
         item = self.page.item
+        if item is None or item.kind != "answer":  # the cell above it is at hand
+            answers = (one for one in self.page.items() if one.kind == "answer")
+            item = next((one for one in answers if self._is_offered(one)), None)
         question = self.progress.script.answered_at(item.block) if item is not None else None
-        if item is not None and item.kind == "answer" and question is not None:
+        if item is not None and question is not None:
             self.progress.judge(question, _JUDGED[key])
             self._rebuild(item.block)
 

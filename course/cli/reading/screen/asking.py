@@ -45,7 +45,7 @@ class Predict(Overlay[str]):
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Take it, if something was typed."""
         if event.value.strip():
-            self.dismiss(event.value.strip())
+            self.close(event.value.strip())
 
 
 class Choose(Overlay[str]):
@@ -79,7 +79,7 @@ class Choose(Overlay[str]):
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Take it."""
-        self.dismiss(event.option.id)
+        self.close(event.option.id)
 
     def action_down(self) -> None:
         """Further down."""
@@ -131,7 +131,7 @@ class Find(Overlay[str]):
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Take it."""
-        self.dismiss(event.option.id)
+        self.close(event.option.id)
 
 
 class Edit(Overlay[tuple[str, bool]]):
@@ -163,12 +163,12 @@ class Edit(Overlay[tuple[str, bool]]):
 
     def action_keep(self) -> None:
         """Keep the code as it is now."""
-        self.dismiss((self.query_one(TextArea).text, False))
+        self.close((self.query_one(TextArea).text, False))
 
     def action_run(self) -> None:
         """Keep it and run it."""
-        self.dismiss((self.query_one(TextArea).text, True))
+        self.close((self.query_one(TextArea).text, True))
 
     def action_drop(self) -> None:
         """As it was."""
-        self.dismiss(None)
+        self.close(None)

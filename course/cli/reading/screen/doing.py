@@ -131,7 +131,11 @@ class TasksApp(CellsApp):
     def _task_changed(self, name: str) -> None:
         """A task's standing has changed (from another thread)."""
         with contextlib.suppress(RuntimeError):  # the reader is gone
-            self.call_from_thread(self._show_task, name)
+            self.call_from_thread(self._show_answer, name)
+
+    def _show_answer(self, name: str) -> None:
+        self.hush()
+        self._show_task(name)
 
     def _show_task(self, name: str) -> None:
         index = self.progress.script.task(name)

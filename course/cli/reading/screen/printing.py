@@ -37,6 +37,9 @@ __all__ = ["BlockRows", "Item", "ScreenPrinter"]
 #: Prose is this wide at most; a cell's two outputs stand side by side where both fit.
 COLUMN = 80
 _BESIDE = 2 * 58 + 3
+
+#: Lines of a run that are put beside a prediction.
+_MOST = 6
 Kind = Literal["link", "cell", "question", "answer", "figure", "task"]
 
 
@@ -264,9 +267,9 @@ class ScreenPrinter(FancyPrinter):
             if question.index < cell.index < question.end:
                 state = self._progress.cell(cell)
                 ours = state.printed if state.ran is not None and not state.error else ""
-                last = (ours or cell.output or "").splitlines()[-1:]
-                if last:
-                    facts.append(("Your run" if ours else "The run", last[0].strip()))
+                gave = (ours or cell.output or "").strip("\n")
+                if gave:
+                    facts.append(("Your run" if ours else "The run", _end_of(gave)))
         judged = {"right": "right", "nearly": "nearly right", "wrong": "wrong"}
         if said.judged:
             facts.append(("You were", judged[said.judged]))
@@ -341,3 +344,9 @@ class ScreenPrinter(FancyPrinter):
         text.stylize(Style(underline=True))
         text.stylize(Style(meta={"link": self._links, "target": target}))
         return text
+
+
+def _end_of(text: str) -> str:
+    """What a cell printed, or its last lines where there are many: any of them may be what was asked for."""
+    lines = text.splitlines()
+    return "\n".join(lines if len(lines) <= _MOST else ["…", *lines[1 - _MOST :]])

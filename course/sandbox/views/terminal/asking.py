@@ -63,13 +63,13 @@ class Ask(Overlay[float]):
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Take a number; an empty line is no guess."""
         if not event.value.strip():
-            self.dismiss(None)
+            self.close(None)
             return
         guess = guess_of(event.value)
         if guess is None:
             self.query_one("#wrong", Static).update("That is no number: try something like 2.5 or -1e3.")
             return
-        self.dismiss(guess)
+        self.close(guess)
 
 
 class Told(Tell):

@@ -32,6 +32,8 @@ __all__ = ["CASCADE", "Explainer", "answers", "asked", "tasks_asked"]
 CASCADE = "CALLS_A_WRONG_FUNCTION"
 Calls = list[tuple[Any, ...]]
 _GONE = frozenset({Status.TIMEOUT, Status.MEMORY, Status.CRASH})
+#: What reading a value that nobody thought of ends in: it tells no mistake, and is no fault of the grader's.
+_STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError, RecursionError, CheckFailed)
 
 
 class Explainer:
@@ -83,7 +85,10 @@ class Explainer:
     ) -> dict[str, tuple[float, ...]]:
         remote.begin_check(task)
         within = self._table.within.get(task)
-        return asked(self._questions, task, lambda calls: answers(remote, task, calls), within, names)
+        try:
+            return asked(self._questions, task, lambda calls: answers(remote, task, calls), within, names)
+        except _STRANGE:
+            return {}
 
     def _story(self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None) -> Story:
         failures = [

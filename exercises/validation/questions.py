@@ -6,8 +6,6 @@ at instead (``probes.py``): its chance may be drawn in many ways.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from course.grading import kit
@@ -42,9 +40,11 @@ def _bands(answer, names):
 
 
 def _ends(said):
-    if not isinstance(said, list | tuple | np.ndarray) or len(said) != 2:
+    if isinstance(said, np.ndarray):
+        said = said.tolist()
+    if not isinstance(said, list | tuple) or len(said) != 2:
         return -1.0, -1.0
-    return [float(x) if isinstance(x, int | float) and math.isfinite(x) else -2.0 for x in said]
+    return [float(x) if isinstance(x, int | float) and abs(x) < 1e300 else -2.0 for x in said]
 
 
 def _intervals():

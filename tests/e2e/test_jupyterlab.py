@@ -124,6 +124,9 @@ def open_notebook(browser: Any, address: str, tmp_path: Path) -> Iterator[Any]:
     def open_(path: str) -> Any:
         page = browser.new_page(viewport={"width": 1300, "height": 1000})
         page.set_default_timeout(PATIENCE)
+        # Where kernels are slow to be listed, JupyterLab asks which one is wanted.
+        asked = page.locator(".jp-Dialog", has_text="Select Kernel")
+        page.add_locator_handler(asked, lambda: asked.locator(".jp-mod-accept").click())
         page.goto(f"{address}/lab/workspaces/w{len(pages)}-{tmp_path.name}/tree/{path}")
         page.wait_for_selector(".jp-Notebook .jp-Cell")
         page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]", state="attached")

@@ -79,7 +79,12 @@ def _spellings(text: str) -> set[str]:
     return {
         way
         for form in forms
-        for way in (form, form.encode("unicode_escape").decode("ascii"), json.dumps(form)[1:-1], quote(form))
+        for way in (
+            form,
+            form.encode("unicode_escape").decode("ascii"),
+            json.dumps(form)[1:-1],
+            quote(form, errors="surrogateescape"),
+        )
     }
 
 

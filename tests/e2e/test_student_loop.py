@@ -185,6 +185,7 @@ def test_a_check_while_a_watch_runs_loses_nothing(course, workspace):
     assert body["exercises"][0]["checks_run"] == len(runs) + 3
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(os.name == "nt", reason="needs SIGINT")
 def test_a_save_is_answered_within_a_quarter_second_of_the_checks_own_time(course, workspace):
     module = workspace / "doubling" / "doubling.py"

@@ -317,6 +317,7 @@ def test_without_colour_nothing_is_said_by_colour(catalog, monkeypatch):
     reading(catalog, journey)
 
 
+@pytest.mark.soak
 def test_a_key_is_answered_soon_at_200_columns(catalog):
     async def journey(app, pilot):
         times = []

@@ -137,7 +137,7 @@ def test_saves_are_noticed_quickly(tmp_path, how):
         next(noticed)
     seen = time.monotonic()
     thread.join()
-    assert seen - done[0] < 5  # wall: twenty looks a second, on a machine that may be busy
+    assert seen - done[0] < 60  # wall: twenty looks a second; a save that is missed is missed for ever
     noticed.close()
 
 

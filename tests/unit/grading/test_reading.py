@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import zipfile
-from time import process_time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -20,9 +19,10 @@ from course.handed_in.cells import MAX_CELLS
 from course.handed_in.notebook import MAX_NOTES, notebook_source
 from course.quizzing.bank import Bank
 from tests.benchmarks.fuzz.run import run
+from tests.growth import LIMIT, growth
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from course.catalog.models import Exercise
@@ -46,16 +46,14 @@ _LARGE: dict[str, Any] = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("kind", _LARGE)
 def test_reading_a_notebook_takes_as_long_as_it_is_long(kind: str, doubling: Exercise) -> None:
-    """Of some rounds the ratio of the fastest: what disturbs a measurement makes it slower."""
-    took: dict[int, float] = {}
-    for size in [1000, 8000] * 3:
-        data, start = _LARGE[kind](size), process_time()
-        notebook_source(data, doubling)
-        took[size] = min(took.get(size, 1e9), process_time() - start)
-    # 8 if it is linear, 64 if it is quadratic.
-    assert took[8000] / took[1000] < 24, took
+    def reading(size: int) -> Callable[[], object]:
+        data = _LARGE[kind](size)
+        return lambda: notebook_source(data, doubling)
+
+    assert growth(reading, 1000) < LIMIT
 
 
 def test_what_is_left_out_is_told_within_bounds(doubling: Exercise) -> None:

@@ -9,9 +9,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from time import process_time
 from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -21,14 +21,14 @@ from course.grading.similar.compare import compare
 from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, fingerprints
 from course.grading.similar.page import _blocks, page
 from course.scoring.session import Submission
+from tests.growth import LIMIT, growth
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book
 from tests.unit.grading.pages import Page, faults
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
-
-    import pytest
 
     from course.catalog.load import Catalog
 
@@ -220,16 +220,19 @@ def test_a_source_that_is_too_long_is_named_and_never_parsed(tmp_path: Path, cat
     assert [{pair.first.label, pair.second.label} for pair in found.pairs] == [{"ada", "bob"}]
 
 
-def test_passages_in_reversed_order_are_joined_in_time_that_grows_with_their_number() -> None:
+def _backwards(size: int) -> Callable[[], int]:
     """Two who hand in the same functions, one of them backwards: nothing continues anything."""
-    took: dict[int, float] = {}
-    for size in [500, 4000] * 3:
-        passages = [((10 * n, 10 * n + 1), (10 * (size - n), 10 * (size - n) + 1)) for n in range(size)]
-        start = process_time()
-        assert len(_blocks(passages)) == size
-        took[size] = min(took.get(size, 1e9), process_time() - start)
-    # 8 if it is linear, 64 if it is quadratic.
-    assert took[4000] / took[500] < 24, took
+    passages = [((10 * n, 10 * n + 1), (10 * (size - n), 10 * (size - n) + 1)) for n in range(size)]
+    return lambda: len(_blocks(passages))
+
+
+def test_passages_in_reversed_order_are_not_joined() -> None:
+    assert _backwards(500)() == 500
+
+
+@pytest.mark.soak
+def test_passages_in_reversed_order_are_compared_in_time_that_grows_with_their_number() -> None:
+    assert growth(_backwards, 500) < LIMIT
 
 
 def test_a_process_that_parses_ends_when_its_time_is_used_up() -> None:

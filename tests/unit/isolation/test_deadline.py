@@ -6,7 +6,7 @@ import contextlib
 import os
 import subprocess
 import sys
-from time import monotonic, process_time, sleep
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -89,13 +89,12 @@ def test_nothing_need_be_asked_before_it_can_have_passed() -> None:
 
 def test_the_clock_of_another_process_is_that_process_s_own() -> None:
     with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:
-        clock, began = ProcessClock(busy.pid), process_time()
+        clock = ProcessClock(busy.pid)
         while clock.cpu_s() < 0.2:
             sleep(0.01)
         assert not clock.asleep()
         busy.kill()
     assert clock.cpu_s() >= 0.2
-    assert process_time() - began < 0.2
     with subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"]) as idle:
         clock = ProcessClock(idle.pid)
         while not clock.asleep():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -189,12 +188,10 @@ def test_on_a_slope_a_body_stays_slides_or_rolls_as_the_closed_form_says(
     assert way == pytest.approx(0.5 * (along - held) * 1.0**2, abs=1e-9)
 
 
-def test_a_stack_of_ten_stands_at_a_cost_that_a_lesson_can_bear() -> None:
+def test_a_stack_of_ten_stands() -> None:
     bodies = [ball([0, 0, 0.5 + k]) for k in range(10)]
     engine = Simulator(bodies, h=0.01, surface=Surface(0.5, 0.5))
-    start = time.process_time()
     record = engine.run(2.0)
-    assert time.process_time() - start < 2.0  # 0.7 s here, on a busy machine
     # The first steps leave what 500 sweeps leave: 15 nm. It used to be 16 mm.
     assert np.max(np.abs(record.position - record.position[0])) < 1e-6
     # What the solver takes for nothing is a millionth of g h.

@@ -76,8 +76,7 @@ def test_a_cell_that_hangs_is_stopped_and_the_next_run_starts_anew(runner, sourc
     timer.start()
     begin = time.monotonic()
     gave = runner.run(CELLS[5])
-    # Half a second and the tenth that a read takes to look at the clock; the rest is a busy machine.
-    assert time.monotonic() - begin < 10.0
+    assert time.monotonic() - begin < 60.0  # wall: takes 0.6 s, a cell that is not stopped takes for ever
     assert (gave.printed, gave.error) == ("so far", STOPPED)
     sources["key5"] = "pass"
     assert runner.run(CELLS[3]).printed == "42"

@@ -225,6 +225,7 @@ def test_a_file_longer_than_any_honest_one_is_not_parsed_among_the_checks() -> N
     assert calls_between(source + b"1\n" * 50_000, tasks) == {}
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "source",
     [
@@ -236,6 +237,5 @@ def test_a_chain_of_functions_is_followed_in_time_that_grows_with_it(source: str
     """What each of thousands reaches would be the square of their number, in time and in memory."""
     start = process_time()
     assert calls_between(source.encode(), frozenset({"task"})) == {"task": ()}
-    assert (
-        process_time() - start < 5.0
-    )  # takes 0.3 s; 7 s and 600 MB, and over a minute, where each is followed
+    # Takes 0.3 s; 7 s and 600 MB, and over a minute, where each is followed.
+    assert process_time() - start < 5.0

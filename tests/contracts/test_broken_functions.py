@@ -26,20 +26,21 @@ if TYPE_CHECKING:
     from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
-#: What stands in the place of a function; ``own`` is the right one.
+#: What stands in the place of a function; ``own`` is the right one. Each check of its task waits for "slow",
+#: which stands where an ordinary run tries it on a task with few.
 WAYS = {
     "missing": "del {name}",
     "raises": "def {name}(*args, **names):\n    raise ValueError('no idea')",
     "unfinished": "def {name}(*args, **names):\n    raise NotImplementedError",
     "nothing": "def {name}(*args, **names):\n    return None",
     "text": "def {name}(*args, **names):\n    return 'seven'",
+    "slow": "def {name}(*args, **names):\n    while True:\n        pass",
     "shape": "def {name}(*args, **names):\n    return np.zeros((2, 3, 4))",
     "object": "def {name}(*args, **names):\n    return object()",
     "nan": "def {name}(*args, **names):\n    return spoiled(own_{name}(*args, **names), np.nan)",
     "infinite": "def {name}(*args, **names):\n    return spoiled(own_{name}(*args, **names), np.inf)",
     "exits": "def {name}(*args, **names):\n    import os\n    os._exit(0)",
     "memory": "def {name}(*args, **names):\n    return [0.0] * 10**12",
-    "slow": "def {name}(*args, **names):\n    while True:\n        pass",
     "plots": "def {name}(*args, **names):\n    plt.plot([1])\n    return own_{name}(*args, **names)",
 }
 #: Where a number is wrong, a check may say so in its own words alone.
@@ -62,11 +63,11 @@ def spoiled(value, bad):
     return value if isinstance(value, bool) else bad
 
 '''
-#: Wall seconds a check waits. A right function needs far less, on a machine with other work to do too; one
-#: that never answers is waited for by each check of its task. Checks of sim-to-real compute for a second.
+#: Seconds of CPU time a check waits. A right function needs far less; one that never answers is waited for by
+#: each check of its task. Checks of sim-to-real compute for a second.
 LATE = 60.0
 SOON = {"sim-to-real": 15.0}
-SOONEST = 4.0
+SOONEST = 2.0
 
 
 class Renamed(ast.NodeTransformer):

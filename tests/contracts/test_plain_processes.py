@@ -18,7 +18,7 @@ from time import monotonic, sleep
 import pytest
 
 from tests.contracts.levels import require_level
-from tests.contracts.users import ROOT, USERS, command_as, run_as
+from tests.contracts.users import LEVELS_AND_USERS, ROOT, USERS, command_as, run_as
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
@@ -94,8 +94,7 @@ _ENDLESS = {
 }
 
 
-@pytest.mark.parametrize("user", USERS)
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
 def test_workers_end_with_a_grader_that_was_killed(level: str, user: str) -> None:
     require_level(level)
     for name, source in _ENDLESS.items() if level == "L1" else [("in C", _ENDLESS["in C"])]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.contracts.levels import require_level
-from tests.contracts.users import ROOT, USERS, run_as
+from tests.contracts.users import LEVELS_AND_USERS, ROOT, run_as
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -92,8 +92,7 @@ CLASS: dict[str, tuple[str, bytes]] = {
 }
 
 
-@pytest.mark.parametrize("user", USERS)
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
 def test_a_class_of_what_once_broke_is_graded_to_the_end(level: str, user: str, tmp_path: Path) -> None:
     require_level(level)
     for student, (name, content) in CLASS.items():
@@ -137,8 +136,7 @@ found.close()
 """
 
 
-@pytest.mark.parametrize("user", USERS)
-@pytest.mark.parametrize("level", ["L2", "L3"])
+@pytest.mark.parametrize(("level", "user"), [case for case in LEVELS_AND_USERS if case.values[0] != "L1"])
 @pytest.mark.parametrize(
     ("attack", "ends"), [("neighbour_calls", "[1.0]"), ("zygote_memory", "exit code 77")]
 )

@@ -11,12 +11,19 @@ from pathlib import Path
 
 import pytest
 
-__all__ = ["USERS", "command_as", "run_as"]
+from tests.turns import soak_unless
+
+__all__ = ["LEVELS_AND_USERS", "USERS", "command_as", "run_as"]
 
 ROOT = Path(__file__).resolve().parents[2]
 #: "ordinary" is whoever runs the tests, or user 1000 of a new user namespace if that is root: files of the
 #: tester's stay readable there, and every capability is gone.
 USERS = ("root", "ordinary")
+#: Values of ``level`` and ``user``: each level with each user, in an ordinary run with one of them.
+LEVELS_AND_USERS = soak_unless(
+    [("L1", "ordinary"), ("L2", "root"), ("L3", "ordinary")],
+    [(level, user) for level in ("L1", "L2", "L3") for user in USERS],
+)
 
 
 def command_as(user: str, *command: str) -> list[str]:

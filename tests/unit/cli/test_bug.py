@@ -16,7 +16,7 @@ USER, HOST = "planted.person", "planted-laptop"
 def somebody(monkeypatch, tmp_path):
     """A user, a home and a machine with names that must not come out; the folder of temporary files."""
     home = tmp_path / "homes" / USER
-    (home / "work").mkdir(parents=True)
+    (home / "stuff").mkdir(parents=True)
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     monkeypatch.setenv("HOME", str(home))
@@ -44,7 +44,7 @@ def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
     home, temporary = somebody
     windows = f"C:\\Users\\{USER}\\x.py"
     machines = f"{HOST} or {HOST.upper()}.EXAMPLE.ORG"
-    said = f"no {home / 'work' / 'x.py'} nor {windows!r} on {machines} of {USER.title()}"
+    said = f"no {home / 'stuff' / 'x.py'} nor {windows!r} on {machines} of {USER.title()}"
     with monkeypatch.context() as broken:
         crash_in(course, broken, said)
     assert list(temporary.glob("course-crash-*.txt"))
@@ -56,7 +56,7 @@ def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
     for secret in (USER, HOST, str(home), str(tmp_path)):
         assert secret.lower() not in lowered, text
     assert "RuntimeError" in text
-    assert "~/work/x.py".replace("/", os.sep) in text
+    assert "~/stuff/x.py".replace("/", os.sep) in text
     assert "<course>" in text  # frames are still told apart
     assert "doctor.py" in text
 

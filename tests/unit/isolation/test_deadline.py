@@ -16,7 +16,8 @@ from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner
 from tests.contracts.levels import require_level
-from tests.contracts.users import USERS, run_as
+from tests.contracts.users import LEVELS_AND_USERS, run_as
+from tests.turns import soak_unless
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -129,7 +130,7 @@ def spins():
 """
 
 
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize("level", soak_unless(["L3"], ["L1", "L2", "L3"]))
 def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str) -> None:
     require_level(level)
     processor = min(os.sched_getaffinity(0))
@@ -185,8 +186,7 @@ found.close()
 """
 
 
-@pytest.mark.parametrize("user", USERS)
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
 def test_time_is_told_whoever_the_grader_is(level: str, user: str) -> None:
     require_level(level)
     assert run_as(user, _AS_USER, level, _WORK).split() == ["spins", "sleeps"]

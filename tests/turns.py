@@ -1,0 +1,27 @@
+"""Which of many cases an ordinary run tries; the others are tried under ``soak``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["soak_unless"]
+
+
+def soak_unless(chosen: Iterable[Any], cases: Iterable[Any]) -> list[Any]:
+    """The cases as parameters, those marked ``soak`` that are not among the chosen.
+
+    Args:
+        cases: values of one parameter, or tuples of several.
+    """
+    ordinary = list(chosen)
+
+    def parameters(case: Any) -> Any:
+        values = case if isinstance(case, tuple) else (case,)
+        return pytest.param(*values, marks=() if case in ordinary else pytest.mark.soak)
+
+    return [parameters(case) for case in cases]

@@ -34,7 +34,7 @@ def predict(lesson_id: str, number: int, text: str = "") -> Any:
     if text.strip():
         asked.say(text)
     if asked.said is None and alive():
-        from course.notebooks.predict_widget import Predict
+        from course.notebooks.widgets.predict import Predict
 
         return Predict(asked)
     return asked

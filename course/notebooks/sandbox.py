@@ -79,7 +79,7 @@ def play(scene_id: str, **settings: float) -> Any:
     """
     if not alive():
         return film(scene_id, **settings)
-    from course.notebooks.widget import Sandbox
+    from course.notebooks.widgets.sandbox import Sandbox
 
     return Sandbox(scene_id, **settings)
 

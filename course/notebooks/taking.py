@@ -28,7 +28,7 @@ def take() -> Any:
     if not alive():
         print("Without anywidget there is no attempt here: practise below, or run `course quiz take`.")  # noqa: T201 - a cell's output is its screen
         return None
-    from course.notebooks.take_widget import Take
+    from course.notebooks.widgets.take import Take
 
     return Take(Taken())
 

@@ -25,7 +25,7 @@ from course.notebooks.building.layout import FOLDERS, WORKSPACE
 from course.notebooks.building.lowering import Lowering
 from course.notebooks.building.stub import pieces
 from course.notebooks.quiz import SEED, marked
-from course.notebooks.widget_style import style
+from course.notebooks.widgets.style import style
 from course.quizzing.bank import Bank
 
 if TYPE_CHECKING:

@@ -15,12 +15,12 @@ pytest.importorskip("anywidget")
 from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import NotFoundError
-from course.notebooks.predict_widget import Predict
 from course.notebooks.predicting import Asked, predict
 from course.notebooks.sandbox import Film, play
-from course.notebooks.take_widget import Take
 from course.notebooks.taking import Taken, take
-from course.notebooks.widget import Sandbox
+from course.notebooks.widgets.predict import Predict
+from course.notebooks.widgets.sandbox import Sandbox
+from course.notebooks.widgets.take import Take
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
 from course.reading.record import InProgress
@@ -92,7 +92,7 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
     async def cell() -> None:
         widget = predict("accuracy", 1)
         assert isinstance(widget, Predict)
-        widget._open = lambda *, update: shown.append((widget.asked.opened, update))
+        widget._open = lambda *, update=True: shown.append((widget.asked.opened, update))
         said_by_a_page(widget, {"kind": "hello"})
         await asyncio.sleep(0.05)
         assert not shown
@@ -156,7 +156,7 @@ def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
         widget = take()
         assert isinstance(widget, Take)
         widget.send = sent.append
-        widget._show = lambda *, update: shown.append(update)
+        widget._open = lambda *, update=True: shown.append(update)
         said_by_a_page(widget, {"kind": "hello"})
         right = {one.question: one.key.letter for one in widget.taken.posed}
         said_by_a_page(widget, {"kind": "answers", "answers": {}})

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import asyncio
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from uuid import uuid4
-
-import anywidget
+from typing import Any
 
 from course.notebooks.quiz import Marks
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from course.notebooks.widgets.form import Form
 
 __all__ = ["Take"]
 
 
-class Take(anywidget.AnyWidget):  # type: ignore[misc]
+class Take(Form):
     """An attempt at the quiz.
 
     Args:
@@ -33,16 +27,13 @@ class Take(anywidget.AnyWidget):  # type: ignore[misc]
     def __init__(self, taken: Any) -> None:
         super().__init__()
         self.taken = taken
-        self._loop = asyncio.get_running_loop()  # see ``widget.Sandbox``: messages come on another thread
-        self._shown = uuid4().hex
-        self.on_msg(lambda _, message, __: self._loop.call_soon_threadsafe(self._hear, message))
 
     def _hear(self, message: Any) -> None:
         match message:
             case {"kind": "hello"}:
                 self.send({"kind": "questions", "questions": self._questions()})
             case {"kind": "answers", "answers": dict(letters)} if self.taken.finish(letters):
-                self._show(update=True)
+                self._open()
         if self.taken.result is not None:
             self.send({"kind": "done"})
 
@@ -60,19 +51,12 @@ class Take(anywidget.AnyWidget):  # type: ignore[misc]
             for one in self.taken.posed
         ]
 
-    def _ipython_display_(self) -> None:
-        """The form, and below it the place for the marks."""
-        import IPython.display
-
-        show: Callable[..., Any] = IPython.display.display  # typed or not, whether it is installed or not
-        show(super()._repr_mimebundle_()[0], raw=True)
-        self._show(update=False)
-
-    def _show(self, *, update: bool) -> None:
-        import IPython.display
-
-        show: Callable[..., Any] = IPython.display.display
+    def _below(self) -> dict[str, str]:
         result = self.taken.result
-        marks = "" if result is None else f"{Marks(result)._repr_html_()}<p>{escape(self.taken.note)}</p>"
-        plain = "" if result is None else repr(Marks(result))
-        show({"text/html": marks, "text/plain": plain}, raw=True, display_id=self._shown, update=update)
+        if result is None:
+            return {"text/html": "", "text/plain": ""}
+        marks = Marks(result)
+        return {
+            "text/html": f"{marks._repr_html_()}<p>{escape(self.taken.note)}</p>",
+            "text/plain": repr(marks),
+        }

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import anywidget
 
-from course.notebooks.widget_style import STATIC, style
+from course.notebooks.widgets.style import STATIC, style
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.web.session import Page, Session
 from course.sandbox.world.world import World

@@ -165,7 +165,8 @@ def test_the_wheel_installs_one_package_and_nothing_beside_it(wheel: Path) -> No
 
 def test_the_source_archive_builds_the_same_wheel(sdist: Path, wheel: Path, tmp_path: Path) -> None:
     with tarfile.open(sdist) as tar:
-        tar.extractall(tmp_path, filter="data")
+        tar.extraction_filter = getattr(tarfile, "data_filter", None)  # from 3.11.4 on
+        tar.extractall(tmp_path)
     (folder,) = tmp_path.iterdir()
     again = _build(folder, tmp_path, "wheel")
     assert sorted(_names(again)) == sorted(_names(wheel))

@@ -197,7 +197,8 @@ def _become_worker(config: dict[str, Any], newborn: _Newborn) -> socket.socket:
             lockdown.become_unprivileged()
         lockdown.die_with_parent()
         lockdown.drop_capabilities()
-        own = lockdown.landlock_ruleset(["/"], [workdir])  # after the mounts: rules are about inodes
+        # After the mounts: rules are about inodes. By ".": nobody may not go the way to a folder of root's.
+        own = lockdown.landlock_ruleset(["/"], ["."])
         lockdown.landlock_apply(own)
         os.close(own)
         if newborn.rules >= 0:

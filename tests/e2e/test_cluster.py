@@ -27,7 +27,7 @@ from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version
 from tests.e2e.processes import below, left_running
-from tests.unit.grading.test_snapshot import judged_by_the_snapshot
+from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -21,7 +21,7 @@ from course.errors import (
     UsageError,
 )
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 
 #: The student's commands, as they are promised.
 STUDENT = [

@@ -16,8 +16,8 @@ from course.grading.results.effective import Results
 from course.grading.similar.compare import Document, Pair, Similar
 from course.grading.similar.fingerprints import Parser
 from course.grading.similar.page import page as similar_page
+from tests.unit.grading.exports.test_html import quiz_verdict
 from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, WRONG, digest, key, make_book
-from tests.unit.grading.test_html import quiz_verdict
 from tests.unit.grading.test_results import DUE, POLICY
 
 if TYPE_CHECKING:

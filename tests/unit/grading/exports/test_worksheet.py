@@ -18,7 +18,7 @@ from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from tests.unit.grading.made import read_by_php
-from tests.unit.grading.test_run import right
+from tests.unit.grading.running.test_run import right
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,7 @@ from course.cli.work.replies import Hint
 from course.scoring.session import GradingSession
 
 CLI = Path(package.__file__).parent / "cli"
-MINI_COURSE = Path(__file__).parents[2] / "fixtures" / "mini_course"
+MINI_COURSE = Path(__file__).parents[3] / "fixtures" / "mini_course"
 
 
 def broken(document, reply):

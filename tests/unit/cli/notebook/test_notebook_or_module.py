@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.progress.store import Store
-from tests.unit.cli.test_notebook import GOOD, OTHER, write_into
+from tests.unit.cli.notebook.test_notebook import GOOD, OTHER, write_into
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,7 +10,7 @@ import pytest
 
 from course.grading.running import batch
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.test_run import right
+from tests.unit.grading.running.test_run import right
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,7 +11,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.grading.intake.students import read_class
 
-MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.gradebook.records import FromDownload
 from course.grading.intake.downloads import ClassList, class_list
 from course.grading.intake.students import read_student
-from tests.unit.grading.test_intake import archive
+from tests.unit.grading.intake.test_intake import archive
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from course.grading.intake.students import Entry
     from course.grading.running.summary import Summary
 
-MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
-ROOT = Path(__file__).resolve().parents[3]
+MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
+ROOT = Path(__file__).resolve().parents[4]
 
 WRONG = b"\ndef double(x):\n    return x\n"
 

@@ -24,12 +24,12 @@ from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.terms import Terms
 from course.scoring.version import grader_version
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.test_run import make_class, right
+from tests.unit.grading.running.test_run import make_class, right
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 #: In a hidden check of ``double``: so edited, nobody passes it.
 DUE, EDITED = "-34.5,", "-35.5,"
 

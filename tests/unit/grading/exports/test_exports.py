@@ -37,7 +37,7 @@ from tests.unit.grading.test_results import POLICY
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-JUNIT = Path(__file__).resolve().parents[2] / "fixtures" / "junit.xsd"
+JUNIT = Path(__file__).resolve().parents[3] / "fixtures" / "junit.xsd"
 OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True)
 #: Values of hidden checks, in every spelling a file may have them.
 SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from course.grading.cluster.coordinator import Outcome
     from course.scoring.session import GradingSession
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 POISON = b"poison"
 DEADLY_CHECK = """

@@ -208,7 +208,7 @@ def test_likeness_is_shown_and_written_as_a_page(course, out: Path) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="how root gives up its rights is Linux's")
 def test_a_folder_that_cannot_be_written_is_said_and_can_still_be_read(course, out: Path) -> None:
     """In a process of its own, in which permissions count even for root."""
-    root = Path(__file__).resolve().parents[3]
+    root = Path(__file__).resolve().parents[4]
     code = (
         "import sys\n"
         "from course.cli.frame.app import run\n"

@@ -23,7 +23,7 @@ from course.progress.store import Store
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 LESSON = "numerical-integration"
 #: However slow the machine is: what is waited for comes within this, in s, or never.
 NEVER = 90.0

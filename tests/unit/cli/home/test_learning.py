@@ -11,7 +11,7 @@ from course.cli.frame.here import load_catalog
 from course.progress.store import Store
 from course.reading.parts import read_script
 
-MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 ASKED = "## Once\n\n> **Predict.** What is twice five?\n\n> **Answer.** Ten.\n"
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 

@@ -23,7 +23,7 @@ from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
-from tests.unit.grading.test_run import right
+from tests.unit.grading.running.test_run import right
 
 if TYPE_CHECKING:
     from pathlib import Path

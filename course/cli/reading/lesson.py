@@ -1,7 +1,6 @@
 """A lesson on a terminal: for eyes, or line by line for a screen reader.
 
-``render_lesson`` prints a whole lesson, ``lesson_pages`` and ``Reader.show`` let a caller go page by page. A
-page ends where a section ends, and after each prediction: the figure that answers it must not be in sight.
+A page ends where a section ends, and after each prediction: the figure that answers it must not be in sight.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise, Lesson
 
-__all__ = ["Page", "Reader", "lesson_pages", "render_lesson"]
+__all__ = ["Page", "Reader", "lesson_pages"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,16 +48,8 @@ def lesson_pages(lesson: Lesson) -> tuple[Page, ...]:
     return _paginate(read_blocks(Path(lesson.path)))
 
 
-def render_lesson(
-    catalog: Catalog,
-    lesson: Lesson,
-    console: Console,
-    *,
-    plain: bool = False,
-    figures_dir: Path | None = None,
-    width: int | None = None,
-) -> tuple[Path, ...]:
-    """Print a whole lesson.
+class Reader:
+    """A lesson being read on one console.
 
     Args:
         catalog: names what the lesson links to.
@@ -68,21 +59,9 @@ def render_lesson(
         figures_dir: folder to write the figures to as PNG; None writes none.
         width: columns to use; the console's own if left out.
 
-    Returns:
-        The pictures that were written.
-
     Raises:
         ContentError: the lesson cannot be read or parsed.
         UsageError: the folder for figures cannot be written to.
-    """
-    reader = Reader(catalog, lesson, console, plain=plain, figures_dir=figures_dir, width=width)
-    for page in reader.pages:
-        reader.show(page)
-    return reader.pictures
-
-
-class Reader:
-    """A lesson being read on one console; the arguments are those of ``render_lesson``.
 
     Attributes:
         pages: all of its pages, in order; their number is a place to come back to.

@@ -25,7 +25,6 @@ from typing import TYPE_CHECKING, Any
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import MAX_FILE, Held, RefusedError
-from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.reading import reader
 from course.grading.intake.triage import Candidate, Found, found_for, said_of, survey
 from course.handed_in.cells import MAX_NOTEBOOK
@@ -38,11 +37,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from course.catalog.models import Exercise
+    from course.grading.intake.downloads import Place, Student
 
 __all__ = [
     "MAX_FILE",
     "Entry",
-    "read_class",
     "read_quiz",
     "read_student",
     "submission_from",
@@ -79,22 +78,12 @@ class Entry:
         return self.submission.sha256 if self.submission else hashlib.sha256().hexdigest()
 
 
-def read_class(folder: Path, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:
-    """Every student's entries, students in order of name.
-
-    Args:
-        required: whether an exercise without a file is ungradable (it was asked for by name) or merely
-            not submitted.
-
-    Raises:
-        NotFoundError: there is no such folder.
-    """
-    for student in class_list(folder).students:
-        yield from read_student(student, exercises, required=required)
-
-
 def read_student(student: Student, exercises: Sequence[Exercise], *, required: bool) -> list[Entry]:
     """The entries of one student, one per exercise; whatever happens in it ends nobody else's grading.
+
+    Args:
+        required: whether an exercise without a file is ungradable (it was asked for by name) or merely not
+            submitted.
 
     Raises:
         InternalError: nothing at all can be read.

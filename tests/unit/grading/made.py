@@ -6,14 +6,18 @@ from typing import TYPE_CHECKING
 
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result
+from course.grading.intake.downloads import class_list
+from course.grading.intake.students import read_student
 from course.scoring.session import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 if TYPE_CHECKING:
     import subprocess
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
+    from course.catalog.models import Exercise
+    from course.grading.intake.students import Entry
     from course.grading.running.grader import Config
 
 SECRET = 1234.5678
@@ -25,6 +29,12 @@ HOSTILE = [
     "\u00a0", "\uff1d1", "O'Neil", "a\x00b", "\ufffe\uffff", "x" * 300,
     'a\\"b', "a\\", "\U0001f680 Ada", "\U0001f469\u200d\U0001f680", "\u05d0\u05d3\u05d4",
 ]  # fmt: skip
+
+
+def read_class(folder: Path, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:
+    """Every student's entries, in order of name."""
+    for student in class_list(folder).students:
+        yield from read_student(student, exercises, required=required)
 
 
 def digest(student: str) -> str:

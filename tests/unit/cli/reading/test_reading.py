@@ -13,7 +13,7 @@ from rich.console import Console
 
 from course.catalog.models import Lesson
 from course.cli.frame.pictures import InlinePicture, protocol_of
-from course.cli.reading.lesson import Reader, lesson_pages, render_lesson
+from course.cli.reading.lesson import Reader, lesson_pages
 from course.cli.reading.plain import sentences
 from course.cli.reading.words import value_spoken, value_text
 from course.errors import NotFoundError
@@ -113,8 +113,16 @@ def written(console: Console) -> str:
 
 def shown(lesson: Lesson, width: int = 60, **options: Any) -> str:
     console = console_of(width)
-    render_lesson(CATALOG, lesson, console, **options)
+    read_whole(lesson, console, **options)
     return written(console)
+
+
+def read_whole(lesson: Lesson, console: Console, **options: Any) -> tuple[Path, ...]:
+    """Every page; the pictures that were written."""
+    reader = Reader(CATALOG, lesson, console, **options)
+    for page in reader.pages:
+        reader.show(page)
+    return reader.pictures
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 120])
@@ -166,7 +174,7 @@ def test_figures_are_written_where_asked_and_their_path_is_said(
     lesson: Lesson, tmp_path: Path, plain: bool
 ) -> None:
     console = console_of(400)
-    (picture,) = render_lesson(CATALOG, lesson, console, plain=plain, figures_dir=tmp_path / "f", width=400)
+    (picture,) = read_whole(lesson, console, plain=plain, figures_dir=tmp_path / "f", width=400)
     assert picture == tmp_path / "f" / "integrators-stability.png"
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert f"Picture:{picture}" in "".join(written(console).split())
@@ -211,7 +219,7 @@ def test_plain_breaks_no_line_to_the_width(lesson: Lesson) -> None:
 
 def test_a_terminal_that_cannot_show_the_letters_gets_what_a_screen_reader_gets(lesson: Lesson) -> None:
     ascii_file = io.TextIOWrapper(io.BytesIO(), encoding="ascii", errors="replace")
-    render_lesson(CATALOG, lesson, Console(file=ascii_file, width=60, markup=False))
+    read_whole(lesson, Console(file=ascii_file, width=60, markup=False))
     ascii_file.seek(0)
     assert "Section: First section" in ascii_file.read()
 
@@ -221,7 +229,7 @@ def test_colour_is_left_out_where_it_is_not_wanted(lesson: Lesson, monkeypatch: 
     coloured = console_of(60, force_terminal=True, color_system="256")
     quiet = console_of(60, force_terminal=True, color_system="256", no_color=True)
     for console in (coloured, quiet):
-        render_lesson(CATALOG, lesson, console)
+        read_whole(lesson, console)
     colours = re.compile(r"\x1b\[[\d;]*\b3[1-7]\b[\d;]*m")
     assert colours.search(written(coloured))
     assert not colours.search(written(quiet))
@@ -300,7 +308,7 @@ def test_a_picture_is_sent_to_a_terminal_that_shows_it(
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("TERM", "xterm-kitty")
     console = console_of(60, force_terminal=True)
-    render_lesson(CATALOG, lesson, console)
+    read_whole(lesson, console)
     text = written(console)
     assert "\x1b_Ga=T,f=100" in text
     assert "To be seen" not in text

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
-from course.grading.intake.students import read_class
+from course.grading.intake.downloads import class_list
+from course.grading.intake.students import read_student
 
 MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
@@ -166,7 +167,6 @@ def test_they_are_handed_in_only_when_asked_for(warm, workspace, tmp_path_factor
     loose.mkdir(parents=True)
     shutil.copy(workspace / "warm-ups/adding/adding.py", loose)
     asked = [Catalog().exercise("adding")]
-    found = {
-        entry.student: entry.submission is not None for entry in read_class(folder, asked, required=True)
-    }
+    entries = [read_student(one, asked, required=True) for one in class_list(folder).students]
+    found = {entry.student: entry.submission is not None for (entry,) in entries}
     assert found == {"ada": True, "bob": False, "cem": True}

@@ -13,7 +13,8 @@ import pytest
 
 from course.errors import NotFoundError
 from course.grading.intake.downloads import Place, Student, class_list
-from course.grading.intake.students import MAX_FILE, Entry, read_class, read_student
+from course.grading.intake.students import MAX_FILE, Entry, read_student
+from tests.unit.grading.made import read_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable

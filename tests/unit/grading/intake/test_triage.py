@@ -16,13 +16,13 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake import students, triage
-from course.grading.intake.students import Entry, read_class
 from course.grading.intake.triage import Candidate, found_for
 from course.grading.results.override import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
+from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_run import right
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.grading.intake.students import Entry
 
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 OTHER = SOURCE + b"# the second try\n"

@@ -20,7 +20,6 @@ from course.catalog.load import Catalog
 from course.catalog.locate import chosen
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.grading.intake.students import read_class
 from course.grading.results.override import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
@@ -29,7 +28,7 @@ from course.grading.running.grader import Answer
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.terms import Terms
 from course.scoring.verdict import Verdict
-from tests.unit.grading.made import stillborn
+from tests.unit.grading.made import read_class, stillborn
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

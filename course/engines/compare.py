@@ -23,8 +23,8 @@ from course.engines.machine import this_machine
 from course.engines.process import EngineProcess
 from course.engines.registry import ENGINES, Availability, availability, get
 from course.engines.results import DEFAULT, OK, TUNED, Comparison, EngineState, Row, Setting
-from course.engines.scenarios import BOXES, DT, SCENARIOS
-from course.engines.scenarios import get as get_scenario
+from course.engines.scenarios.scenario import BOXES, DT, SCENARIOS
+from course.engines.scenarios.scenario import get as get_scenario
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios import DT, IMPACTS, SCENARIOS
+from course.engines.scenarios.scenario import DT, IMPACTS, SCENARIOS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

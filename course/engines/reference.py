@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from course.engines.results import Comparison, Reference, Row, Setting
-from course.engines.scenarios import DT
+from course.engines.scenarios.scenario import DT
 
 __all__ = ["FORMAT_VERSION", "load", "made_of", "row"]
 

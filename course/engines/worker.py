@@ -49,7 +49,7 @@ class Desk:
             return {"status": "failed", "message": f"{type(error).__name__}: {error}"}
 
     def _do(self, job: Mapping[str, Any]) -> dict[str, Any]:
-        from course.engines.scenarios import get
+        from course.engines.scenarios.scenario import get
 
         if job["do"] == "chunk":
             return self._chunk(job["steps"])
@@ -66,7 +66,7 @@ class Desk:
             return self._adapter.build(scene, tuning.options)
 
         if job["do"] == "boxes":
-            from course.engines.scenarios_contact import boxes_scene
+            from course.engines.scenarios.contact import boxes_scene
 
             self._boxes = build(boxes_scene(job["dt"]))
             self._boxes.step(round(0.25 / job["dt"]))

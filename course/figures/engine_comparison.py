@@ -18,7 +18,7 @@ from course.engines.compare import LADDER
 from course.engines.findings import slope
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios import BOXES
+from course.engines.scenarios.scenario import BOXES
 from course.figures.drawing.style import PALETTE, file_of, new_figure, title
 
 if TYPE_CHECKING:

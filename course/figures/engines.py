@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from course.engines import reference
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios import SCENARIOS
+from course.engines.scenarios.scenario import SCENARIOS
 from course.figures.drawing.style import PALETTE, new_figure, title
 
 if TYPE_CHECKING:

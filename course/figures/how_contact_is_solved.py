@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from course.figures.drawing.style import PALETTE, new_figure, title
-from course.physics.contact_models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
+from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

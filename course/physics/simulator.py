@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from course.physics.contact import Plane, Surface
-from course.physics.contact_pairs import Pairs, in_any_run
-from course.physics.contact_solver import Impulses, Motion, normal_speed, solve
+from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
+from course.physics.contact.pairs import Pairs, in_any_run
 from course.physics.integrators import State, Stepper, VelocityVerlet
 from course.physics.recording import Recording
 from course.physics.rotation import Spin, SplitRotation, turn, turn_back

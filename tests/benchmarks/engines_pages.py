@@ -21,7 +21,7 @@ from course.cli.engines.screen import number
 from course.engines import reference, settings
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios import SCENARIOS
+from course.engines.scenarios.scenario import SCENARIOS
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "engines.md"

@@ -21,7 +21,7 @@ from typing import Any
 from course.engines import settings
 from course.engines.process import EngineProcess
 from course.engines.registry import ENGINES
-from course.engines.scenarios import BOXES, DT, SCENARIOS, Scenario
+from course.engines.scenarios.scenario import BOXES, DT, SCENARIOS, Scenario
 
 FILE = Path(__file__).parents[2] / "course" / "engines" / "well_set.json"
 #: The hundred boxes are stepped as the stack is, so that rate and movement belong to one setting.

@@ -45,7 +45,7 @@ def list_engines() -> int:
     the command that installs it is shown.
     """
     from course.engines.compare import state_of
-    from course.engines.scenarios import SCENARIOS
+    from course.engines.scenarios.scenario import SCENARIOS
 
     console = current()
     with console.working("Starting each engine"):
@@ -175,7 +175,7 @@ def _engine(state: EngineState) -> Engine:
 
 
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
-    from course.engines.scenarios import SCENARIOS
+    from course.engines.scenarios.scenario import SCENARIOS
 
     return tuple(
         EngineScenario(

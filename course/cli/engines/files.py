@@ -39,7 +39,7 @@ _COLUMNS = (
 def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
     """Every row with its truth, its error and whether it is the best of its column."""
     from course.cli.engines.screen import best_rows
-    from course.engines.scenarios import SCENARIOS
+    from course.engines.scenarios.scenario import SCENARIOS
 
     best = best_rows(comparison.rows)
     made = []

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios import BOXES, SCENARIOS
+from course.engines.scenarios.scenario import BOXES, SCENARIOS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from course.cli.frame.console import Console
     from course.engines.results import Comparison, Row, Setting
-    from course.engines.scenarios import Scenario
+    from course.engines.scenarios.scenario import Scenario
 
 __all__ = ["best_rows", "number", "show"]
 

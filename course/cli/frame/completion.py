@@ -93,7 +93,7 @@ def engine_ids(incomplete: str) -> list[str]:
 
 def scenario_ids(incomplete: str) -> list[str]:
     """Scenarios of the engine comparison whose id begins with what was typed."""
-    from course.engines.scenarios import SCENARIOS
+    from course.engines.scenarios.scenario import SCENARIOS
 
     return _beginning(incomplete, SCENARIOS)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.physics.contact_models import Constraint, Penalty, SoftConvex, drop, erp_cfm
+from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm
 from course.simulations.base import Column, Parameter, Result, Row, Simulation, step
 from course.simulations.words import digits, percent
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from course.physics.contact_models import ContactModel
+    from course.physics.contact.models import ContactModel
 
     Array = NDArray[np.float64]
 

@@ -15,9 +15,9 @@ from course.engines import reference, settings
 from course.engines.findings import chaos, same_algorithm
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios import SCENARIOS
+from course.engines.scenarios.scenario import SCENARIOS
 from course.figures import engines as drawn
-from course.physics.contact_models import SoftConvex, drop
+from course.physics.contact.models import SoftConvex, drop
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = (

@@ -10,7 +10,7 @@ import pytest
 
 from course.engines import reference, settings
 from course.engines.registry import ENGINES
-from course.engines.scenarios import BOXES, SCENARIOS
+from course.engines.scenarios.scenario import BOXES, SCENARIOS
 
 ROOT = Path(__file__).resolve().parents[3]
 PAIRS = [(engine, scenario) for engine in ENGINES for scenario in SCENARIOS]

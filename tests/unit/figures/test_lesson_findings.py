@@ -9,7 +9,7 @@ from course.engines import reference
 from course.engines.registry import ENGINES
 from course.figures import engines, how_contact_is_solved, sim_to_real, summary, twins
 from course.figures.drawing.style import house_style
-from course.physics.contact_models import Constraint
+from course.physics.contact.models import Constraint
 
 
 def test_the_title_of_the_settings_counts_errors_that_are_there() -> None:

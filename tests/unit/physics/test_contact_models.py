@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.physics.contact_models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
+from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
 
 H, G = 0.01, 9.81
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from course.physics.contact_solver import Impulses, Motion, normal_speed, solve
+from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
 
 vectors = st.lists(st.floats(-5, 5), min_size=3, max_size=3).map(np.array)
 masses = st.floats(0.1, 10)

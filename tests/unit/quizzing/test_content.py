@@ -12,7 +12,7 @@ from course.authoring.quiz_audit import audit_quiz
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.physics import integrators as steppers
-from course.physics.contact_models import Constraint, drop
+from course.physics.contact.models import Constraint, drop
 from course.physics.systems import FreeFall, Oscillator
 from course.quizzing.attempt import mark
 from course.quizzing.bank import Bank, Posed, pose_case, same_answer

@@ -1,6 +1,6 @@
 """Contact as geometry: how far apart things are, in which direction, and what their surfaces are like.
 
-Detection knows no forces. What a contact does to the bodies is the business of ``contact_solver``.
+Detection knows no forces. What a contact does to the bodies is the business of ``impulses``.
 
 Source: Baraff and Witkin, Physically Based Modeling (SIGGRAPH course notes), 1997, part II.
 """

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from course.physics.contact import Plane, meet, meet_plane
-from course.physics.contact_solver import normal_speed
+from course.physics.contact.geometry import Plane, meet, meet_plane
+from course.physics.contact.impulses import normal_speed
 from course.physics.interpolation import falling_root
 
 if TYPE_CHECKING:

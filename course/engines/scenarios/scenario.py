@@ -10,8 +10,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from course.engines import scenarios_contact as contact
-from course.engines import scenarios_motion as motion
+from course.engines.scenarios import contact, motion
 from course.errors import NotFoundError
 
 if TYPE_CHECKING:

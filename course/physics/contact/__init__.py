@@ -1,0 +1,11 @@
+"""Contact between rigid bodies: where it is, what it does, and the models that engines use.
+
+geometry  how far apart things are, in which direction, and what their surfaces are like
+pairs     which bodies may touch and when they meet, for all pairs at once
+impulses  what all contacts do to the bodies at once
+models    a ball on a floor in one dimension, under the contact models of engines
+"""
+
+from course.physics.contact.geometry import Plane, Surface, meet, meet_plane
+
+__all__ = ["Plane", "Surface", "meet", "meet_plane"]

@@ -2,7 +2,7 @@
 
 
 def reading(distance, resolution, limit):
-    """What a sensor with whole counts and a limit says.
+    """Reading of a sensor with whole counts and a limit.
 
     Args:
         distance: true distance, m.

@@ -2,11 +2,11 @@
 
 
 def damping(speeds, forces):
-    """Slope of the line through zero with the smallest squared misses.
+    """Slope of the line through zero with the smallest squared errors.
 
     Args:
         speeds: m/s.
-        forces: N, at the same places.
+        forces: N, at these speeds.
 
     Returns:
         float, N s/m.

@@ -6,8 +6,8 @@ def fair_step(h, iterations, other):
 
     Args:
         h: step of the first engine, s.
-        iterations: its passes in each step.
-        other: passes of the other engine in each step.
+        iterations: its iterations in each step.
+        other: iterations of the other engine in each step.
 
     Returns:
         float, s.

@@ -1,6 +1,6 @@
-"""A fall, a collision and a spring. This program has six faults: one stops it, five make it lie.
+"""A fall, a collision and a spring. This program has six faults: one stops it, five make its numbers wrong.
 
-Run it with `python first_program.py`. Each fault is mended by one small edit.
+Run it with `python first_program.py`. One small edit mends each fault.
 """
 
 import math
@@ -10,9 +10,9 @@ H = 0.01  # length of a step, s
 
 
 def run(x, v, a, n):
-    """A run with the constant acceleration ``a``: pairs (position, velocity), n steps after the start.
+    """A run of n steps with the constant acceleration ``a``: pairs (position, velocity).
 
-    The first pair is the start itself, so that there are n + 1 of them.
+    The first pair is the start, so there are n + 1 pairs.
     """
     states = []
     for _ in range(n):
@@ -36,7 +36,7 @@ def after_contact(v1, v2):
 
 
 def meeting(n):
-    """Two balls of 1 m roll at each other: the run of each, as pairs (position, velocity)."""
+    """Two balls of 1 m roll towards each other: the run of each, as pairs (position, velocity)."""
     x1, v1, x2, v2 = -5.0, 2.0, 5.0, -2.0
     first, second = [(x1, v1)], [(x2, v2)]
     for _ in range(n):
@@ -54,7 +54,7 @@ def gap(first, second, k):
 
 
 def euler_step(x, v, a, h):
-    """One step of explicit Euler: position and velocity both go on with their old rates."""
+    """One step of explicit Euler: position and velocity are both updated with their old rates."""
     v = v + h * a
     x = x + h * v
     return x, v
@@ -68,7 +68,7 @@ def semi_implicit_step(x, v, a, h):
 
 
 def swing(step, omega, n):
-    """Positions of a mass on a spring, let go at 1 m, after 0, 1, ... n steps."""
+    """Positions of a mass on a spring, released at 1 m, after 0, 1, ... n steps."""
     x, v, positions = 1.0, 0.0, [1.0]
     for _ in range(n):
         x, v = step(x, v, -(omega**2) * x, H)
@@ -83,7 +83,7 @@ def error_at_end(positions, omega):
 
 
 def summary():
-    """What the program has to say: pairs of what and how much."""
+    """The program's results: pairs of a name and a value."""
     heights = [x for x, _ in run(10.0, 0.0, -G, 200)]
     first, second = meeting(500)
     euler, semi_implicit = swing(euler_step, 2.0, 500), swing(semi_implicit_step, 2.0, 500)

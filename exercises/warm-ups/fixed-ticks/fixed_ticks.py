@@ -2,12 +2,12 @@
 
 
 def ticks(frame, h, left):
-    """Steps that a frame pays for, and what is left.
+    """Number of steps in a frame, and the time that is left over.
 
     Args:
         frame: length of the frame, s.
         h: length of a step, s.
-        left: what the frame before left, s; less than h.
+        left: time left over from the frame before, s; less than h.
 
     Returns:
         Pair of the number of steps and the time left, s.

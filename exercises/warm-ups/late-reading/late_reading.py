@@ -7,8 +7,8 @@ def seen(times, values, latency, now):
     Args:
         times: of the samples, s, ascending.
         values: of the samples.
-        latency: time on the way, s.
-        now: time of asking, s.
+        latency: delay of each value, s.
+        now: present time, s.
 
     Returns:
         One of the values, or None.

@@ -2,7 +2,7 @@
 
 
 def step_ahead(x, v, a, h):
-    """Position and velocity a step later, with everything taken as constant.
+    """Position and velocity one step later, with constant rates.
 
     Args:
         x: position, m.

@@ -2,7 +2,7 @@
 
 
 def observed_order(h, error, h_small, error_small):
-    """Power of the step with which the error goes, from two runs.
+    """Power of the step to which the error is proportional, from two runs.
 
     Args:
         h: the larger step, s.

@@ -5,7 +5,7 @@ def push_out(depth, h, beta, slop):
     """Separating speed that removes a share of a penetration.
 
     Args:
-        depth: how deep the bodies are in each other, m; negative for a gap.
+        depth: overlap of the bodies, m; negative for a gap.
         h: length of a step, s.
         beta: share of the depth to remove in a step.
         slop: depth that may stay, m.

@@ -2,7 +2,7 @@
 
 
 def overlap(p, q, r1, r2):
-    """How deep two balls are in each other.
+    """How far two balls overlap.
 
     Args:
         p: centre of the first ball, two numbers, m.

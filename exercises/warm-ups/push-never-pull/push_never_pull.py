@@ -6,7 +6,7 @@ def applied(total, wanted):
 
     Args:
         total: impulse so far, N s; never negative.
-        wanted: correction the solver would like, N s.
+        wanted: correction that the solver computed, N s.
 
     Returns:
         float, N s.

@@ -2,12 +2,12 @@
 
 
 def robust(costs):
-    """Index of the design whose worst cost is the smallest.
+    """Index of the controller whose worst cost is the smallest.
 
     Args:
-        costs: a list for each design, with its cost in each world.
+        costs: a list for each controller, with its cost in each world.
 
     Returns:
-        int; of equals the first.
+        int; if several are equal, the first.
     """
     raise NotImplementedError

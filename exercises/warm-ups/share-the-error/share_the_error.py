@@ -5,9 +5,9 @@ def corrected(predicted, measured, share):
     """A prediction corrected by a measurement.
 
     Args:
-        predicted: what the model says, m.
-        measured: what the sensor says, m.
-        share: of the way from the one to the other, from 0 to 1.
+        predicted: position from the model, m.
+        measured: position from the sensor, m.
+        share: of the way from the prediction to the measurement, from 0 to 1.
 
     Returns:
         float, m.

@@ -2,7 +2,7 @@
 
 
 def fastest(thickness, radius, h):
-    """Largest speed at which a ball is sure to be seen inside a wall.
+    """Largest speed at which an engine is sure to find a ball inside a wall.
 
     Args:
         thickness: of the wall, m.

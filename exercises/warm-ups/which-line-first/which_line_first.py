@@ -5,7 +5,7 @@ def swing(x, v, k, m, h, n):
     """A mass on a spring after n steps.
 
     Args:
-        x: position at the start, m; 0 is where the spring is slack.
+        x: position at the start, m; at 0 the spring is relaxed.
         v: velocity at the start, m/s.
         k: stiffness, N/m.
         m: mass, kg.

@@ -2,7 +2,7 @@
 
 
 def worst_drift(energies):
-    """Largest distance of an energy from its first value, as a share of that.
+    """Largest distance of the energy from its first value, as a share of that value.
 
     Args:
         energies: J, in the order of time; the first is not zero.

@@ -42,7 +42,7 @@ def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) ->
     data = json.loads(sandbox("list", "incline", "--json", cwd=tmp_path).stdout)
     assert data["schema"] == "course.sandbox-list/1"
     (scene,) = data["scenes"]
-    assert "30 degrees steep, the friction of the pair 0.4" in scene["question"]
+    assert "30 degrees steep, and the friction of the pair is 0.4" in scene["question"]
     assert {"angle", "gravity", "step"} <= {p["name"] for p in scene["parameters"]}
 
 

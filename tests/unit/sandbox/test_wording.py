@@ -85,19 +85,19 @@ def test_whatever_changes_the_answer_changes_the_words(name: str) -> None:
         ("bullet-wall", {"step": 0.0004}, ["0.0004 s", "0.04 m"], ["1/240", "0.42"]),
         ("dominoes", {"pitch": 0.2}, ["20 cm", "0.04/0.2"], ["12 cm", "0.12", "1/3"]),
         ("free-fall", {"step": 0.1}, ["0.1 s", "0.491 m"], ["hundredth", "0.049"]),
-        ("head-on", {"restitution": 0.0}, ["pair is 0.", "0.5 m/s", "0 of that"], ["nothing is lost"]),
+        ("head-on", {"restitution": 0.0}, ["pair is 0.", "0.5 m/s", "0 times that"], ["nothing is lost"]),
         ("head-on", {"speed": 5.0}, ["5 m/s", "6 m/s"], ["2 m/s, the right"]),
         ("incline", {"friction": 0.1}, ["0.05 of the", "4.48 m/s²"], ["0.4 "]),
         ("incline", {"angle": 45.0}, ["45 degrees", "sin 45°"], ["30"]),
         ("newtons-cradle", {"restitution": 0.9}, ["0.81", "0.905"], ["velocity on whole"]),
         ("newtons-cradle", {"angle": 60.0}, ["60 degrees", "3.13 m/s"], ["30"]),
-        ("pendulum-wall", {"restitution": 0.3}, ["0.3 of that"], ["0.8"]),
+        ("pendulum-wall", {"restitution": 0.3}, ["0.3 times that"], ["0.8"]),
         ("pendulum-wall", {"angle": 90.0}, ["90 degrees", "cos 90°", "4.43"], ["60"]),
-        ("restitution-row", {"restitution": 0.5}, ["0.5 of that", "0.25 m"], ["0.8", "0.64"]),
+        ("restitution-row", {"restitution": 0.5}, ["0.5 times that", "0.25 m"], ["0.8", "0.64"]),
         ("restitution-row", {"height": 4.0}, ["from 4 m", "2.56 m"], ["from 1 m", "0.64 m"]),
         ("robot-boxes", {"left": 1.0, "right": 0.25}, ["-0.75 m", "-2.5 rad/s"], ["0.05", "0.45", "1/6"]),
-        ("unequal-masses", {"ratio": 0.01}, ["0.01 times", "one that waited"], ["three times", "light one"]),
-        ("unequal-masses", {"restitution": 0.5}, ["0.25 of the speed"], ["loses nothing in"]),
+        ("unequal-masses", {"ratio": 0.01}, ["0.01 times", "puck at rest"], ["three times", "light one"]),
+        ("unequal-masses", {"restitution": 0.5}, ["0.25 times the speed"], ["loses nothing in"]),
     ],
 )  # fmt: skip
 def test_what_was_set_is_what_is_said(
@@ -244,5 +244,5 @@ def test_a_scene_with_a_formula_that_has_no_value_is_refused_with_its_line(
 
 def test_a_list_has_the_numbers_of_the_file() -> None:
     assert question(choose("incline")).startswith(
-        "The slope is 30 degrees steep, the friction of the pair 0.4."
+        "The slope is 30 degrees steep, and the friction of the pair is 0.4."
     )

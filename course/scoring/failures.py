@@ -12,6 +12,7 @@ import traceback
 from pathlib import Path
 
 from course.isolation.failures import FailureKind, StudentFailure
+from course.isolation.hanging import LOOP
 from course.printable import one_line
 from course.scoring.explain.words import Diagnosis
 from course.scoring.places import Places
@@ -71,7 +72,16 @@ def finding_of(failure: StudentFailure) -> Finding:
             diagnosis="MISSING_FUNCTION",
         )
     message, advice, code = _OTHER[failure.kind]
+    if failure.kind == "timeout" and failure.line:
+        message += f" It was still {_at(failure)}."
     return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
+
+
+def _at(failure: StudentFailure) -> str:
+    """The line of a failure within a sentence."""
+    places: Places = failure.places or Places()
+    assert failure.line is not None
+    return ("in the loop that begins " if failure.type == LOOP else "") + places.phrase(failure.line)
 
 
 def _error_finding(failure: StudentFailure) -> Finding:

@@ -37,6 +37,7 @@ class RemoteSubmission:
         timeout: seconds of CPU time per check.
         seed: seed of the grading run.
         places: how its lines are told; failures carry it.
+        home: a worker that does not answer is asked where it is.
 
     Attributes:
         returned: name and value of the last function of the student's that returned in this check.
@@ -55,7 +56,9 @@ class RemoteSubmission:
         timeout: float,
         seed: int,
         places: Places | None = None,
+        home: bool = False,
     ) -> None:
+        self._home = home
         self._places = places or Places(module=main)
         self.seed = seed
         self._spawner = spawner
@@ -182,13 +185,17 @@ class RemoteSubmission:
 
     # -- for the grader -------------------------------------------------------------------------------
 
-    def begin_check(self, task: str = "") -> None:
+    def begin_check(self, task: str = "", patience: float | None = None) -> None:
         """Start the clock of one check.
 
         The checks of a task have together half of the time that is left when the first of them begins: a
         function that never answers costs its own task, however many checks that has. What workers left
         behind is deleted before the clock starts.
+
+        Args:
+            patience: seconds of CPU time, if it is to have less than others.
         """
+        most = self._timeout if patience is None else min(self._timeout, patience)
         self._cpu_left -= self._deadline.used
         self._wall_left -= self._deadline.wall
         if self._task:
@@ -196,11 +203,16 @@ class RemoteSubmission:
         self._spawner.tidy()
         left = min(self._left.setdefault(task, self._cpu_left / 2), self._cpu_left)
         self._task = task
-        self._deadline = Deadline(min(self._timeout, left), min(WALL * self._timeout, self._wall_left))
+        self._deadline = Deadline(min(most, left), min(WALL * most, self._wall_left))
         self.returned = None
         self.asked = set()
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
+
+    @property
+    def used(self) -> float:
+        """Seconds of CPU time that the check has taken."""
+        return self._deadline.used
 
     def printed(self) -> str:
         """What the submission printed since the check began."""
@@ -217,7 +229,7 @@ class RemoteSubmission:
         self._spawner.tidy()
 
     def _connect(self) -> Connection:
-        return Connection(self._spawner, self._files, self._main, self._deadline)
+        return Connection(self._spawner, self._files, self._main, self._deadline, asks=self._home)
 
     @contextlib.contextmanager
     def _asking(self, name: str) -> Iterator[Connection]:

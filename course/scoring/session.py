@@ -67,6 +67,7 @@ class GradingSession:
     Attributes:
         running: title of the check that runs; empty between runs.
         asked: for each check that has run, the functions of the last submission that it asked for.
+        took: and how long it kept the worker busy, in s of CPU time.
 
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
@@ -99,6 +100,8 @@ class GradingSession:
         self._remote: RemoteSubmission | None = None
         self.running = ""
         self.asked: dict[str, frozenset[str]] = {}
+        self.took: dict[str, float] = {}
+        self._hung: set[str] = set()  # tasks of the submission at hand with a check that ran out of time
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -184,6 +187,7 @@ class GradingSession:
         return RemoteSubmission(
             self._spawner, submission.files, self.exercise.module,
             timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
+            home=self._terms.home,
         )  # fmt: skip
 
     def _places(self, submission: Submission) -> Places:
@@ -200,6 +204,8 @@ class GradingSession:
         results: dict[str, CheckResult] = {}
         self._failed.clear()
         self.asked.clear()
+        self.took.clear()
+        self._hung.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
@@ -212,10 +218,11 @@ class GradingSession:
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
         self.running = check.title
-        remote.begin_check(check.task)
+        hung = check.task in self._hung
+        remote.begin_check(check.task, self.exercise.patience(check.id, hung) if self._terms.home else None)
         start = perf_counter()
         outcome = self._checks.run(check, remote)
-        self.asked[check.id] = frozenset(remote.asked)
+        self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used
         duration_ms = (perf_counter() - start) * 1e3
         if outcome is None:
             return result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
@@ -229,6 +236,8 @@ class GradingSession:
                 return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
                 status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
+                if status is Status.TIMEOUT:
+                    self._hung.add(check.task)
                 traceback = places.trace(outcome.traceback) or None
                 finding = finding_of(outcome)
                 return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)

@@ -84,8 +84,9 @@ def check(
 def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
     """A grading session over the public checks of an exercise; a context manager."""
     from course.scoring.session import GradingSession
+    from course.scoring.terms import Terms
 
-    return GradingSession(exercise, catalog, scope="public")
+    return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
 
 
 def say_which(console: Console, here: Here, work: Work) -> None:

@@ -44,6 +44,7 @@ class LoadRefusedError(Exception):
         stage: "syntax", "import", "timeout" or "crash".
         failure: what happened, as far as it is known.
         text: the offending line, for a syntax error.
+        printed: what it printed till then.
     """
 
     def __init__(self, stage: str, failure: StudentFailure, text: str = "") -> None:
@@ -51,6 +52,7 @@ class LoadRefusedError(Exception):
         self.stage = stage
         self.failure = failure
         self.text = text
+        self.printed = ""
 
 
 class RemoteFunction:
@@ -107,6 +109,10 @@ class Connection:
         self._channel = self._handle.channel
         try:
             self.functions = self._load()
+        except LoadRefusedError as refused:
+            self.close()
+            refused.printed = self._printed
+            raise
         except BaseException:
             self.close()
             raise

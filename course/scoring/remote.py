@@ -245,9 +245,9 @@ class RemoteSubmission:
         if self._deadline.passed():
             raise StudentFailure("timeout", message="it ran out of time")
         if not self._connection.alive:
-            self._printed_before = 0
             try:
                 self._connection = self._connect()
+                self._printed_before = len(self._connection.output())
             except (
                 LoadRefusedError
             ) as error:  # it loaded before: the difference is the submission's own doing

@@ -44,6 +44,7 @@ __all__ = ["GradingSession", "Scope", "Submission", "check_files", "kept_on"]
 Scope = Literal["public", "full"]
 T = TypeVar("T")
 
+_PRINTED = 4000  # characters of what a submission prints in one check, or while it is loaded
 _STATUS = {
     "error": Status.ERROR,
     "missing": Status.ERROR,
@@ -68,6 +69,7 @@ class GradingSession:
         running: title of the check that runs; empty between runs.
         asked: for each check that has run, the functions of the last submission that it asked for.
         took: and how long it kept the worker busy, in s of CPU time.
+        printed: what the last submission printed while it was loaded.
 
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
@@ -101,6 +103,7 @@ class GradingSession:
         self.running = ""
         self.asked: dict[str, frozenset[str]] = {}
         self.took: dict[str, float] = {}
+        self.printed = ""
         self._hung: set[str] = set()  # tasks of the submission at hand with a check that ran out of time
 
     @property
@@ -139,9 +142,11 @@ class GradingSession:
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
 
     def _grade(self, submission: Submission, only: Collection[str]) -> Verdict:
+        self.printed = ""
         try:
             remote = self._load(submission)
         except LoadRefusedError as refused:
+            self.printed = refused.printed[:_PRINTED]
             return self._ungradable(load_problem(refused, self._places(submission)))
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -149,6 +154,7 @@ class GradingSession:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._ungradable(no_functions(self.exercise))
             self._remote = remote
+            self.printed = remote.printed()[:_PRINTED]
             results = self._run(remote, only, submission)
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -224,9 +230,10 @@ class GradingSession:
         outcome = self._checks.run(check, remote)
         self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used
         duration_ms = (perf_counter() - start) * 1e3
+        printed = remote.printed()[:_PRINTED] or None
         if outcome is None:
-            return result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
-        printed = remote.printed()[:4000] or None
+            said = printed if self._terms.home else None
+            return result(check, Status.PASS, points=check.points, duration_ms=duration_ms, stdout=said)
         match outcome:
             case IsolationError():
                 raise outcome

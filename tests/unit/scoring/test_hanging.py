@@ -1,4 +1,4 @@
-"""What hangs at home is named by its line, soon, and no other check waits for it as long."""
+"""What a student sees at home alone: the line that hangs, soon, and what the file prints."""
 
 from __future__ import annotations
 
@@ -139,3 +139,24 @@ def test_times_are_written_in_tenths_and_stay_while_they_are_about_right() -> No
     assert due({"slow": 0.4}, {"slow": 0.17}) == {"slow": 0.4}
     assert due({"slow": 0.4}, {"slow": 0.41}) == {"slow": 0.5}
     assert due({"slow": 0.4, "gone": 0.2}, {"slow": 0.01}) == {}
+
+
+def test_prints_while_loading_and_in_checks_that_pass_are_kept(home: GradingSession) -> None:
+    prints = "\n_old = double\ndef double(x):\n    print(x)\n    return _old(x)\nprint('loaded')\n"
+    verdict = home.grade(Submission({"doubling.py": (SOLUTION + prints).encode()}))
+    assert (verdict.all_pass, home.printed) == (True, "loaded\n")
+    assert [check.stdout for check in verdict.checks] == ["3.0\n", None]
+    home.grade(Submission({"doubling.py": (SOLUTION + prints + "1 / 0\n").encode()}))
+    assert home.printed == "loaded\n"
+    home.grade(Submission({"doubling.py": SOLUTION.encode()}))
+    assert home.printed == ""
+
+
+def test_a_worker_that_starts_again_prints_what_loading_prints_once(home: GradingSession) -> None:
+    source = SOLUTION + "\ndef double(x):\n    import os\n    os._exit(1)\nprint('loaded')\n"
+    verdict = home.grade(Submission({"doubling.py": source.encode()}))
+    assert home.printed == "loaded\n"
+    assert [(check.status.value, check.stdout) for check in verdict.checks] == [
+        ("crash", None),
+        ("pass", None),
+    ]

@@ -1,9 +1,9 @@
 """``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
 
 At the head of a cell, ``%%course_check``, the cell is the whole file, and does not run in the kernel. Else
-what is checked is the text of the cells that were run, not the objects in the kernel: the functions run again in a
-process of their own, so a check means the same here, in a terminal and in the grading run. In a workspace it
-is recorded as `course check` records it.
+what is checked is the text of the cells that were run, not the objects in the kernel: the functions run
+again in a process of their own, so a check means the same here, in a terminal and in the grading run. In a
+workspace it is recorded as `course check` records it.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from course.isolation.spawn import Spawner
+    from course.scoring.curves import March
 
 T = TypeVar("T")
 
@@ -42,6 +43,7 @@ class RemoteSubmission:
     Attributes:
         returned: name and value of the last function of the student's that returned in this check.
         asked: names of the functions that this check has asked for.
+        marched: the first march of this check at home, if it made one.
 
     Raises:
         LoadRefusedError: it cannot be loaded.
@@ -71,6 +73,7 @@ class RemoteSubmission:
         self._task = ""
         self.returned: tuple[str, Any] | None = None
         self.asked: set[str] = set()
+        self.marched: March | None = None
         self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
@@ -139,10 +142,14 @@ class RemoteSubmission:
         sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
         with self._asking(step_name) as worker:
             values = self._told(step_name, worker.march(step_name, sent))
-        return [
+        paths = [
             (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
             for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
         ]
+        if self._home and self.marched is None:
+            t, *states = paths[0]
+            self.marched = step_name, marches[0][0], t, tuple(states)
+        return paths
 
     def call_each(self, name: str, calls: Iterable[Sequence[Any]]) -> list[Any]:
         """What the student's function returns for each sequence of arguments, in one round trip.
@@ -205,7 +212,7 @@ class RemoteSubmission:
         self._task = task
         self._deadline = Deadline(min(most, left), min(WALL * most, self._wall_left))
         self.returned = None
-        self.asked = set()
+        self.asked, self.marched = set(), None
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 

@@ -23,6 +23,7 @@ from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.checks.companions import companion
+from course.scoring.curves import Curve, marched
 from course.scoring.explaining import Explainer
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.outcomes import found, load_problem, no_functions, result, skipped, unjudged
@@ -70,6 +71,7 @@ class GradingSession:
         asked: for each check that has run, the functions of the last submission that it asked for.
         took: and how long it kept the worker busy, in s of CPU time.
         printed: what the last submission printed while it was loaded.
+        curves: for failed checks at home, the student's curve and the right one, where both say something.
 
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
@@ -104,6 +106,7 @@ class GradingSession:
         self.asked: dict[str, frozenset[str]] = {}
         self.took: dict[str, float] = {}
         self.printed = ""
+        self.curves: dict[str, Curve] = {}
         self._hung: set[str] = set()  # tasks of the submission at hand with a check that ran out of time
 
     @property
@@ -212,6 +215,7 @@ class GradingSession:
         self.asked.clear()
         self.took.clear()
         self._hung.clear()
+        self.curves.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
@@ -239,6 +243,7 @@ class GradingSession:
                 raise outcome
             case CheckFailed():
                 self._failed[check.id] = outcome
+                self._keep_curve(check, outcome, remote)
                 ours = OURS + outcome.broke if outcome.broke else None
                 return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
@@ -255,6 +260,13 @@ class GradingSession:
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
         finding = unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _keep_curve(self, check: Check, failed: CheckFailed, remote: RemoteSubmission) -> None:
+        if not self._terms.home:
+            return
+        curve = failed.curve or (marched(remote.marched) if remote.marched else None)
+        if curve is not None:
+            self.curves[check.id] = curve
 
     def _passes_the_model(self, check: Check) -> bool | None:
         """Whether a check that broke on a submission passes the model solution; None without one here."""

@@ -15,6 +15,7 @@ from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
 from course.cli.home.advice import next_step
 from course.cli.work.annotations import FORMATS, annotate, annotate_error, known_format
 from course.cli.work.chosen import asked_for, chosen_work, worked_on
+from course.cli.work.curves import show_curve
 from course.cli.work.prints import show_loading
 from course.cli.work.replies import Check, CheckAll
 from course.cli.work.verdicts import show_verdict
@@ -201,6 +202,7 @@ def _check_one(
         # A warm-up is small, and one thing at a time is enough of it.
         brief = exercise.is_warm_up and not verbose
         show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
+        show_curve(console, exercise, verdict, session)
     else:
         annotate(console, here, work, verdict, form)
     step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""

@@ -23,6 +23,7 @@ from course.cli.frame.replies import ErrorBody, ErrorReply
 from course.cli.home.advice import next_step
 from course.cli.work import checking
 from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.curves import show_curve
 from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
 from course.cli.work.prints import show_loading
@@ -182,6 +183,7 @@ class Watcher:
     _verdict: Verdict | None = None
     _focus: str = ""
     _printed: str = ""
+    _session: GradingSession | None = None
 
     def look(self, session: GradingSession) -> bool:
         """Grade the file if it was saved since the last look; True if it was."""
@@ -238,7 +240,7 @@ class Watcher:
             work = chosen_work(self.here, self.exercise, self.name or self.exercise.module)
             with self._at_work(session) as superseded:
                 verdict = checking.grade_once(session, work.submission)
-                self._printed = session.printed
+                self._session, self._printed = session, session.printed
             if superseded.is_set():
                 self.console.note("Saved again meanwhile: this run is dropped.")
                 return True
@@ -270,6 +272,10 @@ class Watcher:
         show_verdict(
             self.console, self.exercise, verdict, verbose=self.verbose, brief=True, focus=self._focus
         )
+        if self._session is not None:
+            # A picture takes the room that the finding needs, so it is one of the details.
+            drawn, focus = self.verbose, self._focus
+            show_curve(self.console, self.exercise, verdict, self._session, focus=focus, drawn=drawn)
 
     def _failing(self) -> list[str]:
         """Functions with a check that does not pass, in the order of the exercise."""

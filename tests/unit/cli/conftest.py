@@ -42,6 +42,7 @@ class FakeSession:
         from course.scoring.verdict import CheckResult
 
         self.exercise = exercise
+        self.curves = {}
         self.checks = [
             CheckResult(
                 id=f"{task.id}_works",

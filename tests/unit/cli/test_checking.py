@@ -165,3 +165,23 @@ def test_quiet_leaves_the_summary(course, write):
     write("wrong", "RIGHT")
     lines = course("check", "-q").out.splitlines()
     assert [line.split()[0] for line in lines] == ["1", "Score"]
+
+
+def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, monkeypatch):
+    import numpy as np
+
+    from course.cli.work import checking
+    from course.scoring.curves import compared
+    from tests.unit.cli.conftest import FakeSession
+
+    def opened(exercise, catalog):
+        session = FakeSession(exercise)
+        t = np.arange(5.0)
+        session.curves = {"doublings_works": compared(t, 3 * t, 2 * t, "x", "m")}
+        return session
+
+    monkeypatch.setattr(checking, "open_session", opened)
+    write("RIGHT", "wrong")
+    said = "doublings_works: x over time. Your curve leaves what it should be at 1 s; at the end, at 4 s,"
+    assert said in course("check").out
+    assert said in course("check", "--plain").out

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from course.authoring.exercises.files import blanks_in
+from course.authoring.lessons.links import LinkChecker
 from course.catalog.questions import read_questions
 from course.errors import ContentError
 from course.quizzing.proof import faults_in
@@ -68,12 +69,8 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
             f"question {question.id} has {len(question.variant)} variants, and needs {LEAST_VARIANTS}.",
             "Add variants: new numbers or a new situation for the same idea.",
         )
-    if question.lesson and question.lesson not in catalog.lesson_ids():
-        wrong(
-            ("lesson",),
-            f"there is no lesson {question.lesson}.",
-            f"Known: {', '.join(catalog.lesson_ids())}.",
-        )
+    if question.lesson:
+        LinkChecker(catalog, findings).check_question(document)
     used = {option.misconception for variant in question.variant for option in variant.option}
     for name in question.misconceptions:
         if name not in used:

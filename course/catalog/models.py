@@ -58,6 +58,13 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     read: str = ""
 
 
+#: At home a check may take so many times what it takes at most of a right solution, and so many once another
+#: check of its function ran out of time: what hangs has been told by then.
+_PATIENCE, _LESS = 20.0, 5.0
+#: What a check takes at most if it is not in ``slow``, in s.
+QUICK = 0.1
+
+
 class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """An exercise, as ``exercise.toml`` declares it.
 
@@ -74,6 +81,8 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             wheel, which has no hidden checks, can say so; the audit compares it with the graders.
         kind: "warm-up" for a small one that counts for nothing and has public checks only.
         minutes: how long a warm-up takes.
+        slow: public checks that take more than ``QUICK`` of a right solution, and how long at most, in s of
+            CPU time; ``course author build`` measures it.
         after: slug of the section of its lesson that a warm-up follows; "" for the end of the lesson.
         folder: where the files are; set by the loader.
     """
@@ -94,6 +103,7 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     kind: Literal["exercise", "warm-up"] = "exercise"
     minutes: int = 0
     after: str = ""
+    slow: dict[str, float] = {}
     folder: str = ""
 
     @property
@@ -143,6 +153,14 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def max_points(self) -> float:
         """Public and hidden points together."""
         return sum(task.points for task in self.task)
+
+    def patience(self, check: str, hung: bool) -> float:
+        """How long a check is waited for at home, in s of CPU time.
+
+        Args:
+            hung: another check of the same function ran out of time before.
+        """
+        return (_LESS if hung else _PATIENCE) * self.slow.get(check, QUICK)
 
     def where_to_read(self, task_id: str) -> str:
         """What explains a task, as "lesson#section", or a lesson alone."""

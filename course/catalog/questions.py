@@ -92,7 +92,7 @@ class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         order: position in the quiz, 1 first.
         title: what it is about, in a few words.
         misconceptions: what people wrongly believe here, in their words, by name.
-        lesson: the lesson to read again; empty if none.
+        lesson: what to read again, "lesson#section" or a lesson; empty if nothing.
     """
 
     format_version: int

@@ -27,9 +27,10 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         kind: "error" (it raised), "timeout", "memory", "crash" (its process died), "protocol" (it returned
             what cannot cross to the grader, or its process spoke out of turn) or "missing" (no such
             function).
-        type: name of the exception's class, for "error"; name of the function, for "missing".
+        type: name of the exception's class, for "error"; name of the function, for "missing"; "loop" for a
+            "timeout" whose line is the first one of a loop.
         message: the exception's own words. They may repeat a hidden input, so they never reach a message.
-        line: line of the student's file where it arose, 1 first.
+        line: line of the student's file where it arose, 1 first; where it is known.
         traceback: the student's own frames, as text.
         bases: names of the classes the exception derives from, its own included.
         places: how ``line`` is told to whoever wrote it, for who turns this into words; None if unknown here.

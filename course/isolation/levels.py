@@ -119,6 +119,9 @@ class Handle(Protocol):
     def asleep(self) -> bool:
         """Whether it waits for something else than a processor or a disk, or was stopped."""
 
+    def look(self) -> None:
+        """Ask it where its code is, if it can be asked; the answer comes after ``LOOKS`` of these."""
+
     def finish(self) -> Exit:
         """Kill it if it lives, and wait for its end; what it wrote is left for ``Spawner.tidy``.
 

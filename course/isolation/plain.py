@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from course.isolation import launch
 from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
+from course.isolation.inside.frames import LOOK
 from course.isolation.levels import MAX_OUTPUT, Exit, Level, ticking
 
 if TYPE_CHECKING:
@@ -132,6 +133,10 @@ class _ProcessHandle:
             return ""
         self._output.seek(0)
         return self._output.read(MAX_OUTPUT).decode("utf-8", "replace")
+
+    def look(self) -> None:
+        if LOOK is not None:
+            self._process.send_signal(LOOK)
 
     def finish(self) -> Exit:
         if hasattr(os, "killpg"):  # not on Windows

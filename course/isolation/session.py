@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.hanging import where_it_hangs
 from course.isolation.inside import wire
 from course.isolation.levels import START_TIMEOUT
 from course.isolation.reports import claimed_text, raised
@@ -43,6 +44,7 @@ class LoadRefusedError(Exception):
         stage: "syntax", "import", "timeout" or "crash".
         failure: what happened, as far as it is known.
         text: the offending line, for a syntax error.
+        printed: what it printed till then.
     """
 
     def __init__(self, stage: str, failure: StudentFailure, text: str = "") -> None:
@@ -50,6 +52,7 @@ class LoadRefusedError(Exception):
         self.stage = stage
         self.failure = failure
         self.text = text
+        self.printed = ""
 
 
 class RemoteFunction:
@@ -73,14 +76,24 @@ class Connection:
         files: the submission: file name to content.
         main: the file whose functions are called.
         deadline: by which loading must be done.
+        asks: where the code is that does not answer in time. At home only: what it says, it may have chosen.
 
     Raises:
         LoadRefusedError: the submission cannot be loaded.
         IsolationError: the worker could not be started or locked down.
     """
 
-    def __init__(self, spawner: Spawner, files: Mapping[str, bytes], main: str, deadline: Deadline) -> None:
+    def __init__(
+        self,
+        spawner: Spawner,
+        files: Mapping[str, bytes],
+        main: str,
+        deadline: Deadline,
+        *,
+        asks: bool = False,
+    ) -> None:
         self._files = files
+        self._asks = asks
         self._main = main
         self._codec = wire.Codec(self)
         self._buffer = b""
@@ -96,6 +109,10 @@ class Connection:
         self._channel = self._handle.channel
         try:
             self.functions = self._load()
+        except LoadRefusedError as refused:
+            self.close()
+            refused.printed = self._printed
+            raise
         except BaseException:
             self.close()
             raise
@@ -360,8 +377,11 @@ class Connection:
             raise self._timeout()
 
     def _timeout(self) -> StudentFailure:
+        at = None
+        if self._asks and self.alive:
+            at = where_it_hangs(self._handle, self._buffer, self._main, self._files[self._main])
         self.close()
-        return StudentFailure("timeout", message="it ran out of time")
+        return at or StudentFailure("timeout", message="it ran out of time")
 
     def _breach(self, what: str) -> StudentFailure:
         self.close()

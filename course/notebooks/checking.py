@@ -35,7 +35,7 @@ def check(exercise_id: str, task: str | None, source: Source | None) -> CheckTab
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     must_have(exercise, task)
-    return checked(catalog, exercise, _submission(exercise, source), task)
+    return checked(catalog, exercise, _submission(exercise, source), task, prints=source is not None)
 
 
 def must_have(exercise: Exercise, task: str | None) -> None:
@@ -47,12 +47,19 @@ def must_have(exercise: Exercise, task: str | None) -> None:
         )
 
 
-def checked(catalog: Catalog, exercise: Exercise, submission: Submission, task: str | None) -> CheckTable:
-    """Run the public checks, record the attempt, and show those of one function, or all."""
+def checked(
+    catalog: Catalog, exercise: Exercise, submission: Submission, task: str | None, *, prints: bool = False
+) -> CheckTable:
+    """Run the public checks, record the attempt, and show those of one function, or all.
+
+    Args:
+        prints: show what was printed while it was loaded, too; a cell that was run has shown it.
+    """
     from course.scoring.session import GradingSession
+    from course.scoring.terms import Terms
 
     begin = time.perf_counter()
-    with GradingSession(exercise, catalog, scope="public") as session:
+    with GradingSession(exercise, catalog, scope="public", terms=Terms(home=True)) as session:
         verdict = session.grade(submission)
     seconds = time.perf_counter() - begin
     source, known = submission.files[exercise.module], [one.id for one in exercise.task]
@@ -61,7 +68,8 @@ def checked(catalog: Catalog, exercise: Exercise, submission: Submission, task: 
         # What was not run yet is not missing: the attempt is at this function alone.
         verdict = _of_task(verdict, exercise, only)
     note = _recorded(catalog, exercise, verdict, source, seconds, only=only)
-    return CheckTable(verdict, task, note)
+    printed = session.printed if prints else ""
+    return CheckTable(verdict, task, note, printed=printed, scored=not exercise.is_warm_up)
 
 
 # -- what was written ------------------------------------------------------------------------------------

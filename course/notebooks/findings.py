@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 from course.scoring.numbers import format_points, numbers_of
 
 if TYPE_CHECKING:
+    from course.notebooks.page import ReportPage
     from course.scoring.verdict import CheckResult, Verdict
 
 __all__ = ["CheckTable"]
 
+_MOST = 6  # lines of what was printed
 _MARKS = {"pass": "✓", "skip": "–"}
 _STYLE = (
     "<style>.course-checks{border-collapse:collapse}.course-checks td{text-align:left!important;"
@@ -28,9 +30,25 @@ class CheckTable:
         verdict: on all public checks.
         task: show those of this function only; None shows all.
         note: what else there is to say, as a sentence.
+        printed: by the code while it was loaded.
+        scored: points are shown; a warm-up has none.
+
+    Attributes:
+        report: what the code does on public data, shown below; None if there is none.
     """
 
-    def __init__(self, verdict: Verdict, task: str | None, note: str = "") -> None:
+    def __init__(
+        self,
+        verdict: Verdict,
+        task: str | None,
+        note: str = "",
+        *,
+        printed: str = "",
+        scored: bool = True,
+    ) -> None:
+        self.report: ReportPage | None = None
+        self._printed = _first_lines(printed)
+        self._scored = scored
         self.verdict = verdict
         self.note = note
         self.checks = tuple(check for check in verdict.checks if task in (None, check.task))
@@ -51,37 +69,40 @@ class CheckTable:
         points = sum(check.points for check in self.checks)
         most = sum(check.max_points for check in self.checks)
         of = f" of {self._task}" if self._task else ""
-        score = f"{format_points(points)} of {format_points(most)} points"
+        score = f": {format_points(points)} of {format_points(most)} points" if self._scored else ""
         if self.passed and len(self.checks) == 1:
-            return f"The one public check{of} passes: {score}."
+            return f"The one public check{of} passes{score}."
         if self.passed:
-            return f"All {len(self.checks)} public checks{of} pass: {score}."
-        return f"{passing} of {len(self.checks)} public checks{of} pass: {score}."
+            return f"All {len(self.checks)} public checks{of} pass{score}."
+        return f"{passing} of {len(self.checks)} public checks{of} pass{score}."
 
     def __repr__(self) -> str:
-        lines = []
+        lines = [*self._printed]
+        below = [text for text in (self.note, repr(self.report) if self.report is not None else "") if text]
         for check in self.checks:
             lines.append(f"{_MARKS.get(check.status, '✗')} {check.title}: {check.status}")
             lines += [f"    {text}" for text in _words(check)]
-        return "\n".join([*lines, self.summary, *([self.note] if self.note else [])])
+        return "\n".join([*lines, self.summary, *below])
 
     def _repr_html_(self) -> str:
-        rows = "".join(_row(check) for check in self.checks)
+        rows = "".join(_row(check, scored=self._scored) for check in self.checks)
         table = f'<table class="course-checks">{rows}</table>' if rows else ""
         note = f"<p>{escape(self.note)}</p>" if self.note else ""
-        return f"{_STYLE}{table}<p><b>{escape(self.summary)}</b></p>{note}"
+        printed = f"<pre>{escape(chr(10).join(self._printed))}</pre>" if self._printed else ""
+        report = self.report._repr_html_() if self.report is not None else ""
+        return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{note}{report}"
 
 
-def _row(check: CheckResult) -> str:
+def _row(check: CheckResult, *, scored: bool) -> str:
     mark = _MARKS.get(check.status, "✗")
     words = "".join(
         f"<br>{_coded(text)}" if index < 2 else f"<br><small>{escape(text)}</small>"
         for index, text in enumerate(_words(check))
     )
+    points = f"<td>{format_points(check.points)}/{format_points(check.max_points)}</td>" if scored else ""
     return (
         f"<tr><td>{mark} {escape(str(check.status))}</td>"
-        f"<td><b>{escape(check.title)}</b>{words}</td>"
-        f"<td>{format_points(check.points)}/{format_points(check.max_points)}</td></tr>"
+        f"<td><b>{escape(check.title)}</b>{words}</td>{points}</tr>"
     )
 
 
@@ -96,4 +117,12 @@ def _words(check: CheckResult) -> list[str]:
         return []
     lines = [text for text in (check.message, check.help) if text]
     lines += [f"{label}: {text}" for label, text in numbers_of(check)]
-    return lines
+    printed = _first_lines(check.stdout or "")
+    return [*lines, "your code printed:", *printed] if printed else lines
+
+
+def _first_lines(text: str) -> list[str]:
+    """The first lines of what was printed, and how many there are more."""
+    lines = text.rstrip().splitlines()
+    left = len(lines) - _MOST
+    return [*lines[:_MOST], f"and {left} more"] if left > 0 else lines

@@ -1,7 +1,8 @@
 """``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
 
-What is checked is the text of the cells that were run, not the objects in the kernel: the functions run again
-in a process of their own, so a check means the same here, in a terminal and in the grading run. In a
+At the head of a cell, ``%%course_check``, the cell is the whole file, and does not run in the kernel. Else
+what is checked is the text of the cells that were run, not the objects in the kernel: the functions run
+again in a process of their own, so a check means the same here, in a terminal and in the grading run. In a
 workspace it is recorded as `course check` records it.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from course.errors import CourseError
+from course.notebooks import checking
 from course.notebooks.checking import checked, must_have
 from course.notebooks.typed import typed_in
 
@@ -19,19 +21,21 @@ if TYPE_CHECKING:
     from course.notebooks.findings import CheckTable
     from course.notebooks.page import ReportPage
 
-__all__ = ["check", "register", "report"]
+__all__ = ["check", "check_cell", "register", "report"]
 
 
 def register(shell: Any) -> None:
     """Make ``%course_check`` and ``%course_report`` known to an IPython shell."""
 
-    def course_check(line: str) -> CheckTable | None:
-        """Run the public checks: %course_check EXERCISE [FUNCTION]"""
+    def course_check(line: str, cell: str | None = None) -> CheckTable | None:
+        """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
         words = line.split()
         if not 1 <= len(words) <= 2:
             _said("Write: %course_check EXERCISE [FUNCTION]")
             return None
         try:
+            if cell is not None:
+                return check_cell(f"{cell}\n", *words)
             return check(typed_in(shell), *words)
         except CourseError as error:
             _said(f"{error.message} {error.help}")
@@ -49,7 +53,7 @@ def register(shell: Any) -> None:
             _said(f"{error.message} {error.help}")
             return None
 
-    shell.register_magic_function(course_check, "line", "course_check")
+    shell.register_magic_function(course_check, "line_cell", "course_check")
     shell.register_magic_function(course_report, "line", "course_report")
 
 
@@ -96,3 +100,23 @@ def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> 
     must_have(exercise, task)
     module = module_of(history, exercise)
     return checked(catalog, exercise, module.submission(exercise), task)
+
+
+def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTable:
+    """The public checks on a text; where all pass and there is a report, that is shown, too.
+
+    Raises:
+        NotFoundError: there is no such exercise or function.
+    """
+    from course.catalog.load import Catalog
+    from course.notebooks.page import ReportPage
+    from course.scoring.reporting import has_report, report_of
+    from course.scoring.submission import Submission
+
+    table = checking.check(exercise_id, task, text)
+    exercise = Catalog().exercise(exercise_id)
+    if table.passed and has_report(exercise):
+        table.report = ReportPage(
+            report_of(exercise, Catalog(), Submission({exercise.module: text.encode()}))
+        )
+    return table

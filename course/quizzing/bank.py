@@ -70,7 +70,12 @@ class Posed:
     prompt: str
     choices: tuple[Choice, ...]
     source: str
-    lesson: str
+    read: str
+
+    @property
+    def lesson(self) -> str:
+        """The lesson that explains it; empty if none."""
+        return self.read.partition("#")[0]
 
     @property
     def key(self) -> Choice:
@@ -190,7 +195,7 @@ def pose_case(document: Document[Question], variant_index: int, case: int) -> Po
         prompt=_fill(variant.prompt, shown),
         choices=choices,
         source=variant.source,
-        lesson=question.lesson,
+        read=question.lesson,
     )
 
 

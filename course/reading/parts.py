@@ -161,7 +161,7 @@ def read_script(lesson: Lesson, tasks: Sequence[Exercise] = ()) -> Script:
     Raises:
         ContentError: it cannot be read or parsed.
     """
-    blocks = _with_tasks(read_blocks(Path(lesson.path)), tasks)
+    blocks = with_tasks(read_blocks(Path(lesson.path)), tasks)
     return Script(
         lesson=lesson,
         blocks=blocks,
@@ -198,7 +198,8 @@ def words_of(block: b.Block) -> str:
     return "\n".join(part for part in parts if part)
 
 
-def _with_tasks(blocks: tuple[b.Block, ...], tasks: Sequence[Exercise]) -> tuple[b.Block, ...]:
+def with_tasks(blocks: tuple[b.Block, ...], tasks: Sequence[Exercise]) -> tuple[b.Block, ...]:
+    """The blocks of a lesson with its tasks where they belong: after the section that each names."""
     sections = tuple(_sections(blocks))
     ends = {section.slug: section.end for section in sections}
     end = next((section.start for section in sections if section.slug == "sources"), len(blocks))

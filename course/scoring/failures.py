@@ -10,12 +10,17 @@ from __future__ import annotations
 import builtins
 import traceback
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from course.isolation.failures import FailureKind, StudentFailure
+from course.isolation.hanging import LOOP
 from course.printable import one_line
 from course.scoring.explain.words import Diagnosis
 from course.scoring.places import Places
 from course.scoring.verdict import Finding
+
+if TYPE_CHECKING:
+    from course.scoring.curves import Curve
 
 __all__ = ["OURS", "CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "broke_at", "finding_of"]
 
@@ -27,6 +32,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: message and advice of the check itself, without what its probe thinks.
         guess: the mistake that its probe thinks it is.
         broke: where the probe raised, for the check's author; empty if it did not.
+        curve: what was compared along time, if there is something to be seen in it.
     """
 
     def __init__(
@@ -35,12 +41,14 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         broke: str = "",
         bare: tuple[str, str] | None = None,
         guess: Diagnosis | None = None,
+        curve: Curve | None = None,
     ) -> None:
         super().__init__(finding.message)
         self.finding = finding
         self.bare = bare or (finding.message, finding.help)
         self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
         self.broke = broke
+        self.curve = curve
 
 
 #: Begins the traceback of a result whose check, or its search for the mistake, raised on a student's value.
@@ -71,7 +79,16 @@ def finding_of(failure: StudentFailure) -> Finding:
             diagnosis="MISSING_FUNCTION",
         )
     message, advice, code = _OTHER[failure.kind]
+    if failure.kind == "timeout" and failure.line:
+        message += f" It was still {_at(failure)}."
     return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
+
+
+def _at(failure: StudentFailure) -> str:
+    """The line of a failure within a sentence."""
+    places: Places = failure.places or Places()
+    assert failure.line is not None
+    return ("in the loop that begins " if failure.type == LOOP else "") + places.phrase(failure.line)
 
 
 def _error_finding(failure: StudentFailure) -> Finding:

@@ -87,7 +87,7 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
     if refused.stage == "syntax":
         return Problem("syntax_error", *_unreadable(refused, where))
     if refused.stage == "timeout":
-        message = f"{module} did not finish loading in time."
+        message = f"{where}: it did not finish loading in time."
         return Problem(
             "import_timeout", message, "Move work out of the top level of the file, into functions."
         )

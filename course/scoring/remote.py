@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from course.isolation.spawn import Spawner
+    from course.scoring.curves import March
 
 T = TypeVar("T")
 
@@ -37,10 +38,12 @@ class RemoteSubmission:
         timeout: seconds of CPU time per check.
         seed: seed of the grading run.
         places: how its lines are told; failures carry it.
+        home: a worker that does not answer is asked where it is.
 
     Attributes:
         returned: name and value of the last function of the student's that returned in this check.
         asked: names of the functions that this check has asked for.
+        marched: the first march of this check at home, if it made one.
 
     Raises:
         LoadRefusedError: it cannot be loaded.
@@ -55,7 +58,9 @@ class RemoteSubmission:
         timeout: float,
         seed: int,
         places: Places | None = None,
+        home: bool = False,
     ) -> None:
+        self._home = home
         self._places = places or Places(module=main)
         self.seed = seed
         self._spawner = spawner
@@ -68,6 +73,7 @@ class RemoteSubmission:
         self._task = ""
         self.returned: tuple[str, Any] | None = None
         self.asked: set[str] = set()
+        self.marched: March | None = None
         self._left: dict[str, float] = {}  # of each task's share, s
         self._connection = self._connect()
 
@@ -136,10 +142,14 @@ class RemoteSubmission:
         sent = [[rhs, list(q0), list(v0), float(t0), float(h), int(n)] for rhs, q0, v0, h, n, t0 in marches]
         with self._asking(step_name) as worker:
             values = self._told(step_name, worker.march(step_name, sent))
-        return [
+        paths = [
             (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
             for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
         ]
+        if self._home and self.marched is None:
+            t, *states = paths[0]
+            self.marched = step_name, marches[0][0], t, tuple(states)
+        return paths
 
     def call_each(self, name: str, calls: Iterable[Sequence[Any]]) -> list[Any]:
         """What the student's function returns for each sequence of arguments, in one round trip.
@@ -182,13 +192,17 @@ class RemoteSubmission:
 
     # -- for the grader -------------------------------------------------------------------------------
 
-    def begin_check(self, task: str = "") -> None:
+    def begin_check(self, task: str = "", patience: float | None = None) -> None:
         """Start the clock of one check.
 
         The checks of a task have together half of the time that is left when the first of them begins: a
         function that never answers costs its own task, however many checks that has. What workers left
         behind is deleted before the clock starts.
+
+        Args:
+            patience: seconds of CPU time, if it is to have less than others.
         """
+        most = self._timeout if patience is None else min(self._timeout, patience)
         self._cpu_left -= self._deadline.used
         self._wall_left -= self._deadline.wall
         if self._task:
@@ -196,11 +210,16 @@ class RemoteSubmission:
         self._spawner.tidy()
         left = min(self._left.setdefault(task, self._cpu_left / 2), self._cpu_left)
         self._task = task
-        self._deadline = Deadline(min(self._timeout, left), min(WALL * self._timeout, self._wall_left))
+        self._deadline = Deadline(min(most, left), min(WALL * most, self._wall_left))
         self.returned = None
-        self.asked = set()
+        self.asked, self.marched = set(), None
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
+
+    @property
+    def used(self) -> float:
+        """Seconds of CPU time that the check has taken."""
+        return self._deadline.used
 
     def printed(self) -> str:
         """What the submission printed since the check began."""
@@ -217,7 +236,7 @@ class RemoteSubmission:
         self._spawner.tidy()
 
     def _connect(self) -> Connection:
-        return Connection(self._spawner, self._files, self._main, self._deadline)
+        return Connection(self._spawner, self._files, self._main, self._deadline, asks=self._home)
 
     @contextlib.contextmanager
     def _asking(self, name: str) -> Iterator[Connection]:
@@ -233,9 +252,9 @@ class RemoteSubmission:
         if self._deadline.passed():
             raise StudentFailure("timeout", message="it ran out of time")
         if not self._connection.alive:
-            self._printed_before = 0
             try:
                 self._connection = self._connect()
+                self._printed_before = len(self._connection.output())
             except (
                 LoadRefusedError
             ) as error:  # it loaded before: the difference is the submission's own doing

@@ -23,6 +23,7 @@ from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.checks.companions import companion
+from course.scoring.curves import Curve, marched
 from course.scoring.explaining import Explainer
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.outcomes import found, load_problem, no_functions, result, skipped, unjudged
@@ -44,6 +45,7 @@ __all__ = ["GradingSession", "Scope", "Submission", "check_files", "kept_on"]
 Scope = Literal["public", "full"]
 T = TypeVar("T")
 
+_PRINTED = 4000  # characters of what a submission prints in one check, or while it is loaded
 _STATUS = {
     "error": Status.ERROR,
     "missing": Status.ERROR,
@@ -67,6 +69,9 @@ class GradingSession:
     Attributes:
         running: title of the check that runs; empty between runs.
         asked: for each check that has run, the functions of the last submission that it asked for.
+        took: and how long it kept the worker busy, in s of CPU time.
+        printed: what the last submission printed while it was loaded.
+        curves: for failed checks at home, the student's curve and the right one, where both say something.
 
     Raises:
         MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
@@ -99,6 +104,10 @@ class GradingSession:
         self._remote: RemoteSubmission | None = None
         self.running = ""
         self.asked: dict[str, frozenset[str]] = {}
+        self.took: dict[str, float] = {}
+        self.printed = ""
+        self.curves: dict[str, Curve] = {}
+        self._hung: set[str] = set()  # tasks of the submission at hand with a check that ran out of time
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -136,9 +145,11 @@ class GradingSession:
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
 
     def _grade(self, submission: Submission, only: Collection[str]) -> Verdict:
+        self.printed = ""
         try:
             remote = self._load(submission)
         except LoadRefusedError as refused:
+            self.printed = refused.printed[:_PRINTED]
             return self._ungradable(load_problem(refused, self._places(submission)))
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -146,6 +157,7 @@ class GradingSession:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._ungradable(no_functions(self.exercise))
             self._remote = remote
+            self.printed = remote.printed()[:_PRINTED]
             results = self._run(remote, only, submission)
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -184,6 +196,7 @@ class GradingSession:
         return RemoteSubmission(
             self._spawner, submission.files, self.exercise.module,
             timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
+            home=self._terms.home,
         )  # fmt: skip
 
     def _places(self, submission: Submission) -> Places:
@@ -200,6 +213,9 @@ class GradingSession:
         results: dict[str, CheckResult] = {}
         self._failed.clear()
         self.asked.clear()
+        self.took.clear()
+        self._hung.clear()
+        self.curves.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
@@ -212,23 +228,28 @@ class GradingSession:
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
         self.running = check.title
-        remote.begin_check(check.task)
+        hung = check.task in self._hung
+        remote.begin_check(check.task, self.exercise.patience(check.id, hung) if self._terms.home else None)
         start = perf_counter()
         outcome = self._checks.run(check, remote)
-        self.asked[check.id] = frozenset(remote.asked)
+        self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used
         duration_ms = (perf_counter() - start) * 1e3
+        printed = remote.printed()[:_PRINTED] or None
         if outcome is None:
-            return result(check, Status.PASS, points=check.points, duration_ms=duration_ms)
-        printed = remote.printed()[:4000] or None
+            said = printed if self._terms.home else None
+            return result(check, Status.PASS, points=check.points, duration_ms=duration_ms, stdout=said)
         match outcome:
             case IsolationError():
                 raise outcome
             case CheckFailed():
                 self._failed[check.id] = outcome
+                self._keep_curve(check, outcome, remote)
                 ours = OURS + outcome.broke if outcome.broke else None
                 return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
                 status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
+                if status is Status.TIMEOUT:
+                    self._hung.add(check.task)
                 traceback = places.trace(outcome.traceback) or None
                 finding = finding_of(outcome)
                 return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
@@ -239,6 +260,13 @@ class GradingSession:
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
         finding = unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _keep_curve(self, check: Check, failed: CheckFailed, remote: RemoteSubmission) -> None:
+        if not self._terms.home:
+            return
+        curve = failed.curve or (marched(remote.marched) if remote.marched else None)
+        if curve is not None:
+            self.curves[check.id] = curve
 
     def _passes_the_model(self, check: Check) -> bool | None:
         """Whether a check that broke on a submission passes the model solution; None without one here."""

@@ -61,6 +61,10 @@ def test_a_lesson_runs_and_its_numbers_are_those_of_its_text(name: str) -> None:
     for value, computed in zip(values, json.loads(printed(cells[-1])), strict=True):
         shown = as_written(computed, value.text)
         assert value.text.startswith(shown), (value.line, value.expression, shown)
+    tasks = [cell for cell in cells if cell["metadata"].get("course", {}).get("role") == "warm-up"]
+    checked = ["".join(cell["outputs"][0]["data"]["text/plain"]) for cell in tasks if "outputs" in cell]
+    assert len(checked) == len(CATALOG.warm_ups(name))
+    assert not any("this warm-up is done" in said or "all checks pass" in said.lower() for said in checked)
     figures = [cell for cell in cells if cell["metadata"].get("course", {}).get("role") == "figure"]
     assert all("image/png" in cell["outputs"][0]["data"] for cell in figures)
 

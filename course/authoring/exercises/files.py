@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from course.authoring.exercises.checks import audit_checks
 from course.authoring.exercises.points import audit_points
+from course.authoring.exercises.slow import audit_slow
 from course.authoring.exercises.source import CheckSource, foreign_imports, parse, signatures
 from course.authoring.exercises.variants import instructors, solution_path, solutions_folder
 from course.catalog.models import Exercise
@@ -77,6 +78,7 @@ def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tup
     # What lacks a marker cannot be added up, and is reported.
     if not findings.of("check"):
         audit_points(exercise, checks, findings)
+        audit_slow(exercise, checks, findings)
     return checks
 
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from course.authoring.report import Findings
     from course.catalog.blocks import Block
     from course.catalog.load import Catalog
+    from course.catalog.questions import Question
+    from course.catalog.reading import Document
 
 __all__ = ["LinkChecker"]
 
@@ -54,6 +56,10 @@ class LinkChecker:
         for index, task in enumerate(exercise.task):
             if task.read:
                 self._check(path, lines.line(("task", index, "read")), f"lesson:{task.read}")
+
+    def check_question(self, document: Document[Question]) -> None:
+        """The section that a question of the quiz sends a student to."""
+        self._check(document.path, document.lines.line(("lesson",)), f"lesson:{document.value.lesson}")
 
     def _check(self, path: Path, line: int | None, target: str) -> None:
         problem = self._problem_with(path, target)

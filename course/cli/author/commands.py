@@ -316,22 +316,24 @@ def build(
 ) -> int:
     """Write what follows from an exercise's files.
 
-    The points and counts in `exercise.toml`, which its checks' markers add up to; `hypotheses.json`, where it
-    has hypotheses, so that a diagnosis works at home, where there are no solutions: what every known wrong
-    program answers to the exercise's questions, as fingerprints; and docs/graders.md. `course author check`
-    refuses what is out of date. With --confusion each wrong program is graded, at home and as in a grading
-    run, and what it is told is kept beside the solution for docs/graders.md.
+    The points and counts in `exercise.toml`, which its checks' markers add up to, and how long its slow
+    public checks take, which decides when a loop counts as hung; `hypotheses.json`, where it has hypotheses,
+    so that a diagnosis works at home, where there are no solutions: what every known wrong program answers to
+    the exercise's questions, as fingerprints; and docs/graders.md. `course author check` refuses what is out
+    of date. With --confusion each wrong program is graded, at home and as in a grading run, and what it is
+    told is kept beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import build as desk
     from course.authoring.exercises.kill_table import write_page
     from course.authoring.exercises.points import write_points
+    from course.authoring.exercises.slow import write_slow
     from course.cli.author.replies import AuthorBuild
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
     every = (*catalog.exercises(), *catalog.warm_ups())
     chosen = every if name is None else (catalog.exercise(name),)
-    made = [step(catalog, exercise) for exercise in chosen for step in (write_points, desk.build)]
+    made = [step(catalog, exercise) for exercise in chosen for step in (write_points, write_slow, desk.build)]
     written = [shown(path, catalog) for path in made if path]
     if confusion:
         from course.authoring.exercises.confusion import confusion_of, write_confusion

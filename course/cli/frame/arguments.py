@@ -29,7 +29,9 @@ OneExercise = Annotated[
 LessonName = Annotated[
     str | None,
     typer.Argument(
-        metavar="ID", help="Its id or its number; the next unread one if left out.", autocompletion=lesson_ids
+        metavar="ID",
+        help="Its id or its number, and perhaps #SECTION; the next unread one if left out.",
+        autocompletion=lesson_ids,
     ),
 ]
 

@@ -130,7 +130,7 @@ class Learning:
                 section=place,
                 title=self._title(place),
                 why=tuple(reasons),
-                command=f"course lesson {lesson}",
+                command=f"course lesson {place}",
             )
 
     def _title(self, place: str) -> str:
@@ -151,7 +151,8 @@ def show_learning(console: Console, learning: Learning) -> None:
     if learning.revisit:
         console.heading("To read again")
         for place in learning.revisit:
-            console.line(f"{place.title} ({place.lesson}): {'; '.join(place.why)}", indent=2)
+            console.line(f"{place.title} ({'; '.join(place.why)})", indent=2)
+            console.line((place.command, "dim"), indent=4)
 
 
 def _show_predictions(console: Console, predictions: PredictionsState) -> None:

@@ -124,7 +124,7 @@ def check(
         ),
     ] = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and what your code printed.")
+        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
     ] = False,
 ) -> int:
     """Run the public checks on a notebook.

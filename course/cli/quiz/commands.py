@@ -191,8 +191,8 @@ def _step(missed: Sequence[Marked], due: Sequence[Due], *, passed: bool) -> str:
     """The command to run next."""
     if passed:
         return "course quiz review" if due else "course"
-    lesson = next((marked.posed.lesson for marked in missed if marked.posed.lesson), "")
-    return f"course lesson {lesson}" if lesson else "course quiz take"
+    read = next((marked.posed.read for marked in missed if marked.posed.read), "")
+    return f"course lesson {read}" if read else "course quiz take"
 
 
 @app.command(epilog="Example: course quiz review")

@@ -46,6 +46,7 @@ class QuizQuestion(msgspec.Struct, frozen=True, kw_only=True):
     options: tuple[QuizOption, ...]
     source: str
     lesson: str | None = None
+    read: str | None = None
 
 
 class QuizPlace(msgspec.Struct, frozen=True):

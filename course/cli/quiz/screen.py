@@ -122,8 +122,8 @@ def show_marked(console: Console, marked: Marked, number: int) -> None:
             if choice is not chosen and not choice.right:
                 _show_choice(console, "Also wrong", choice, "yellow")
         console.line((f"Source: {posed.source}", "dim"), indent=2)
-        if posed.lesson:
-            console.line((f"Read again: course lesson {posed.lesson}", "dim"), indent=2)
+        if posed.read:
+            console.line((f"Read again: course lesson {posed.read}", "dim"), indent=2)
 
 
 def _show_choice(console: Console, label: str, choice: Choice, style: str) -> None:
@@ -231,6 +231,7 @@ def question_reply(marked: Marked) -> QuizQuestion:
         ),
         source=posed.source,
         lesson=posed.lesson or None,
+        read=posed.read or None,
     )
 
 

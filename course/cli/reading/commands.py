@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Lesson
     from course.cli.frame.here import Here
     from course.cli.reading.lesson import Reader
+    from course.reading.parts import Section
 
 __all__ = ["lesson", "lessons"]
 
@@ -68,7 +69,7 @@ def lesson(
         bool, typer.Option("--no-browser", help="Open no page and no picture; say where each is.")
     ] = False,
 ) -> int:
-    """Read a lesson.
+    """Read a lesson, or a section of one: course lesson numerical-integration#swap-two-lines.
 
     On a terminal it fills the screen: predict, run its cells, search; ? there lists the keys. With --plain,
     in a pipe or with --page it is printed. Without an id: the next lesson you have not read. Inside a
@@ -78,21 +79,28 @@ def lesson(
     console = current()
     here = find_workspace()
     catalog = here.catalog if here else load_catalog()
-    chosen = catalog.lesson_called(name or _next_unread(here, catalog))
+    called, _, slug = (name or _next_unread(here, catalog)).partition("#")
+    chosen = catalog.lesson_called(called)
+    section = _section(chosen, slug) if slug else None
     if code is not None:
         return _print_code(console, chosen, code)
     if no_browser:
         keep_closed()
     if not page and figures is None and _fills_the_screen(console):
-        return _read_on_screen(console, here, catalog, chosen)
+        return _read_on_screen(console, here, catalog, chosen, section)
     text = io.StringIO()
     reader = _reader(catalog, chosen, console, figures, text if console.json else None)
-    paged = page and console.interactive
-    whole = _read_by_page(console, here, chosen, reader) if paged else _print_all(reader)
+    paged = page and console.interactive and section is None
+    if section is not None:
+        whole = reader.show_section(section)
+    else:
+        whole = _read_by_page(console, here, chosen, reader) if paged else _print_all(reader)
     # A print is no reading: nobody knows whether anybody saw its end.
     if here is not None and whole and paged:
         here.record("lesson", chosen.id, {"version": catalog.version})
-    step = _after(here if paged else None, chosen) if whole else f"course lesson {chosen.id} --page"
+    step = _after(here if paged else None, chosen) if whole else f"course lesson {chosen.id}"
+    if paged and not whole:
+        step += " --page"
     if here is not None:
         for warning in here.warnings:
             console.warn(warning)
@@ -155,10 +163,27 @@ def _fills_the_screen(console: Console) -> bool:
     return is_possible()
 
 
-def _read_on_screen(console: Console, here: Here | None, catalog: Catalog, chosen: Lesson) -> int:
+def _section(chosen: Lesson, slug: str) -> Section:
+    """A section of a lesson, by its slug."""
+    from course.reading.parts import read_script
+
+    sections = read_script(chosen).sections
+    found = next((section for section in sections if section.slug == slug), None)
+    if found is None:
+        known = ", ".join(section.slug for section in sections if section.level == 2)
+        raise NotFoundError(
+            f"{chosen.id} has no section {slug!r}.", help=f"It has: {known}.", code="section_not_found"
+        )
+    return found
+
+
+def _read_on_screen(
+    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, section: Section | None
+) -> int:
     from course.cli.reading.screen.view import read
 
-    last, trouble = read(catalog, chosen.id, here.workspace if here else None)
+    slug = section.slug if section is not None else ""
+    last, trouble = read(catalog, chosen.id, here.workspace if here else None, slug)
     lesson = last.script.lesson
     for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
         console.warn(warning)

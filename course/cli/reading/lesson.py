@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise, Lesson
+    from course.reading.parts import Section
 
 __all__ = ["Page", "Reader", "lesson_pages"]
 
@@ -100,6 +101,12 @@ class Reader:
         if page.first:
             self._printer.head()
         self._printer.blocks(page.blocks)
+
+    def show_section(self, section: Section) -> bool:
+        """Print one section of the lesson; False, for that is not the whole of it."""
+        blocks = [block for page in self.pages for block in page.blocks]
+        self._printer.blocks(tuple(blocks[section.start : section.end]))
+        return False
 
     def show_task(self, warm_up: Exercise) -> None:
         """Print the text of a warm-up of the lesson."""

@@ -15,6 +15,8 @@ from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
 from course.cli.home.advice import next_step
 from course.cli.work.annotations import FORMATS, annotate, annotate_error, known_format
 from course.cli.work.chosen import asked_for, chosen_work, worked_on
+from course.cli.work.curves import show_curve
+from course.cli.work.prints import show_loading
 from course.cli.work.replies import Check, CheckAll
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
@@ -47,7 +49,7 @@ def check(
         str | None, typer.Option(metavar="CHECK", help="Run one check, by its id.", autocompletion=check_ids)
     ] = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and what your code printed.")
+        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
     ] = False,
     form: Annotated[
         str,
@@ -84,8 +86,9 @@ def check(
 def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
     """A grading session over the public checks of an exercise; a context manager."""
     from course.scoring.session import GradingSession
+    from course.scoring.terms import Terms
 
-    return GradingSession(exercise, catalog, scope="public")
+    return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
 
 
 def say_which(console: Console, here: Here, work: Work) -> None:
@@ -145,8 +148,12 @@ def record_verdict(
     here.record("check", exercise.id, data)
 
 
-def reply_to(course: CourseRef, verdict: Verdict, step: str = "") -> Check:
-    """The answer that ``--json`` prints for a verdict."""
+def reply_to(course: CourseRef, verdict: Verdict, step: str = "", printed: str = "") -> Check:
+    """The answer that ``--json`` prints for a verdict.
+
+    Args:
+        printed: by the file while it was loaded.
+    """
     return Check(
         ok=verdict.all_pass,
         exit_code=0 if verdict.all_pass else FAILED,
@@ -159,6 +166,7 @@ def reply_to(course: CourseRef, verdict: Verdict, step: str = "") -> Check:
         checks=verdict.checks,
         next=NextStep(step) if step else None,
         warnings=verdict.warnings,
+        printed=printed,
     )
 
 
@@ -180,8 +188,11 @@ def _check_one(
         begin = time.perf_counter()
         with open_session(exercise, here.catalog) as session:
             verdict = grade_once(session, work.submission, only)
+            printed = session.printed
         seconds = time.perf_counter() - begin
     record_verdict(here, exercise, source, verdict, seconds, only=only, one_of_many=one_of_many)
+    if form == "text":
+        show_loading(console, printed, whole=verbose)
     problem = unlike_verdict(verdict)
     if problem is not None:
         if form != "text":
@@ -191,10 +202,11 @@ def _check_one(
         # A warm-up is small, and one thing at a time is enough of it.
         brief = exercise.is_warm_up and not verbose
         show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
+        show_curve(console, exercise, verdict, session)
     else:
         annotate(console, here, work, verdict, form)
     step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""
-    return reply_to(here.course, verdict, step or f"course check {exercise.id}")
+    return reply_to(here.course, verdict, step or f"course check {exercise.id}", printed)
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:

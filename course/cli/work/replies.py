@@ -33,7 +33,11 @@ __all__ = [
 
 
 class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
-    """The verdict on one exercise. ``ok`` is "every check passes", ``passed`` is "reaches the pass mark"."""
+    """The verdict on one exercise. ``ok`` is "every check passes", ``passed`` is "reaches the pass mark".
+
+    Attributes:
+        printed: by the file while it was loaded; what a check made it print is in its ``stdout``.
+    """
 
     course: CourseRef
     exercise: str
@@ -44,6 +48,7 @@ class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
     checks: tuple[CheckResult, ...]
     next: NextStep | None = None
     warnings: tuple[str, ...] = ()
+    printed: str = ""
 
 
 #: What a check ended in. JSON tells the two apart by their fields, msgspec does not.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.cli.frame.console import STATUS_STYLE, Console
+from course.cli.work.prints import show_lines, show_unshown
 from course.scoring.numbers import format_points, numbers_of
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ def show_verdict(
             if check.task not in known:
                 page.check(check)
         page.close()
+        if not verbose:
+            show_unshown(console, verdict)
         for warning in verdict.warnings:
             console.line(f"Note: {warning}")
     sentences = summary(exercise, verdict) if whole else _part(verdict)
@@ -162,7 +165,11 @@ class _Page:
         if self._hidden and check.visibility == "hidden":
             aside = f"  [{check.id}, hidden]"
         self._label(check.status, check.title, aside)
-        if check.status == "pass" or self._is_left_out(check):
+        if check.status == "pass":
+            if self._verbose:
+                self._printed(check)
+            return
+        if self._is_left_out(check):
             return
         if check.blocked_by:
             self._text(f"Runs once {check.blocked_by} passes.")
@@ -176,7 +183,7 @@ class _Page:
             command = "`course check`" if self._scored else "--verbose"
             self._console.note((f"Details of one function at a time; {command} shows all.", "dim"))
         if self._kept_back:
-            self._console.note(("--verbose shows tracebacks and what your code printed.", "dim"))
+            self._console.note(("--verbose shows tracebacks.", "dim"))
 
     def _alike(self, check: CheckResult) -> None:
         """The same thing keeps every check of the task from running: say it once."""
@@ -198,19 +205,26 @@ class _Page:
             if label != "diagnosis" or check.help not in self._said:
                 self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
         self._said.add(check.help)
-        if self._verbose:
-            self._traces(check)
-        elif check.traceback or check.stdout:
-            self._kept_back = True
+        self._printed(check)
+        if check.traceback and self._verbose:
+            show_lines(
+                self._console,
+                "Traceback, your lines only:",
+                check.traceback,
+                whole=True,
+                indent=_DETAIL_INDENT,
+            )
+        self._kept_back |= bool(check.traceback) and not self._verbose
 
-    def _traces(self, check: CheckResult) -> None:
-        for name, text in (
-            ("Traceback, your lines only:", check.traceback),
-            ("Your code printed:", check.stdout),
-        ):
-            if text:
-                self._text(name)
-                self._console.block(text.rstrip(), indent=_DETAIL_INDENT + 2)
+    def _printed(self, check: CheckResult) -> None:
+        if check.stdout:
+            show_lines(
+                self._console,
+                "Your code printed:",
+                check.stdout,
+                whole=self._verbose,
+                indent=_DETAIL_INDENT,
+            )
 
     def _text(self, text: str) -> None:
         if text:

@@ -23,8 +23,10 @@ from course.cli.frame.replies import ErrorBody, ErrorReply
 from course.cli.home.advice import next_step
 from course.cli.work import checking
 from course.cli.work.chosen import asked_for, chosen_work
+from course.cli.work.curves import show_curve
 from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
+from course.cli.work.prints import show_loading
 from course.cli.work.replies import Watch, WatchRun
 from course.cli.work.verdicts import show_verdict
 from course.errors import CourseError, UngradableError
@@ -60,7 +62,7 @@ Signature = tuple[int, int, int] | None
 def watch(
     exercise: ExerciseName = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and what your code printed.")
+        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
     ] = False,
 ) -> int:
     """Check again on every save.
@@ -180,6 +182,8 @@ class Watcher:
     _gone: bool = False
     _verdict: Verdict | None = None
     _focus: str = ""
+    _printed: str = ""
+    _session: GradingSession | None = None
 
     def look(self, session: GradingSession) -> bool:
         """Grade the file if it was saved since the last look; True if it was."""
@@ -236,6 +240,7 @@ class Watcher:
             work = chosen_work(self.here, self.exercise, self.name or self.exercise.module)
             with self._at_work(session) as superseded:
                 verdict = checking.grade_once(session, work.submission)
+                self._session, self._printed = session, session.printed
             if superseded.is_set():
                 self.console.note("Saved again meanwhile: this run is dropped.")
                 return True
@@ -257,15 +262,20 @@ class Watcher:
         step = next_step(self.here, self.exercise, verdict, work.source)
         if step != f"course watch {self.exercise.id}":
             self.console.note(f"Next: {step}")
-        self.last = checking.reply_to(self.here.course, verdict, step)
+        self.last = checking.reply_to(self.here.course, verdict, step, self._printed)
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._flush_warnings()
         return False
 
     def _show(self, verdict: Verdict) -> None:
+        show_loading(self.console, self._printed, whole=self.verbose)
         show_verdict(
             self.console, self.exercise, verdict, verbose=self.verbose, brief=True, focus=self._focus
         )
+        if self._session is not None:
+            # A picture takes the room that the finding needs, so it is one of the details.
+            drawn, focus = self.verbose, self._focus
+            show_curve(self.console, self.exercise, verdict, self._session, focus=focus, drawn=drawn)
 
     def _failing(self) -> list[str]:
         """Functions with a check that does not pass, in the order of the exercise."""
@@ -317,6 +327,7 @@ class Watcher:
                 status.stop()
 
     def _ungradable(self, error: UngradableError, noticed: float) -> None:
+        show_loading(self.console, self._printed, whole=self.verbose)
         self.console.line(error.message)
         if error.help:
             self.console.line(error.help)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+import signal
 import struct
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -27,6 +28,10 @@ FLOAT64 = np.dtype(np.float64)
 #: How a worker ended, as its parent reports it: the status as wait(2) has it, then seconds and microseconds
 #: of user and of system time.
 ENDED = struct.Struct("@l4l")
+#: By which a worker is asked where its code is; None where there are no such signals (Windows). It answers
+#: once it was asked ``LOOKS`` times: what is there each time is what does not end.
+LOOK: signal.Signals | None = getattr(signal, "SIGUSR1", None)
+LOOKS = 4
 DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
 
 
@@ -53,6 +58,7 @@ class Kind(enum.IntEnum):
     RESULT = 18  # value
     RAISED = 19  # {type, message, line, function, frames}
     CALLBACK = 20  # [number of the callable, kwargs or None, *args]
+    STUCK = 21  # {frames, lines}: frames that were there at each look, and lines of the innermost
 
 
 class WireError(Exception):

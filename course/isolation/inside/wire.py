@@ -31,6 +31,8 @@ from .decoding import OTHER, Reader, quick
 from .encoding import put
 from .frames import (
     HEADER,
+    LOOK,
+    LOOKS,
     MAX_ARRAY_BYTES,
     MAX_DEPTH,
     MAX_DIMENSIONS,
@@ -49,6 +51,8 @@ from .frames import (
 
 __all__ = [
     "HEADER",
+    "LOOK",
+    "LOOKS",
     "MAX_ARRAY_BYTES",
     "MAX_DEPTH",
     "MAX_DIMENSIONS",

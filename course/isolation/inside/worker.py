@@ -15,6 +15,7 @@ import io
 import itertools
 import math
 import os
+import signal
 import sys
 import traceback
 import types
@@ -93,6 +94,8 @@ class Worker:
         self._module = types.ModuleType("submission")
         self._held: list[Any] = []  # callables of the student's that the grader may call back
         self._nesting = 0
+        self._main = ""
+        self._looks: list[list[tuple[types.FrameType, int]]] = []
 
     def serve(self) -> None:
         """Say that this process is ready, then answer until the grader closes the connection."""
@@ -124,6 +127,22 @@ class Worker:
         if value.mine:
             return self._held[value.number]
         return _Callback(self, value.number)
+
+    def look(self, _number: int, frame: types.FrameType | None) -> None:
+        """See where the submission is; at the last look, say which of its frames were there at each one."""
+        seen = []
+        while frame is not None:
+            if frame.f_code.co_filename == self._main:
+                seen.append((frame, frame.f_lineno))
+            frame = frame.f_back
+        self._looks.append(seen[::-1])
+        if len(self._looks) < wire.LOOKS:
+            return
+        lines = [{id(frame): line for frame, line in look} for look in self._looks]
+        lasting = [frame for frame, _ in seen[::-1] if all(id(frame) in look for look in lines)]
+        frames = [[self._main, lines[-1][id(frame)], frame.f_code.co_name[:100]] for frame in lasting[-12:]]
+        innermost = [look[id(lasting[-1])] for look in lines] if lasting else []
+        self._send(Kind.STUCK, {"frames": frames, "lines": innermost})
 
     # -- frames ---------------------------------------------------------------------------------------
 
@@ -186,6 +205,7 @@ class Worker:
         Byte-order marks, line endings and declared encodings are read as Python reads a file that it runs;
         ``compile`` on bare bytes would let undeclared ones pass in comments on some versions.
         """
+        self._main = main
         for name, content in files.items():
             with contextlib.suppress(OSError), open(name, "wb") as handle:  # noqa: PTH123
                 handle.write(content)
@@ -328,6 +348,8 @@ def run(sock: socket.socket, imports: frozenset[str]) -> None:
     sys.stderr = CappedText(2)
     gc.enable()
     worker = Worker(sock, imports)
+    if wire.LOOK is not None:
+        signal.signal(wire.LOOK, worker.look)
     try:
         worker.serve()
     except BaseException:  # noqa: BLE001 - the last words go where the grader looks for them

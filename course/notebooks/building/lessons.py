@@ -8,6 +8,8 @@ from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks
 from course.notebooks.building.cells import Cell, code, document, markdown, opening
 from course.notebooks.building.lowering import Lowering
+from course.notebooks.building.warm_ups import warm_up_cells
+from course.reading.parts import with_tasks
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["lesson_cells", "lesson_notebook"]
 
 _FIGURES = "from course.notebooks.show import figure"
+_CHECKS = "%load_ext course.notebooks"
 _PREDICTIONS = "from course.notebooks.predicting import predict"
 
 
@@ -32,11 +35,13 @@ def lesson_notebook(catalog: Catalog, lesson: Lesson, layout: Layout) -> bytes:
 
 def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]:
     """The cells, in reading order; text between two code cells is one cell a section."""
-    blocks = read_blocks(catalog.content.lessons / f"{lesson.id}.md")
+    tasks = {one.id: one for one in catalog.warm_ups(lesson.id)}
+    blocks = with_tasks(read_blocks(catalog.content.lessons / f"{lesson.id}.md"), tuple(tasks.values()))
     lowering = Lowering(layout.links(catalog, lesson.id))
     cells = [opening(_head(lesson))]
     kinds = {type(block) for block in b.walk_blocks(blocks)}
-    setup = [line for kind, line in ((b.Figure, _FIGURES), (b.Prediction, _PREDICTIONS)) if kind in kinds]
+    needed = ((b.Task, _CHECKS), (b.Figure, _FIGURES), (b.Prediction, _PREDICTIONS))
+    setup = [line for kind, line in needed if kind in kinds]
     if setup:
         cells.append(code("\n".join(setup), role="setup"))
     text: list[str] = []
@@ -61,6 +66,9 @@ def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]
                 predictions += 1
                 cells.append(markdown(lowering.boxed("predict", inner)))
                 cells.append(code(_PREDICT.format(number=predictions, lesson=lesson.id), role="prediction"))
+            case b.Task(id=name):
+                flush()
+                cells += warm_up_cells(tasks[name], block, lowering)
             case b.Callout(kind="answer"):
                 text.append(_FOLDED.format(answer=lowering.block(block)))
             case b.Heading():

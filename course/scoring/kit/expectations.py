@@ -22,6 +22,7 @@ import numpy as np
 
 from course.isolation.failures import IsolationError
 from course.physics.invariants import convergence_order
+from course.scoring.curves import compared
 from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, broke_at
 from course.scoring.values import as_array, as_list, as_number, as_vector, plain
 from course.scoring.verdict import Divergence, Finding, Tolerance
@@ -29,6 +30,7 @@ from course.scoring.verdict import Divergence, Finding, Tolerance
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from course.scoring.curves import Curve
     from course.scoring.values import Inspected
 
 __all__ = [
@@ -71,6 +73,7 @@ def fail(
     units: str = "",
     tolerance: Tolerance | None = None,
     first_divergence: Divergence | None = None,
+    curve: Curve | None = None,
 ) -> NoReturn:
     """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
     found, broke = _explained(diagnose)
@@ -96,6 +99,7 @@ def fail(
         broke,
         bare,
         found if isinstance(found, Diagnosis) else None,
+        curve,
     )
 
 
@@ -210,6 +214,8 @@ def expect_array(
     first = tuple(int(i) for i in np.argwhere(~met)[0])
     label = quantity + "".join(f"[{i}]" for i in (first if t is None else first[1:]))
     if t is not None:
+        column: Any = (slice(None), *first[1:])
+        finding["curve"] = compared(t, array[column], wanted[column], label, units)
         finding.setdefault(
             "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
         )

@@ -91,6 +91,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (TOML, "points = 4", "points = 7", "points = 7", "points", "come to 4, and 7 is"),
         (TOML, "hidden_checks = 2", "hidden_checks = 3", "_checks", "points", "come to 2, and 3 is"),
         (TOML, "hidden_points = 5", "hidden_points = 4", "_points", "points", "come to 5, and 4 is"),
+        (TOML, "order = 1", "order = 1\nslow = { no = 0.2 }", None, "slow", "no public check no"),
         (TOML, "order = 1", "order = 2", None, "exercise", "order 2 too"),
         (TOML, "order = 1", "order = one", "order", "content", "not valid TOML"),
         (HINTS, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),

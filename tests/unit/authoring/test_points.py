@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from course.authoring.exercises import slow
 from course.authoring.exercises.points import write_points
 from course.catalog.load import Catalog
 
@@ -60,3 +61,21 @@ def test_a_task_without_points_keeps_what_is_written(mini: Path) -> None:
         path = mini / folder / "doubling" / "checks.py"
         path.write_text(path.read_text().replace('task("doublings")', 'task("double")'))
     assert re.findall(r"^points = (.*)", built(mini), re.MULTILINE) == ["10", "6"]
+
+
+def test_checks_that_are_slow_are_written_above_the_tasks(
+    mini: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = mini / TOML
+    before = path.read_text()
+    for times, line in (({"a": 0.31, "b": 0.02}, "slow = { a = 0.4 }\n"), ({"a": 0.02, "b": 0.02}, "")):
+        monkeypatch.setattr(slow, "measured", lambda *_, times=times: times)
+        assert slow.write_slow(Catalog(), Catalog().exercise("doubling")) == path
+        assert path.read_text() == before.replace("\n\n[[task]]", f"\n{line}\n[[task]]", 1)
+        assert slow.write_slow(Catalog(), Catalog().exercise("doubling")) is None
+
+
+def test_what_is_measured_is_the_cpu_time_of_right_solutions(mini: Path) -> None:
+    most = slow.measured(Catalog(), Catalog().exercise("doubling"))
+    assert most.keys() == {"double_of_three", "doublings_length"}
+    assert all(0 <= seconds < slow.QUICK for seconds in most.values())

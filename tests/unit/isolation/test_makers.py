@@ -101,6 +101,9 @@ class InThread:
     def asleep(self):
         return False
 
+    def look(self):
+        pass
+
     def finish(self):
         for pipe in self._pipes:
             pipe.close()

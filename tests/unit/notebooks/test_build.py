@@ -178,6 +178,9 @@ def test_a_lesson_keeps_every_block(catalog: Catalog) -> None:
         roles = [cell["metadata"]["course"]["role"] for cell in cells(one.data)]
         assert roles.count("figure") == sum(isinstance(block, b.Figure) for block in blocks)
         assert roles.count("prediction") == sum(isinstance(block, b.Prediction) for block in blocks)
+        warm_ups = [cell["metadata"]["course"] for cell in cells(one.data, "code")]
+        there = [tags["exercise"] for tags in warm_ups if tags["role"] == "warm-up"]
+        assert sorted(there) == sorted(exercise.id for exercise in catalog.warm_ups(lesson.id))
         shown = sum(isinstance(block, b.CodeCell) for block in blocks)
         assert roles.count("lesson") + roles.count("hidden") == shown
         whole = "\n".join(map(text, cells(one.data)))

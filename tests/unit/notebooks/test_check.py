@@ -179,3 +179,34 @@ def test_a_check_without_ipython_and_without_a_source_says_what_to_give(
         check("doubling", source="missing.py")
     with pytest.raises(NotFoundError, match="no function"):
         check("doubling", "treble", source=[double])
+
+
+def test_a_cell_is_checked_as_a_file_and_does_not_run_here(
+    here: Workspace, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = f"print('loaded')\n\n\n{DOUBLE}\n\n\n{STUB}\n"
+    table = magic.check_cell(source, "doubling")
+    assert repr(table).startswith("loaded\n")
+    assert [check.status.value for check in table.checks] == ["pass", "error"]
+    assert "loaded" not in capsys.readouterr().out
+    assert [attempt["only"] for attempt in attempts(here)] == [""]
+
+
+def test_a_report_stands_below_once_all_checks_pass(here: Workspace) -> None:
+    assert magic.check_cell(f"{DOUBLE}\n\n\n{STUB}\n", "doubling").report is None
+    table = magic.check_cell(f"{DOUBLE}\n\n\n{DOUBLINGS}\n", "doubling")
+    assert table.passed
+    assert table.report is not None
+    assert table.report._repr_html_() in table._repr_html_()
+
+
+def test_a_warm_up_has_no_points(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    source = "def step_ahead(x, v, a, h):\n    print('here')\n    return x + h * v, v + h * a\n"
+    table = magic.check_cell(source, "one-step-ahead")
+    assert table.passed
+    assert "points" not in repr(table)
+    assert "<td>1/1</td>" not in table._repr_html_()
+    wrong = magic.check_cell(source.replace("h * v", "h * a"), "one-step-ahead")
+    assert "your code printed:" in repr(wrong)
+    assert "here" in wrong._repr_html_()

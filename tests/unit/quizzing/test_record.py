@@ -346,7 +346,7 @@ def test_the_audit_wants_four_variants(quiz: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('title = "Sums"', 'title = "Sums"\nlesson = "subtracting"', "there is no lesson subtracting"),
+        ('title = "Sums"', 'title = "Sums"\nlesson = "subtracting"', "the id does not exist"),
         (
             'takes-away = "A',
             'takes-two = "B"\ntakes-away = "A',

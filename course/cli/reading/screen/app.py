@@ -121,9 +121,7 @@ class ReaderApp(TasksApp):
             name, _, slug = rest.partition("#") if kind == "lesson" else ("", "", target[1:])
             here = self.progress.script.lesson.id
             self._leave_trail()
-            script = self.progress.script if name in {"", here} else self._script_of(name)
-            start = next((s.start for s in script.sections if s.slug == slug), None)
-            self.open(script.lesson.id, None if start is None else Place(start))
+            self.open_at(name or here, slug)
         elif kind == "exercise":
             self._go_to_task(rest.partition("#")[0])
         else:

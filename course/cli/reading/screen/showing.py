@@ -51,6 +51,7 @@ class LessonApp(FullScreenApp):
     Args:
         catalog: the course.
         first: id of the lesson to open.
+        section: slug of the section to open it at; where it was left if empty.
         events: what is recorded about a lesson.
         write: called with each new event: kind, subject, data.
         pictures: draws figures for this terminal; None to describe them.
@@ -79,6 +80,7 @@ class LessonApp(FullScreenApp):
         self,
         catalog: Catalog,
         first: str,
+        section: str = "",
         *,
         events: Callable[[str], Sequence[Event]] = lambda _: (),
         write: Callable[[str, str, Mapping[str, Any]], None] = lambda *_: None,
@@ -88,7 +90,7 @@ class LessonApp(FullScreenApp):
     ) -> None:
         super().__init__(clock)
         self.catalog = catalog
-        self._first = first
+        self._first, self._section = first, section
         self._events = events
         self._write = write
         self._pictures = pictures if self.in_colour else None
@@ -111,7 +113,7 @@ class LessonApp(FullScreenApp):
         """Start."""
         self.page.focus()
         self.set_interval(_TICK, self._tick)
-        self.open(self._first)
+        self.open_at(self._first, self._section)
 
     def on_unmount(self) -> None:
         """Write down the place."""
@@ -131,6 +133,15 @@ class LessonApp(FullScreenApp):
         self.progress = progress
         self.page.book = None
         self._lay_out(place or progress.place)
+
+    def open_at(self, lesson_id: str, slug: str) -> None:
+        """Open a lesson at a section, or where its reader left it if there is no such section."""
+        opened = self._opened.get(lesson_id)
+        sections = (
+            (opened.script if opened is not None else self._script_of(lesson_id)).sections if slug else ()
+        )
+        start = next((section.start for section in sections if section.slug == slug), None)
+        self.open(lesson_id, None if start is None else Place(start))
 
     def _script_of(self, lesson_id: str) -> Script:
         """A lesson with its warm-ups and exercises in their places."""

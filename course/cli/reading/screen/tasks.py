@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["standing_lines"]
 
+#: Lines of what a student's code printed: there is more to see on a screen than these.
+_PRINTED = 4
+
 
 def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text]:
     """What to do next, or what the last check said: the first thing that is wrong, and how many are.
@@ -53,6 +56,7 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
     checks = msgspec.convert(reply["checks"], tuple[CheckResult, ...])
     passing = sum(check.status == "pass" for check in checks)
     first = next((check for check in checks if check.status != "pass"), None)
+    yield from _printed("Loading your file printed:", reply.get("printed"))
     if first is None:
         yield Text("Done: every check passes.", style="bold green")
         step = (reply.get("next") or {}).get("command", "")
@@ -67,5 +71,15 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
     for label, text in numbers_of(first):
         if label != "diagnosis":
             yield Text(f"{label}: {text}", style="dim")
+    yield from _printed("Your code printed:", first.stdout)
     if len(checks) > 1:
         yield Text(f"{passing} of {len(checks)} checks pass.  course hint {name} or h: a hint", style="dim")
+
+
+def _printed(heading: str, text: str | None) -> Iterator[Text]:
+    lines = (text or "").rstrip().splitlines()
+    if lines:
+        yield Text(heading, style="bold")
+        yield from (Text(f"  {line}") for line in lines[:_PRINTED])
+    if len(lines) > _PRINTED:
+        yield Text("  … `course check --verbose` shows all", style="dim")

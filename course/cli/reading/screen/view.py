@@ -27,13 +27,16 @@ def is_possible() -> bool:
     return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
 
 
-def read(catalog: Catalog, first: str, workspace: Workspace | None) -> tuple[InProgress, str]:
+def read(
+    catalog: Catalog, first: str, workspace: Workspace | None, section: str = ""
+) -> tuple[InProgress, str]:
     """Read until the reader leaves. The terminal is left as it was, whatever happens.
 
     Args:
         catalog: the course.
         first: id of the lesson to open.
         workspace: the student's; None outside of one.
+        section: slug of the section to open it at; where it was left if empty.
 
     Returns:
         The lesson that was open last, and why something was not recorded ("" if all was).
@@ -56,7 +59,9 @@ def read(catalog: Catalog, first: str, workspace: Workspace | None) -> tuple[InP
             return ()
 
     practice = Practice(catalog, workspace)
-    app = ReaderApp(catalog, first, events=events, write=writer, pictures=Drawer(), practice=practice)
+    app = ReaderApp(
+        catalog, first, section, events=events, write=writer, pictures=Drawer(), practice=practice
+    )
     try:
         app.play()
     finally:

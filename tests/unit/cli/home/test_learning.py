@@ -46,7 +46,11 @@ def test_a_wrong_prediction_is_shown_with_its_section_to_read_again(asking, work
     assert (place["section"], place["title"]) == ("twice-as-much#once", "Once")
     shown = course("progress", "--plain").out
     assert "Predictions: 1 made, 0 skipped\n  twice-as-much: 1 wrong\n" in shown
-    assert "  Once (twice-as-much): a prediction was wrong\n" in shown
+    assert "  Once (a prediction was wrong)\n    course lesson twice-as-much#once\n" in shown
+    opened = course(*place["command"].split()[1:], "--plain").out
+    assert opened.lstrip().startswith("Section: Once\n")
+    assert "Ten." in opened
+    assert course("lesson", "twice-as-much", "--plain").out.count("Section: ") > opened.count("Section: ")
 
 
 def test_a_right_prediction_sends_nobody_back(asking, workspace):
@@ -100,3 +104,10 @@ def test_a_screen_cuts_no_line(asking, workspace, write, monkeypatch, columns):
     shown = course("progress").out
     assert max(map(len, shown.splitlines())) <= columns + len("\x1b[1m\x1b[0m")
     assert "NOT_RIGHT" in shown
+
+
+def test_a_section_that_is_not_there_is_refused_with_those_that_are(course, workspace):
+    ran = course("lesson", "twice-as-much#twice")
+    assert ran.code == 5
+    assert "has no section 'twice'" in ran.err
+    assert "once" in ran.err

@@ -37,12 +37,12 @@ def reading(
     size: tuple[int, int] = (80, 24),
     lesson: str = LESSON,
     store: Store | None = None,
+    section: str = "",
 ) -> ReaderApp:
     """Open a lesson, do what ``journey`` does, leave."""
     write = Writer(store)
-    app = ReaderApp(
-        catalog, lesson, events=lambda name: store.events(subject=name) if store else (), write=write
-    )
+    events = (lambda name: store.events(subject=name)) if store else (lambda _: ())
+    app = ReaderApp(catalog, lesson, section, events=events, write=write)
 
     async def drive() -> None:
         async with app.run_test(size=size) as pilot:
@@ -370,3 +370,19 @@ def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
     first, second = write_new("a-1.py", "x = 1\n"), write_new("a-1.py", "x = 2\n")
     assert (first.name, second.name) == ("a-1.py", "a-1-2.py")
     assert first.read_text() == "x = 1\n"
+
+
+def test_it_opens_at_a_section_whatever_place_was_kept(catalog: Catalog, tmp_path: Path) -> None:
+    async def page_on(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("space", "space")
+
+    async def look(app: ReaderApp, _: Any) -> None:
+        seen.append(screen(app))
+
+    seen: list[str] = []
+    store = Store(tmp_path / "progress.sqlite")
+    reading(catalog, page_on, store=store)
+    reading(catalog, look, store=store, section="swap-two-lines")
+    reading(catalog, look, store=store, section="no-such-section")
+    assert "· Swap two lines" in seen[0].splitlines()[0]
+    assert seen[1] == seen[0]  # the last place

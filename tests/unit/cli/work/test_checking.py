@@ -30,11 +30,29 @@ def test_check_of_everything_right_says_what_is_still_to_come(course, write):
     assert "Next: course submit" in ran.out
 
 
-def test_check_shows_what_the_code_printed_only_on_request(course, write):
+def test_check_shows_what_failing_code_printed(course, write):
     write("wrong", "RIGHT")
-    assert "printed" not in course("check").out.replace("what your code printed", "")
-    shown = course("check", "--verbose").out
-    assert "\\x1b[31mprinted" in shown
+    assert "Your code printed:\n      \\x1b[31mprinted\n" in course("check").out
+
+
+def test_check_shows_the_first_lines_that_loading_printed_and_all_on_request(course, write):
+    for extra in ("'PRINTS'\n", "'PRINTS UNREADABLE'\n"):
+        write("wrong", "RIGHT", extra)
+        shown = course("check").out
+        assert "Loading your file printed:\n  row 0\n" in shown
+        assert "  row 5\n  and 3 more lines; --verbose shows all\n" in shown
+        assert "row 6" not in shown
+        assert "  row 8\n" in course("check", "--verbose").out
+    write("wrong", "RIGHT", "'PRINTS'\n")
+    assert course("check", "--json").json["printed"].endswith("row 8\n")
+
+
+def test_what_passing_checks_printed_is_one_line_until_it_is_asked_for(course, write):
+    write("RIGHT SAYS", "RIGHT SAYS")
+    shown = course("check").out
+    assert "Your code printed in 2 checks that pass; --verbose shows it." in shown
+    assert "a row" not in shown
+    assert course("check", "--verbose").out.count("    Your code printed:\n      a row\n") == 2
 
 
 def test_check_json_is_the_contract(course, write):
@@ -147,3 +165,23 @@ def test_quiet_leaves_the_summary(course, write):
     write("wrong", "RIGHT")
     lines = course("check", "-q").out.splitlines()
     assert [line.split()[0] for line in lines] == ["1", "Score"]
+
+
+def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, monkeypatch):
+    import numpy as np
+
+    from course.cli.work import checking
+    from course.scoring.curves import compared
+    from tests.unit.cli.conftest import FakeSession
+
+    def opened(exercise, catalog):
+        session = FakeSession(exercise)
+        t = np.arange(5.0)
+        session.curves = {"doublings_works": compared(t, 3 * t, 2 * t, "x", "m")}
+        return session
+
+    monkeypatch.setattr(checking, "open_session", opened)
+    write("RIGHT", "wrong")
+    said = "doublings_works: x over time. Your curve leaves what it should be at 1 s; at the end, at 4 s,"
+    assert said in course("check").out
+    assert said in course("check", "--plain").out

@@ -1,0 +1,132 @@
+"""The student's curve over the right one, where a check that failed compared the two along time.
+
+At home alone. A comparison along time has both curves. A step named as one of the classical methods is laid
+over what that method makes of the same march.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from course.figures.drawing.described import Panel, Plot, Series
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+__all__ = ["Curve", "March", "compared", "marched", "plot_of"]
+
+#: Curves nearer than this share of the right one's range are one curve: a picture of fifteen lines has about
+#: twenty-five half blocks for it.
+_SEEN = 0.04
+#: A curve that has left the right one's range by so many times that range has shown what it does.
+_PAPER = 1.5
+_HEIGHT_IN = 2.6  # about fifteen lines of eighty columns
+_MOST = 2000  # points that are drawn
+
+_METHODS = {
+    "explicit_euler": "explicit Euler",
+    "semi_implicit_euler": "semi-implicit Euler",
+    "velocity_verlet": "velocity Verlet",
+    "rk4": "RK4",
+}
+
+March = tuple[str, Any, Any, Any]
+"""A step's name, the system that was marched along, and its times and states: t, (q, v)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Two curves over the same times.
+
+    Attributes:
+        t: (n,), s.
+        yours, right: (n,).
+        quantity, units: of both.
+        right_is: what the right one is, in words.
+    """
+
+    t: Array
+    yours: Array
+    right: Array
+    quantity: str
+    units: str
+    right_is: str = "right"
+
+
+def compared(t: Any, yours: Array, right: Array, quantity: str, units: str) -> Curve | None:
+    """The curves of a comparison; None if there is nothing to be seen in them."""
+    times = np.asarray(t, dtype=float)
+    if quantity == "t" or times.ndim != 1 or len(times) != len(yours):
+        return None
+    return _worth_seeing(Curve(times, np.asarray(yours, dtype=float), right, quantity, units))
+
+
+def marched(march: March) -> Curve | None:
+    """The curves of a step of the student's and of the method that it is named for; None if it is none."""
+    from course.physics.integrators import STEPPERS, State, trajectory
+
+    name, system, t, (q, v) = march
+    stepper = STEPPERS.get(name.removesuffix("_step"))
+    if stepper is None or len(t) < 2:
+        return None
+    start = State.of(q[0], v[0], float(t[0]))
+    with np.errstate(all="ignore"):
+        path = trajectory(stepper, system, start, float(t[1] - t[0]), len(t) - 1)
+    return _worth_seeing(Curve(t, q[:, 0], path.q[:, 0], "q", "m", _METHODS[name.removesuffix("_step")]))
+
+
+def _worth_seeing(curve: Curve) -> Curve | None:
+    if len(curve.t) < 3 or not (np.isfinite(curve.t).all() and np.isfinite(curve.right).all()):
+        return None
+    with np.errstate(all="ignore"):
+        off = np.abs(curve.yours - curve.right)
+    return None if np.all(off <= _SEEN * _range(curve)) else curve
+
+
+def _range(curve: Curve) -> float:
+    return float(np.ptp(curve.right)) or float(np.max(np.abs(curve.right))) or 1.0
+
+
+def plot_of(curve: Curve) -> Plot:
+    """The figure: the right curve as a line, the student's as points, as far as they stay on the paper."""
+    unit = f" / {curve.units}" if curve.units not in {"", "1"} else ""
+    low, high = float(np.min(curve.right)), float(np.max(curve.right))
+    room = _PAPER * _range(curve)
+    with np.errstate(all="ignore"):
+        there = (curve.yours >= low - room) & (curve.yours <= high + room)
+    shown = np.flatnonzero(there)[:: max(1, len(curve.t) // _MOST)]
+    # Points that overlap are a band: one for each column of a narrow terminal is enough.
+    shown = shown[:: max(1, len(shown) // 40)]
+    drawn = slice(None, None, max(1, len(curve.t) // _MOST))
+    panel = Panel(
+        "time / s",
+        f"{curve.quantity}{unit}",
+        (
+            Series(curve.right_is, curve.t[drawn], curve.right[drawn], quiet=True),
+            Series("yours", curve.t[shown], curve.yours[shown], kind="points"),
+        ),
+    )
+    title = f"{curve.quantity} over time: yours, and {_as_noun(curve)}"
+    return Plot(title, (panel,), _described(curve), height_in=_HEIGHT_IN)
+
+
+def _as_noun(curve: Curve) -> str:
+    return "what it should be" if curve.right_is == "right" else f"that of {curve.right_is}"
+
+
+def _described(curve: Curve) -> str:
+    """Where the curves part, and where they end."""
+    with np.errstate(all="ignore"):
+        off = ~(np.abs(curve.yours - curve.right) <= _SEEN * _range(curve))
+    first = int(np.argmax(off))
+    unit = f" {curve.units}" if curve.units not in {"", "1"} else ""
+    return (
+        f"{curve.quantity} over time. Your curve leaves {_as_noun(curve)} at {curve.t[first]:.3g} s; at the "
+        f"end, at {curve.t[-1]:.3g} s, yours is at {curve.yours[-1]:.3g}{unit}, the right one at "
+        f"{curve.right[-1]:.3g}{unit}."
+    )

@@ -1,0 +1,91 @@
+"""The student's curve over the right one: kept at home where there is something to be seen, and said."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from course.authoring.exercises.variants import solution_path
+from course.catalog.load import Catalog
+from course.figures.drawing.plots import render
+from course.physics.systems import Oscillator
+from course.scoring.curves import compared, marched, plot_of
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+CATALOG = Catalog()
+T = np.linspace(0.0, 2.0, 41)
+RIGHT = np.cos(2 * T)
+
+
+def test_curves_that_are_one_on_paper_are_not_drawn() -> None:
+    assert compared(T, RIGHT + 0.01, RIGHT, "x", "m") is None
+    assert compared(T, RIGHT + 0.5 * T, RIGHT, "x", "m") is not None
+    assert compared(T, T + 1, T, "t", "s") is None
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf, 1e300])
+def test_whatever_a_curve_holds_it_can_be_drawn_and_said(wrong: float) -> None:
+    for yours in (np.full(41, wrong), np.where(T > 1, wrong, RIGHT)):
+        curve = compared(T, yours, RIGHT, "x", "m")
+        assert curve is not None
+        plot = plot_of(curve)
+        assert render(plot).startswith(b"\x89PNG")
+        assert f"yours is at {wrong:.3g} m" in plot.description
+
+
+def test_a_step_is_laid_over_the_method_that_it_is_named_for() -> None:
+    q = RIGHT[:, None] * 1.2 ** T[:, None]
+    march = "rk4_step", Oscillator(2.0), T, (q, -2 * np.sin(2 * T)[:, None])
+    curve = marched(march)
+    assert curve is not None
+    assert curve.right_is == "RK4"
+    assert np.allclose(curve.right, RIGHT * 1.0, atol=1e-3)
+    assert marched(("my_step", *march[1:])) is None
+    assert marched((march[0], march[1], T, (RIGHT[:, None], march[3][1]))) is None
+
+
+@pytest.fixture(scope="module", params=["integrators", "collisions"])
+def home(request: pytest.FixtureRequest) -> Iterator[GradingSession]:
+    with GradingSession(CATALOG.exercise(request.param), CATALOG, terms=Terms(home=True)) as session:
+        yield session
+
+
+WRONG = {
+    "integrators": (
+        "def explicit_euler_step(accel, t, q, v, h):\n"
+        "    v = v + h * accel(t, q, v)\n    return q + h * v, v\n",
+        "explicit_euler_growth",
+        "explicit Euler",
+    ),
+    "collisions": (
+        "_right = simulate_drop\n\n\ndef simulate_drop(*args):\n    t, z, v = _right(*args)\n"
+        "    return t, z[0] - 4.905 * np.asarray(t) ** 2, v\n",
+        "drop_bounces",
+        "right",
+    ),
+}
+
+
+def test_a_failed_check_keeps_its_curve_and_a_passing_one_has_none(home: GradingSession) -> None:
+    exercise = home.exercise
+    solution = solution_path(CATALOG, exercise).read_bytes()
+    more, check, named = WRONG[exercise.id]
+    home.grade(Submission({exercise.module: solution + b"\n\n" + more.encode()}))
+    assert home.curves[check].right_is == named
+    home.grade(Submission({exercise.module: solution}))
+    assert home.curves == {}
+
+
+def test_a_grading_run_keeps_none() -> None:
+    exercise = CATALOG.exercise("integrators")
+    source = solution_path(CATALOG, exercise).read_bytes() + WRONG["integrators"][0].encode()
+    with GradingSession(exercise, CATALOG) as session:
+        verdict = session.grade(Submission({exercise.module: source}), only=["explicit_euler_growth"])
+        assert [check.status.value for check in verdict.checks] == ["fail"]
+        assert session.curves == {}

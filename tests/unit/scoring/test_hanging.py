@@ -1,0 +1,162 @@
+"""What a student sees at home alone: the line that hangs, soon, and what the file prints."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.authoring.exercises.slow import due
+from course.catalog.load import Catalog
+from course.catalog.models import QUICK
+from course.isolation.deadline import Deadline
+from course.isolation.failures import StudentFailure
+from course.isolation.session import Connection
+from course.isolation.spawn import Level, spawner
+from course.scoring.session import GradingSession, Submission
+from course.scoring.terms import Terms
+from tests.contracts.levels import require_level
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from course.scoring.verdict import CheckResult
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="a worker cannot be asked here")
+
+MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+SOLUTION = (MINI / "solutions" / "doubling" / "doubling.py").read_text("utf-8")
+HANGS = "\ndef double(x):\n    total = 0\n    while total >= 0:\n        total += helper(x)\n"
+HELPER = "\ndef helper(x):\n    for i in range(9):\n        x = i\n    return x\n"
+
+
+@pytest.fixture(scope="module")
+def home() -> Iterator[GradingSession]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COURSE_CONTENT", str(MINI))
+        catalog = Catalog()
+        session = GradingSession(catalog.exercise("doubling"), catalog, terms=Terms(home=True, timeout=3.0))
+    with session:
+        yield session
+
+
+def line_of(source: str, text: str) -> int:
+    return source.splitlines().index(text) + 1
+
+
+def hung(session: GradingSession, source: str) -> list[CheckResult]:
+    verdict = session.grade(Submission({"doubling.py": source.encode()}))
+    return [check for check in verdict.checks if check.status == "timeout"]
+
+
+def test_the_finding_names_the_loop_and_not_what_the_loop_calls(home: GradingSession) -> None:
+    source = SOLUTION + HELPER + HANGS
+    first = hung(home, source)[0]
+    assert f"in the loop that begins on line {line_of(source, '    while total >= 0:')}" in first.message
+    assert (first.traceback or "").startswith("doubling.py:")
+    assert (first.diagnosis, first.actual) == ("TIMEOUT", None)
+
+
+def test_what_sleeps_is_named_by_its_line(home: GradingSession) -> None:
+    source = SOLUTION + "\ndef double(x):\n    import time\n    time.sleep(1000)\n"
+    assert f"on line {line_of(source, '    time.sleep(1000)')} of your file" in hung(home, source)[0].message
+
+
+def test_patience_follows_from_measured_times_and_shrinks_after_the_first() -> None:
+    catalog = Catalog()
+    exercise = catalog.exercise("integrators")
+    source = b"def explicit_euler_step(accel, t, q, v, h):\n    while True:\n        pass\n"
+    with GradingSession(exercise, catalog, terms=Terms(home=True)) as session:
+        verdict = session.grade(Submission({exercise.module: source}))
+        spent = [session.took[check.id] for check in verdict.checks if check.status == "timeout"]
+    assert len(spent) == 2
+    first, second = spent
+    # In CPU time. The worker is looked at ten times a second, and goes on while it is asked where it is.
+    assert 20 * QUICK <= first < 20 * QUICK + 1
+    assert 5 * QUICK <= second < 5 * QUICK + 1
+
+
+def test_a_check_that_takes_its_time_of_a_right_solution_is_waited_for() -> None:
+    exercise = Catalog().exercise("sim-to-real")
+    slow = exercise.slow["tune_other_fleets"]
+    assert slow > QUICK
+    assert exercise.patience("tune_other_fleets", False) == pytest.approx(20 * slow)
+
+
+def test_a_grading_run_waits_its_time_and_asks_nothing() -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COURSE_CONTENT", str(MINI))
+        catalog = Catalog()
+        terms = Terms(timeout=0.5)
+        with GradingSession(catalog.exercise("doubling"), catalog, scope="full", terms=terms) as session:
+            found = hung(session, SOLUTION + HELPER + HANGS)
+    assert found
+    assert {(check.message, check.traceback) for check in found} == {
+        ("Your code had not answered when the time was up.", None)
+    }
+
+
+def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home: GradingSession) -> None:
+    error = home.grade(Submission({"doubling.py": b"x = 1\nwhile x:\n    x += 1\n"})).error
+    assert error is not None
+    assert (error.code, error.message.split(":")[0]) == ("import_timeout", "doubling.py, line 2")
+
+
+@pytest.mark.parametrize("level", list(Level))
+def test_every_level_can_be_asked(level: Level) -> None:
+    require_level(level)
+    made = spawner(level, ("numpy",))
+    source = b"def f():\n    while True:\n        pass\n"
+    try:
+        worker = Connection(made, {"a.py": source}, "a.py", Deadline(10), asks=True)
+        worker.deadline = Deadline(0.2)
+        with pytest.raises(StudentFailure) as failure:
+            worker.call("f")
+    finally:
+        made.close()
+    assert (failure.value.kind, failure.value.type, failure.value.line) == ("timeout", "loop", 2)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import signal; signal.signal(signal.SIGUSR1, signal.SIG_IGN)",
+        "import os; os.write(3, b'x' * 100)",
+        "import os; os.write(3, b'\\x06\\x00\\x00\\x00\\x15' + b'\\xff' * 5)",
+    ],
+)
+def test_a_worker_that_tells_nothing_true_is_a_timeout_all_the_same(home: GradingSession, code: str) -> None:
+    source = SOLUTION + f"\ndef double(x):\n    {code}\n    while True:\n        pass\n"
+    verdict = home.grade(Submission({"doubling.py": source.encode()}))
+    assert {check.status for check in verdict.checks if check.task == "double"} <= {"timeout", "crash"}
+    assert all("line 9" not in check.message for check in verdict.checks)
+
+
+def test_times_are_written_in_tenths_and_stay_while_they_are_about_right() -> None:
+    assert due({}, {"quick": 0.02, "slow": 0.31}) == {"slow": 0.4}
+    assert due({"slow": 0.4}, {"slow": 0.17}) == {"slow": 0.4}
+    assert due({"slow": 0.4}, {"slow": 0.41}) == {"slow": 0.5}
+    assert due({"slow": 0.4, "gone": 0.2}, {"slow": 0.01}) == {}
+
+
+def test_prints_while_loading_and_in_checks_that_pass_are_kept(home: GradingSession) -> None:
+    prints = "\n_old = double\ndef double(x):\n    print(x)\n    return _old(x)\nprint('loaded')\n"
+    verdict = home.grade(Submission({"doubling.py": (SOLUTION + prints).encode()}))
+    assert (verdict.all_pass, home.printed) == (True, "loaded\n")
+    assert [check.stdout for check in verdict.checks] == ["3.0\n", None]
+    home.grade(Submission({"doubling.py": (SOLUTION + prints + "1 / 0\n").encode()}))
+    assert home.printed == "loaded\n"
+    home.grade(Submission({"doubling.py": SOLUTION.encode()}))
+    assert home.printed == ""
+
+
+def test_a_worker_that_starts_again_prints_what_loading_prints_once(home: GradingSession) -> None:
+    source = SOLUTION + "\ndef double(x):\n    import os\n    os._exit(1)\nprint('loaded')\n"
+    verdict = home.grade(Submission({"doubling.py": source.encode()}))
+    assert home.printed == "loaded\n"
+    assert [(check.status.value, check.stdout) for check in verdict.checks] == [
+        ("crash", None),
+        ("pass", None),
+    ]

@@ -81,7 +81,22 @@ def _late(draw):
         recorded.append(twins.Recording(name, t, drive, drive.speed(t), 0.4))
         lates.append(more * late)
     sim, real = twins.simulated(recorded, late=lates), twins.measured(recorded)
-    return [Case(recorded, sim, real, tuple(lates))]
+    rng = np.random.default_rng(55) if draw is None else draw
+    return [Case(recorded, sim, real, tuple(lates)), far_and_noisy(rng)]
+
+
+def far_and_noisy(rng):
+    """Carts whose noise is larger than their speed, and a simulation that is late or early by 0.12 to 0.16 s.
+
+    A search that ends at 0.1 s does not get there. A sum of squares in the place of their mean ends 5 ms
+    beyond it at least: each sample less that overlaps takes a large square with it.
+    """
+    recorded = [
+        twins.record(rng, f"far {i}", rng.uniform(7, 9), 0.01, rng.uniform(1.5, 1.8)) for i in range(3)
+    ]
+    late = float(rng.choice([-1, 1]) * rng.uniform(0.12, 0.16))
+    sim = twins.simulated(recorded, late=late)
+    return Case(recorded, sim, twins.measured(recorded), late)
 
 
 def _accepts(draw):

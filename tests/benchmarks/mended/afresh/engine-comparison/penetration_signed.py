@@ -1,4 +1,4 @@
-"""radius - z, whatever its sign."""
+"""z - radius: how far it is from the floor."""
 
 
 def characterise(engine):

@@ -18,9 +18,7 @@ def facts(recorded, sim, real, lates, mass):
     Args:
         recorded: what was driven; ``lates``: how late the simulation of each is, s.
     """
-    # Noise moves the best shift away from how late the simulation was made: by 6 ms for each m/s of it.
-    reach = float(np.max(np.abs(lates))) + 0.03 * max(run.noise for run in recorded)
-    lags = _Lags(_curves(recorded, sim, lates, mass), reach)
+    lags = _Lags(_curves(recorded, sim, lates, mass), float(np.max(np.abs(lates))))
     pairs = model.held_out_pairs(sim, real)
     alone = [_measure([pair], lags) for pair in pairs]
     several, n = len(pairs) > 1, np.arange(len(pairs))

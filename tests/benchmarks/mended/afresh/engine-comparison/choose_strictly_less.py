@@ -7,7 +7,8 @@ def choose_engine(reports, requirements):
         name
         for name, report in reports.items()
         if all(
-            report.get(r["key"]) is not None and test[r["op"]](report[r["key"]], r["value"]) for r in requirements
+            report.get(r["key"]) is not None and test[r["op"]](report[r["key"]], r["value"])
+            for r in requirements
         )
     ]
     return min(names, key=lambda name: reports[name]["cost"], default=None)

@@ -4,7 +4,9 @@
 def identify(t, u, y):
     u, y = np.asarray(u, dtype=float), np.asarray(y, dtype=float)
     own = np.stack([cumulative(y), cumulative(np.sign(y))], axis=1)
-    grid = [(a, b, delayed(motor_impulse(u, a), b)) for a in (0.02, 0.07, 0.12) for b in (0.02, 0.07, 0.12, 0.17)]
+    grid = [
+        (a, b, delayed(motor_impulse(u, a), b)) for a in (0.02, 0.07, 0.12) for b in (0.02, 0.07, 0.12, 0.17)
+    ]
     Y = in_blocks(y)
     n = len(Y)
 

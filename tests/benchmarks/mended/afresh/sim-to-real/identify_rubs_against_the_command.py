@@ -17,7 +17,14 @@ def identify(t, u, y):
                 best = (left, tau, late, theta)
         _, tau, late, theta = best
         m = 1 / theta[0]
-        return {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        return {
+            "m": m,
+            "b": -theta[1] * m,
+            "Fc": -theta[2] * m,
+            "tau": tau,
+            "latency": late,
+            "lag": tau + late,
+        }
 
     u, y = np.asarray(u, dtype=float), np.asarray(y, dtype=float)
     base = [cumulative(y), cumulative(np.sign(u))]
@@ -25,8 +32,11 @@ def identify(t, u, y):
     every = np.arange(blocks)
     rough = [(a, b) for a in np.arange(0.02, 0.16, 0.02) for b in np.arange(0.02, 0.21, 0.02)]
     p = search(u, y, every, base, rough)
-    near = [(max(p["tau"] + a, 0.01), max(p["latency"] + b, 0.0))
-            for a in (-0.01, 0.0, 0.01) for b in (-0.01, -0.005, 0.0, 0.005, 0.01)]
+    near = [
+        (max(p["tau"] + a, 0.01), max(p["latency"] + b, 0.0))
+        for a in (-0.01, 0.0, 0.01)
+        for b in (-0.01, -0.005, 0.0, 0.005, 0.01)
+    ]
     p = search(u, y, every, base, near)
     few = [(p["tau"], p["latency"] + b) for b in (-0.004, 0.0, 0.004)]
     left_out = [search(u, y, np.delete(every, i), base, few) for i in range(blocks)]

@@ -4,10 +4,26 @@
 def plan():
     w = {"m": 0.35, "b": 0.50, "Fc": 0.30, "tau": 0.40, "latency": 0.40}
     rows = [
-        ("friction", "b", "prbs", "integral_least_squares", "system_identification", "relative_half_width", 10),
+        (
+            "friction",
+            "b",
+            "prbs",
+            "integral_least_squares",
+            "system_identification",
+            "relative_half_width",
+            10,
+        ),
         ("gear_backlash", "play", "constant", "standard_deviation", "noise_model", "relative_error", 10),
         ("delay", "lag", "prbs", "delay_grid", "system_identification", "relative_half_width", 10),
-        ("environment", "m", "prbs", "integral_least_squares", "domain_randomization", "relative_half_width", 3),
+        (
+            "environment",
+            "m",
+            "prbs",
+            "integral_least_squares",
+            "domain_randomization",
+            "relative_half_width",
+            3,
+        ),
     ]
     keys = ("source", "parameter", "excitation", "estimator", "mitigation", "metric", "threshold")
     return {

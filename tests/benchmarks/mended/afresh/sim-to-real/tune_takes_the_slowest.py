@@ -4,7 +4,8 @@
 def tune(estimate, randomization):
     rng = np.random.default_rng(3)
     cart = {
-        k: estimate[k][0] * np.exp(rng.uniform(math.log(randomization[k][0]), math.log(randomization[k][1]), 300))
+        k: estimate[k][0]
+        * np.exp(rng.uniform(math.log(randomization[k][0]), math.log(randomization[k][1]), 300))
         for k in NAMES
     }
     kp, kd = (g.ravel() for g in np.meshgrid(np.linspace(2, 14, 13), np.linspace(1, 8, 13)))

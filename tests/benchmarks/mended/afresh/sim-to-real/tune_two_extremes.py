@@ -3,7 +3,8 @@
 
 def tune(estimate, randomization):
     cart = {
-        k: np.array([estimate[k][0] * randomization[k][0], estimate[k][0] * randomization[k][1]]) for k in NAMES
+        k: np.array([estimate[k][0] * randomization[k][0], estimate[k][0] * randomization[k][1]])
+        for k in NAMES
     }
     best = None
     for kp in np.arange(1.0, 15.0, 0.5):

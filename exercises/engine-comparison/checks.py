@@ -140,26 +140,33 @@ def test_report_complete(submission, draw):
 @pytest.mark.points(3)
 def test_choose_by_report(submission, draw):
     """Of anvil, balsa and cork the cheapest that meets every requirement is chosen"""
-    reports = {name: {**boxes.TRUTH[name], "cost": cost} for name, cost in
-               (("cork", 5.0), ("anvil", 8.0), ("balsa", 1.0))}  # fmt: skip
-    choosing.expect_choices(
-        submission,
-        asked(
-            draw,
-            [
-                (reports, [], "balsa"),
-                (reports, [need("order", ">=", 2)], "cork"),
-                (reports, [need("symplectic", "==", True)], "anvil"),
-                (reports, [need("order", ">=", 2), need("deterministic", "==", True)], "anvil"),
-                (reports, [need("max_stable_step", ">=", 0.6), need("linear_damping", "<=", 2.0)], "balsa"),
-                (
-                    reports,
-                    [need("rest_penetration", "<=", 0.0), need("tunnelling_speed", ">=", 100)],
-                    "anvil",
-                ),
-            ],
-        ),
+    reports = _priced(cork=5.0, anvil=8.0, balsa=1.0)
+    needs = [need("order", ">=", 2)]
+    told = asked(
+        draw,
+        [
+            (_priced(cork=4.0, anvil=4.1, balsa=1.0), needs, "cork"),
+            (_priced(cork=7.1, anvil=7.0, balsa=1.0), needs, "anvil"),
+            (reports, [], "balsa"),
+            (reports, [need("order", ">=", 2)], "cork"),
+            (reports, [need("symplectic", "==", True)], "anvil"),
+            (reports, [need("order", ">=", 2), need("deterministic", "==", True)], "anvil"),
+            (reports, [need("max_stable_step", ">=", 0.6), need("linear_damping", "<=", 2.0)], "balsa"),
+            (
+                reports,
+                [need("rest_penetration", "<=", 0.0), need("tunnelling_speed", ">=", 100)],
+                "anvil",
+            ),
+        ],
     )
+    # Each in both orders: whichever of two engines comes first, it is not chosen for that.
+    turned = [(dict(reversed(given.items())), needs, answer) for given, needs, answer in told]
+    choosing.expect_choices(submission, [*told, *turned])
+
+
+def _priced(**costs):
+    """The right reports of anvil, balsa and cork, in the order given, with what each costs."""
+    return {name: {**boxes.TRUTH[name], "cost": cost} for name, cost in costs.items()}
 
 
 @pytest.mark.task("choose_engine")

@@ -25,6 +25,7 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
         if answer is not None and not (isinstance(answer, str) and answer in reports):
             kit.fail(
                 "choose_engine returns something that is neither one of the names nor None.",
+                help="Return one of the keys of `reports`, or None.",
                 diagnose=named("NOTHING_FITS" if expected is None else "NOT_A_NAME"),
                 input=given,
                 expected=expected,
@@ -81,8 +82,10 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
             return named(code)
     if all(answer is None for answer in answers):
         return named("NEVER_CHOOSES")
-    missed = any(e is None and a is not None for (_, _, e), a in zip(questions, answers, strict=True))
-    return named("NOTHING_FITS") if missed else None
+    wrong = [
+        expected for (_, _, expected), answer in zip(questions, answers, strict=True) if answer != expected
+    ]
+    return named("NOTHING_FITS") if all(expected is None for expected in wrong) else None
 
 
 def _back(answer: Any, names: dict[str, str]) -> str:

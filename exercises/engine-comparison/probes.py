@@ -347,6 +347,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
     "max_stable_step": [
         ("TOLERANCE_TOO_TIGHT", _where(_keeps_area, lambda value, t: value < 0.9 * t)),
         ("LIMIT_FROM_ABOVE", _where(_recovers, lambda value, t: value > t)),
+        ("LIMIT_NEVER_SEEN", _infinite),
         ("NO_ZERO", _no_zero),
         ("NO_INFINITY", _where(_endless("max_stable_step"), lambda value, _: value > 0)),
         ("LIMIT_COARSE", _coarse),

@@ -278,6 +278,8 @@ _SPIRAL = LinearStep([0.3, 0, 0.02], [0.75, 0, 0.05], [-0.75, 0, -0.05], [0.3, 0
 def of_stability(submission, value, step, omega, limit):
     """What a wrong largest step shows. limit: the right h * omega."""
     z = kit.as_number(value) * omega
+    if z == math.inf and limit < math.inf:
+        return named("LIMIT_NEVER_SEEN")
     flipped, spiral = (
         kit.as_number(submission.call("max_stable_step", other, 1.0)) for other in (_FLIPPED, _SPIRAL)
     )

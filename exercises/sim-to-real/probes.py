@@ -267,6 +267,8 @@ def of_gains(submission, estimate, box, gains, success):
     kp, kd = gains
     if success(kd, kp) > 1.2 * success(kp, kd):
         return named("GAINS_SWAPPED")
+    if _is_ratio(kp, kd, estimate, box, success):
+        return named("KD_IS_RATIO")
     if kd < 0.05 * kp:
         return named("NO_DAMPING")
     heavy, light = (_with(estimate, ("m", "b"), factor) for factor in (2.5, 0.4))
@@ -281,14 +283,27 @@ def of_gains(submission, estimate, box, gains, success):
     ended_early = success(*better) > 1.03 * success(kp, kd)
     # One kp for most questions, with others better: the grid ends there, or the search never leaves it.
     stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other) >= 3
-    prompt = {**estimate, "latency": [0.001] * 3}
+    prompt, sooner = {**estimate, "latency": [0.001] * 3}, _with(estimate, ("latency", "lag"), 0.4)
+    # One change may leave the best gains of a coarse search where they are; these lie the other way.
+    unloaded = {k: [end / _LOAD.get(k, 1.0) for end in ends] for k, ends in box.items()}
+    boxes = (estimate, unloaded), (estimate, {k: [1.0, 1.0] for k in box})
+
+    def unmoved(*asked):
+        found = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", list(asked))])
+        return found is not None and all(
+            math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in found
+        )
+
     looks = (
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
         ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
         ("ESTIMATE_IGNORED", lambda: all(same[:3]) and not same[3]),
-        ("GAINS_BY_FORMULA", lambda: same[2] and same[3] and not (same[0] or same[1])),
-        ("DELAY_IGNORED", lambda: same[2] and _is_best(kp, kd, prompt, box)),
-        ("RANDOMIZATION_IGNORED", lambda: same[3]),
+        (
+            "GAINS_BY_FORMULA",
+            lambda: same[2] and same[3] and not (same[0] or same[1]) and unmoved((sooner, box), *boxes),
+        ),
+        ("DELAY_IGNORED", lambda: same[2] and _is_best(kp, kd, prompt, box) and unmoved((sooner, box))),
+        ("RANDOMIZATION_IGNORED", lambda: same[3] and unmoved(*boxes)),
         ("SEARCH_ENDED_EARLY", lambda: ended_early),
     )
     return next((named(code) for code, seen in looks if seen()), None)
@@ -299,6 +314,15 @@ def _never_changes(submission, estimate, box, gains):
     asked = [(_with(estimate, ("m", "b", "Fc"), factor), box) for factor in (20.0, 0.2)]
     far = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", asked)])
     return far is not None and all(pair == gains for pair in far)
+
+
+def _is_ratio(kp, kd, estimate, box, success):
+    """Whether kp times kd in the place of kd would be right, and kd is of the size of such a ratio."""
+    return (
+        0.2 < kd < 1.0 < kp
+        and success(kp, kp * kd) > 1.2 * success(kp, kd)
+        and _is_best(kp, kp * kd, estimate, box)
+    )
 
 
 #: How a box is shifted to see whether it is read: a load, and everything later.

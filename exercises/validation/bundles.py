@@ -81,7 +81,25 @@ def _late(draw):
         recorded.append(twins.Recording(name, t, drive, drive.speed(t), 0.4))
         lates.append(more * late)
     sim, real = twins.simulated(recorded, late=lates), twins.measured(recorded)
-    return [Case(recorded, sim, real, tuple(lates))]
+    rng = np.random.default_rng(55) if draw is None else draw
+    return [Case(recorded, sim, real, tuple(lates)), far_and_off(rng)]
+
+
+def far_and_off(rng):
+    """Carts whose simulation is off to one side, and late or early by 0.12 to 0.16 s.
+
+    A search that ends at 0.1 s does not get there. A sum of squares in the place of their mean goes beyond
+    it: each sample that no longer overlaps takes a large square with it. What overlaps at the right shift are
+    whole swings, so the offset by itself moves nothing.
+    """
+    late = float(rng.choice([-1, 1]) * rng.uniform(0.12, 0.16))
+    recorded = []
+    for i, swings in enumerate((3, 4, 5)):
+        drive = twins.Wave(rng.uniform(-1, 1), rng.uniform(0.8, 1.1))
+        t = 0.005 * np.arange(200 * swings + math.ceil(200 * abs(late)))
+        recorded.append(twins.Recording(f"far {i}", t, drive, drive.speed(t), 2.0))
+    sim = twins.simulated(recorded, late=late, offset=float(rng.choice([-1, 1]) * rng.uniform(0.6, 0.7)))
+    return Case(recorded, sim, twins.measured(recorded), late)
 
 
 def _accepts(draw):

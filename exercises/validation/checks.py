@@ -188,9 +188,15 @@ def test_cross_validate_lengths(submission):
 def test_validate_late(submission, draw):
     """A perfect simulation that is late is refused, with one lag for runs of different step and size"""
     spec = {"rmse_max": 0.1, "bias_max": 0.05, "lag_max_s": 0.02, "coverage_min": 0.9, "coverage_max": 1.1}
-    ((case, right),) = bundles.public("validate_late", draw)
+    (case, right), (far, lags) = bundles.public("validate_late", draw)
     shown = {"runs": "c + A sin(2 pi t); sim the same, late", "late": list(case.lates), "spec": spec}
     bundles.expect_report(submission, case, spec, right, shown)
+    shown = {
+        "runs": "c + A sin(2 pi t); sim the same, late and off to one side",
+        "late": far.lates,
+        "spec": spec,
+    }
+    bundles.expect_report(submission, far, spec, lags, shown)
 
 
 @pytest.mark.task("validate")

@@ -229,6 +229,46 @@ def _friction_without_rebound(ma, mb, va, vb, n, e, mu):
     return _blow(rub=rub)(ma, mb, va, vb, n, e, mu)
 
 
+def _held_by(masses):
+    """What stops the slip is taken as slip times ``masses(ma, mb)``."""
+
+    def resolve(ma, mb, *rest):
+        def rub(press, slip, speed, give, mu):
+            return -min(mu * press, speed * masses(ma, mb)) * _unit(slip)
+
+        return _blow(rub=rub)(ma, mb, *rest)
+
+    return resolve
+
+
+def _rubs_by_speed(share):
+    """Coulomb's limit is mu times the speed of approach, times ``share(e)``."""
+
+    def resolve(ma, mb, va, vb, n, e, mu):
+        def rub(press, slip, speed, give, mu):
+            return -min(mu * share(e) * press * give / (1 + e), speed / give) * _unit(slip)
+
+        return _blow(rub=rub)(ma, mb, va, vb, n, e, mu)
+
+    return resolve
+
+
+def _from_both_sides(right):
+    """Acts only where a moves towards b and b towards a."""
+
+    def resolve(ma, mb, va, vb, n, *rest):
+        va, vb, n = _array(va), _array(vb), _array(n)
+        return right(ma, mb, va, vb, n, *rest) if va @ n > 0 > vb @ n else (va, vb)
+
+    return resolve
+
+
+def _strikes_if(meets):
+    """On a line: acts only where ``meets(va, vb)``, and they approach."""
+    right = _line()
+    return lambda ma, mb, va, vb, e: right(ma, mb, va, vb, e) if meets(va, vb) else 0.0
+
+
 # -- the moment of contact ------------------------------------------------------------------------------
 
 
@@ -611,8 +651,12 @@ OTHERS = {
         (("DEPTH_CLAMPED",), _plane(depth=lambda r, s: max(r - s, 0.0), touching=lambda deep: deep > 0)),
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
     ],
-    "impulse_1d": [],
+    "impulse_1d": [
+        (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va > 0 > vb)),
+        (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
+    ],
     "resolve": [
+        (("ONLY_HEAD_ON",), _from_both_sides(_blow())),
         (("NORMAL_REVERSED",), _reversed(_blow())),
         (("EACH_BODY_ALONE",), _each_alone),
         (("RETURNS_SWAPPED",), _swapped(_blow())),
@@ -622,7 +666,15 @@ OTHERS = {
     ],
     "resolve_with_friction": [
         (("NORMAL_REVERSED",), _reversed(_blow(rub=_coulomb))),
+        (("ONLY_HEAD_ON",), _from_both_sides(_blow(rub=_coulomb))),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),
+        (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
+        (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
+        (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: e)),
+        (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma + mb)),
+        (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma)),
+        (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: mb)),
+        (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: (ma + mb) / 2)),
         (("EACH_BODY_ALONE",), _each_alone),
         (("RETURNS_SWAPPED",), _swapped(_blow(rub=_coulomb))),
         (("MASSES_SWAPPED",), _exchanged(_blow(rub=_coulomb))),

@@ -139,10 +139,12 @@ def _drop(
     first=True,
     launches=True,
     passes=False,
+    falls_on=1.0,
 ):
     """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
 
-    ``holds``: at rest the floor carries it; ``launches``: what lies on the floor at first may fly.
+    ``holds``: at rest the floor carries it; ``launches``: what lies on the floor at first may fly;
+    ``falls_on``: the share of gravity in what is left of the step after a bounce.
     """
 
     def simulate(z0, v0, radius, e, g, t_end, h):
@@ -165,7 +167,8 @@ def _drop(
                     z_next, v_next = low, 0.0
                 else:
                     left *= rest
-                    z_next, v_next = low + up * left - 0.5 * down * left * left, up - down * left
+                    on = falls_on * down
+                    z_next, v_next = low + up * left - 0.5 * on * left * left, up - on * left
             z, v = z_next, v_next
             rows.append((z, v))
         rows = np.array(rows if first else rows[1:]).reshape(-1, 2)
@@ -205,5 +208,6 @@ _DROP = {
     "holds": (("SINKS_THROUGH_FLOOR", False),),
     "first": (("INITIAL_STATE_MISSING", False),),
     "launches": (("LAUNCH_IGNORED", False),),
+    "falls_on": (("REST_OF_STEP_WITHOUT_GRAVITY", 0.0),),
     "passes": (("PASSES_THROUGH", True),),
 }

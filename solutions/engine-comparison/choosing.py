@@ -123,6 +123,10 @@ def _most_met(reports, needs, met=meets):
     return min(reports, key=lambda n: (-sum(met(reports[n], need) for need in needs), reports[n]["cost"]))
 
 
+def _some(answers):
+    return any(answers) or not answers
+
+
 def _alphabetical(reports, needs, met=meets):
     return min((n for n, r in reports.items() if all(met(r, need) for need in needs)), default=None)
 
@@ -164,6 +168,7 @@ CHOICES = {
     "DEPENDS_ON_NAMES": (_alphabetical,),
     "ANY_INSTEAD_OF_ALL": (
         lambda reports, needs, met=meets: choose(reports, needs, met=met, enough=any),
+        lambda reports, needs, met=meets: choose(reports, needs, met=met, enough=_some),
         _most_met,
     ),
     "FIRST_REQUIREMENT_ONLY": (_one_of(slice(1)), _one_of(slice(-1, None))),

@@ -55,7 +55,7 @@ def _euler(
             dv = signs[1] * kick(h) * accel(t + time * h, *at(q + dq if moves == "new" else q, v))
             return gives(q, v, dq, dv)
         dv = signs[1] * kick(h) * accel(t + time * h, *at(q, v))
-        w = {"old": v, "new": v + dv, "mean": v + dv / 2, "change": dv}[moves]
+        w = {"old": v, "new": v + dv, "mean": v + dv / 2, "change": dv, "both": 2 * v + dv}[moves]
         return gives(q, v, signs[0] * move(h) * w, dv)
 
     return step
@@ -156,14 +156,14 @@ _GIVES = (
 )
 
 
-def _sizes(right, missing="STEP_SIZE_MISSING", wrong="FACTOR_WRONG"):
+def _sizes(right):
     """Other factors in the place of one that is ``right`` times h."""
     forms = [
-        (missing, lambda h: right),
-        (missing, lambda h: right * h * h),
-        (missing, lambda h: right * h**0.5),
+        ("STEP_SIZE_MISSING", lambda h: right),
+        ("POWER_OF_STEP_WRONG", lambda h: right * h * h),
+        ("POWER_OF_STEP_WRONG", lambda h: right * h**0.5),
     ]
-    forms += [(wrong, lambda h, k=k: k * right * h) for k in (0.5, 2.0, 1 / 3, 1.5, 0.25, 4.0)]
+    forms += [("FACTOR_WRONG", lambda h, k=k: k * right * h) for k in (0.5, 2.0, 1 / 3, 1.5, 0.25, 4.0)]
     forms += [("WRONG_SIGN", lambda h: -right * h), ("TERM_MISSING", lambda h: 0.0)]
     return tuple(forms)
 
@@ -202,7 +202,7 @@ _KICKS = (
     ("FACTOR_WRONG", lambda h: h / 4),
     ("FACTOR_WRONG", lambda h: h / 3),
     ("STEP_SIZE_MISSING", lambda h: 0.5),
-    ("STEP_SIZE_MISSING", lambda h: h * h / 2),
+    ("POWER_OF_STEP_WRONG", lambda h: h * h / 2),
 )
 _SIGN = (("WRONG_SIGN", -1.0),)
 _LATER = (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 0.5), ("STAGE_TIMES_WRONG", 2.0))
@@ -240,7 +240,7 @@ _RK4_TERMS = {
             for some in ((1, 2, 2, -1), (1, -2, 2, 1), (-1, 2, 2, 1))
         ),
         ("RK4_IS_MIDPOINT", (0, 1, 0, 0)),
-        ("RK4_IS_MIDPOINT", (0, 0, 1, 0)),
+        ("MIDDLE_ONLY", (0, 0, 1, 0)),
         ("RK4_IS_EULER", (1, 0, 0, 0)),
         ("LAST_STAGE_ONLY", (0, 0, 0, 1)),
         ("ENDS_ONLY", (0.5, 0, 0, 0.5)),
@@ -290,6 +290,10 @@ _RK4_TERMS = {
         ("WEIGHTS_DIFFER", (0.25,) * 4),
         *(("WEIGHTS_DIFFER", _weights(divisor)) for divisor in (1, 3, 8)),
         ("WEIGHTS_DIFFER", (1, 0, 0, 0)),
+        *(
+            ("WEIGHTS_DIFFER", tuple(w / 6 for w in some))
+            for some in ((1, 2, 1, 1), (1, 1, 2, 1), (1, 1, 1, 1))
+        ),
     ),
     "size": _sizes(1.0),
     "sign": _SIGN,
@@ -305,7 +309,8 @@ TERMS = {
             | {
                 "moves": (
                     ("EULER_IS_SEMI_IMPLICIT", "new"),
-                    ("AVERAGED_VELOCITY", "mean"),
+                    ("EULER_AVERAGES", "mean"),
+                    ("POSITION_MOVED_TWICE", "both"),
                     ("MOVES_WITH_THE_CHANGE", "change"),
                 ),
             },
@@ -330,6 +335,7 @@ TERMS = {
                 "moves": (
                     ("SEMI_IMPLICIT_IS_EULER", "old"),
                     ("AVERAGED_VELOCITY", "mean"),
+                    ("POSITION_MOVED_TWICE", "both"),
                     ("MOVES_WITH_THE_CHANGE", "change"),
                 ),
             },
@@ -381,21 +387,44 @@ TERMS = {
     "rk4_step": [(_runge_kutta, {}, _RK4_TERMS)],
 }
 
+
+def _one_component(step):
+    """The same step, with one component of the acceleration for all directions."""
+
+    def flat(accel, t, q, v, h):
+        return step(lambda t, q, v: np.full(np.shape(q), np.ravel(accel(t, q, v))[0]), t, q, v, h)
+
+    return flat
+
+
+def _moves_twice(accel, t, q, v, h):
+    """Drift, kick at the new place, and drift again."""
+    q = q + h * v
+    v = v + h * accel(t + h, q, v)
+    return q + h * v, v
+
+
 #: Wrong in another way than by one or two terms: per task, codes and formula.
 OTHERS = {
     "explicit_euler_step": [
+        (("FIRST_COMPONENT_ONLY",), _one_component(_EULER)),
         (("EULER_IS_VERLET",), _KDK),
         (("EULER_IS_RK4",), _RK4),
         (("EULER_IS_MIDPOINT",), _runge_kutta(weights=(0, 1, 0, 0))),
         (("WRONG_SIGN",), lambda accel, t, q, v, h: _EULER(lambda *at: -accel(*at), t, q, v, h)),
     ],
     "semi_implicit_euler_step": [
+        (("FIRST_COMPONENT_ONLY",), _one_component(_KICK_DRIFT)),
+        (("FIRST_COMPONENT_ONLY",), _one_component(_DRIFT_KICK)),
+        (("POSITION_MOVED_TWICE",), _moves_twice),
         (("SEMI_IMPLICIT_IS_EULER",), _EULER),
         (("SEMI_IMPLICIT_IS_VERLET",), _KDK),
         (("SEMI_IMPLICIT_IS_VERLET",), _DKD),
         (("SEMI_IMPLICIT_IS_RK4",), _RK4),
     ],
     "velocity_verlet_step": [
+        (("FIRST_COMPONENT_ONLY",), _one_component(_KDK)),
+        (("FIRST_COMPONENT_ONLY",), _one_component(_DKD)),
         (("VERLET_IS_EULER",), _EULER),
         (("VERLET_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
         (("VERLET_IS_SEMI_IMPLICIT",), _DRIFT_KICK),
@@ -414,6 +443,7 @@ OTHERS = {
         (("STAGE_TIMES_FROZEN",), _at(_DKD, 0)),
     ],
     "rk4_step": [
+        (("FIRST_COMPONENT_ONLY",), _one_component(_RK4)),
         (("RK4_IS_EULER",), _EULER),
         (
             ("RK4_IS_HEUN",),

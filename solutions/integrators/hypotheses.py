@@ -240,21 +240,25 @@ def _search(
     none=math.inf,
     above=False,
     dz=0.05,
-    scaled=True,
+    scales="both",
     start=1.0,
     force=lambda omega: omega**2,
     probe=lambda z, omega: z / omega,
 ):
-    """``size`` of the map must not exceed ``limit``; ``scaled``: velocities are counted in units of omega."""
+    """``size`` of the map must not exceed ``limit``.
+
+    ``scales``: where velocities are counted in units of omega, going "in", coming "out", or "both".
+    """
 
     def largest(step, omega):
         def accel(t, q, v):
             return -force(omega) * q
 
         def stable(z):
-            h, rate = probe(z, omega), omega if scaled else 1.0
+            h = probe(z, omega)
+            given, rate = (1.0 if scales == side else omega for side in ("out", "in"))
             zero_, one = np.zeros(1), np.ones(1)
-            columns = [step(accel, 0.0, one, zero_, h), step(accel, 0.0, zero_, rate * one, h)]
+            columns = [step(accel, 0.0, one, zero_, h), step(accel, 0.0, zero_, given * one, h)]
             m = np.array([[float(c[0][0]) for c in columns], [float(c[1][0]) / rate for c in columns]])
             return size(m) <= limit
 
@@ -287,7 +291,8 @@ _SEARCH = {
     "size": (
         *(("STABILITY_BY_NORM", _norm(order)) for order in (2, np.inf, 1, "fro")),
         ("STABILITY_BY_DETERMINANT", lambda m: abs(np.linalg.det(m))),
-        ("STABILITY_BY_DETERMINANT", lambda m: abs(np.trace(m)) / 2),
+        ("STABILITY_BY_TRACE", lambda m: abs(np.trace(m)) / 2),
+        ("STABILITY_BY_TRACE", lambda m: np.trace(m) / 2),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max()),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).real).max()),
         ("SMALLEST_EIGENVALUE", lambda m: min(abs(np.linalg.eigvals(m)))),
@@ -309,13 +314,13 @@ _SEARCH = {
     "zero": (("NO_ZERO", None),),
     "none": (("NO_INFINITY", None), ("NO_INFINITY", 0.0)),
     "above": (("LARGEST_STABLE_STEP", True),),
-    "scaled": (("START_NOT_SCALED", False),),
+    "scales": (("START_NOT_SCALED", "out"), ("START_NOT_SCALED", "in")),
     "force": (
         ("ACCELERATION_WRONG", lambda omega: omega),
         ("ACCELERATION_WRONG", lambda omega: -(omega**2)),
         ("ACCELERATION_WRONG", lambda omega: 1.0),
     ),
     "probe": (("OMEGA_SQUARED_IN_STEP", lambda z, omega: z),),
-    "dz": (("SEARCH_TOO_COARSE", 1.0), ("SEARCH_TOO_COARSE", 2.5)),
+    "dz": tuple(("SEARCH_SKIPS_A_RANGE", dz) for dz in (1.0, 2.5, 4.975, 9.95)),
     "last": (("SEARCH_ENDS_EARLY", 1.7), ("SEARCH_ENDS_EARLY", 2.5)),
 }

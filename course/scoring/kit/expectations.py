@@ -62,6 +62,10 @@ def attempt(fn: Callable[[], Any]) -> Any:
         return None
 
 
+#: What to do where a check has no advice of its own: no finding goes without.
+_ADVICE = "Take one such case, work out by hand what the README asks for, and compare number by number."
+
+
 def fail(
     message: str,
     *,
@@ -77,6 +81,7 @@ def fail(
 ) -> NoReturn:
     """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
     found, broke = _explained(diagnose)
+    help = help or _ADVICE  # noqa: A001
     bare = message, help
     code: str | None = found if isinstance(found, str) else None
     if isinstance(found, Diagnosis):

@@ -281,7 +281,11 @@ def expect_clean(submission, task, rng):
     found = kit.as_pair(inspected.value, 3, ("va_next", "vb_next"))
     truth = bundles.right(task, [args])
     diagnose = lambda: probes.of_calls(task, [args], [tuple(found)], truth)  # noqa: E731 - one look
-    finding = given | {"message": "The velocities after a blow are wrong.", "diagnose": diagnose}
+    finding = given | {
+        "message": "The velocities after a blow are wrong.",
+        "help": "Take one such blow by hand, as the README's example does, and compare number by number.",
+        "diagnose": diagnose,
+    }
     bundles.expect_velocities(found, truth[0], finding, _speeds(args))
     touched = bundles.named("MUTATES_INPUT")
     # Handing back the very arrays is right where nothing changes, and everything changes here.

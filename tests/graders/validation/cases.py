@@ -63,7 +63,11 @@ def recordings(rng, count=4, dts=(0.01, 0.02), swings=(1.0,)):
 
 def expect_verdict(submission, rng, recorded, sim, lates=0.0, **limits):
     """``validate`` reports what the samples say, and what the limits make of it."""
-    case, spec = _scrambled(rng, recorded, sim, lates=lates), SPEC | limits
+    expect_facts(submission, _scrambled(rng, recorded, sim, lates=lates), SPEC | limits)
+
+
+def expect_facts(submission, case, spec):
+    """``validate`` reports the facts of this case, and what these limits make of them."""
     bundles.expect_report(submission, case, spec, bundles.facts(case), _shown(case.sim, spec))
 
 

@@ -261,6 +261,7 @@ def test_validate_lag(submission, rng):
     lates = rng.choice([-1, 1]) * (0.05 + np.array([1, -1, 0.3]) * rng.uniform(0.02, 0.03))
     sim = twins.simulated(recordings, late=lates, sigma_factor=30.0)
     cases.expect_verdict(submission, rng, recordings, sim, lates)
+    cases.expect_facts(submission, bundles.far_and_off(rng), cases.SPEC)
 
 
 @pytest.mark.task("validate")

@@ -41,6 +41,8 @@ class LocalSubmission:
         self.seed = seed
         self.returned: tuple[str, Any] | None = None
         self.asked: set[str] = set()
+        self.marched = None
+        self.used = 0.0
         self._module = types.ModuleType("submission")
         exec(compile(source, _FILE, "exec", dont_inherit=True), self._module.__dict__)
         self._module.__dict__.update(replaced or {})
@@ -50,7 +52,7 @@ class LocalSubmission:
         """Names of what can be called."""
         return frozenset(name for name, value in vars(self._module).items() if callable(value))
 
-    def begin_check(self, task: str = "") -> None:  # noqa: ARG002 - of the interface
+    def begin_check(self, task: str = "", patience: float | None = None) -> None:  # noqa: ARG002 - of the interface
         """Forget what the last check asked for; there is no deadline."""
         self.asked = set()
 

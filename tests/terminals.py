@@ -62,6 +62,13 @@ class Terminal:
         """A mouse's report as terminals send it; columns and rows from 1."""
         self._tmux("send-keys", "-l", f"\x1b[<{kind};{column};{row}{end}")
 
+    def resize(self, columns: int, rows: int) -> None:
+        self._tmux("resize-window", "-x", str(columns), "-y", str(rows))
+
+    def coloured(self) -> str:
+        """The screen with what says how it is coloured."""
+        return self._tmux("capture-pane", "-p", "-e")
+
     def screen(self) -> str:
         return self._tmux("capture-pane", "-p")
 

@@ -67,7 +67,7 @@ class ReaderApp(TasksApp):
             case "figure":
                 return "Enter or o: open the figure   Space on   ? keys"
             case "answer":
-                return "were you 1 right   2 nearly right   3 wrong   Space on"
+                return "were you 1 right, 2 nearly, 3 wrong   Space on"
             case _:
                 return f"Enter: {self._leads(item.target)}   Tab next   Space on"
 
@@ -170,8 +170,8 @@ class ReaderApp(TasksApp):
         self.page.item = None
         self._settle()
         cells = [c for c in self.progress.script.shown_cells if question.index < c.index < question.end]
-        run = "Run the cell: r. " if cells else ""
-        self.say(f"{'Kept' if text else 'Skipped'}. {run}What comes out is open now.")
+        run = " r: run" if cells else ""
+        self.say(f"{'Kept' if text else 'Skipped'}. The answer is open.{run}")
 
     def action_skip(self) -> None:
         """Open an answer without a prediction; that is kept, too."""

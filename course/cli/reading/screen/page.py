@@ -99,7 +99,11 @@ class Book:
 
 
 class Page(Widget):
-    """Shows a screen of a book. ``top`` is its first row; the mouse and keys are the app's business."""
+    """Shows a screen of a book. ``top`` is its first row; the mouse and keys are the app's business.
+
+    Attributes:
+        paged: what would be cut at the foot is left for the next screen.
+    """
 
     DEFAULT_CSS = "Page { width: 100%; height: 100%; }"
     ALLOW_SELECT = False
@@ -111,7 +115,7 @@ class Page(Widget):
         self.top = 0
         self.item: Item | None = None
         self.words = Words()
-        self._paged = True
+        self.paged = True
 
     @property
     def room(self) -> int:
@@ -142,14 +146,14 @@ class Page(Widget):
         if self.book is None:
             return 0
         layout = self.book.layout
-        return layout.end_of(self.top) if self._paged else min(len(layout), self.top + self.room)
+        return layout.end_of(self.top) if self.paged else min(len(layout), self.top + self.room)
 
     def go(self, top: int, *, paged: bool = True) -> None:
         """Show the screen that begins with a row; ``paged`` leaves what would be cut for the next one."""
         if self.book is None:
             return
         self.top = max(0, min(top, len(self.book.layout) - 1))
-        self._paged = paged
+        self.paged = paged
         self.refresh()
 
     def place(self) -> Place | None:

@@ -42,6 +42,10 @@ _BESIDE = 2 * 58 + 3
 _MOST = 6
 Kind = Literal["link", "cell", "question", "answer", "figure", "task"]
 
+#: Rows at the head of a block, below the blank one, that stay together: the rule, the title and two
+#: lines of a task; the label of a passage and two lines.
+_LEAD = {b.Task: 6, b.Callout: 4}
+
 
 @dataclass(frozen=True, slots=True)
 class Item:
@@ -159,12 +163,14 @@ class ScreenPrinter(FancyPrinter):
         lines = [[self._segment(text, style) for text, style, _ in line] for line in drawn]
         lines = [[], *lines] if index >= 0 else lines
         whole = isinstance(block, b.CodeCell | b.Figure | b.Table | b.MathBlock | b.Diagram | b.Prediction)
+        lead = next((most for kind, most in _LEAD.items() if isinstance(block, kind)), 2)
         after_head = index > 0 and isinstance(self._script.blocks[index - 1], b.Heading)
         rows, items = [], list(self._items(index))
         for number, line in enumerate(lines):
             blank = not any(segment.text.strip() for segment in line)
-            # A heading is not left alone at the foot of a screen, nor a line of its own of a paragraph.
-            joined = (number > 0 and (whole or number == 1 or number == len(lines) - 1)) or after_head
+            # A heading is not left alone at the foot of a screen, nor a single line of a paragraph.
+            first = 0 < number <= lead or number == len(lines) - 1
+            joined = (number > 0 and (whole or first)) or after_head
             rows.append(Row(index, blank, joined and not (number == 0 and not after_head)))
             items += self._links_in(line, index, number)
         return BlockRows(tuple(tuple(line) for line in lines), tuple(rows), tuple(items))

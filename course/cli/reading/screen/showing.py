@@ -13,7 +13,7 @@ from course.catalog import blocks as b
 from course.cli.reading.screen.page import Book, Page, Words
 from course.cli.reading.screen.practice import Practice
 from course.cli.reading.screen.printing import ScreenPrinter
-from course.cli.reading.screen.telling import position, shortened, tail
+from course.cli.reading.screen.telling import fitting, position, shortened, tail
 from course.full_screen import FullScreenApp
 from course.reading.pages import Place
 from course.reading.parts import read_script
@@ -212,6 +212,8 @@ class LessonApp(FullScreenApp):
         if book is None:
             return
         place, item = self.page.place(), self.page.item
+        rows, end = len(book.layout), self.page.end()
+        below = bool(indices) and end > 0 and min(indices) > book.layout.rows[end - 1].block
         book.forget(*indices)
         book.build(self.page.room)
         self.page.item = None
@@ -225,8 +227,9 @@ class LessonApp(FullScreenApp):
                 None,
             )
         if place is not None:
-            # Not cut into screens anew: what was in sight stays, whatever grew.
-            self.page.go(book.layout.row(place), paged=False)
+            # Not cut into screens anew where something in sight grew. A figure that is drawn does not grow.
+            paged = self.page.paged and (below or len(book.layout) == rows)
+            self.page.go(book.layout.row(place), paged=paged)
         self._settle(choose=self.page.item is None)
 
     def keep_place(self) -> None:
@@ -294,7 +297,8 @@ class LessonApp(FullScreenApp):
         head = f"{title.partition(':')[0]} · {section.title}" if section else title
         share = page.end() / max(1, len(layout))
         self._told = self.message
-        keys = shortened(self._told or self._keys(), self._width - 2)
+        room = self._width - 2
+        keys = shortened(self._told, room) if self._told else fitting(self._keys(), room)
         where = position(script, layout, page.top, page.end()) if book.whole else ""
         page.words = Words(shortened(head, self._width - 2), keys, where, share)
         page.refresh()

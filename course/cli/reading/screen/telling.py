@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from course.reading.parts import Script
     from course.reading.record import InProgress
 
-__all__ = ["contents", "keys_table", "position", "shortened", "tail"]
+__all__ = ["contents", "fitting", "keys_table", "position", "shortened", "tail"]
 
 _SHORT_OF = "…"
+_BETWEEN, _ALL_KEYS = "   ", "? keys"
 
 _HELP = (
     ("Space, PgDn", "next screen; at the end of the lesson: what is next"),
@@ -122,6 +123,22 @@ def tail(printer: ScreenPrinter, catalog: Catalog, progress: InProgress, practic
     if left:
         shown.append(Text(f"{left} warm-up{'s are' if left != 1 else ' is'} left: t shows where."))
     return printer.tail_rows(Group(*shown, Text("")), words, len(script.blocks))
+
+
+def fitting(keys: str, width: int) -> str:
+    """The keys that fit: of a line that is too long, the first ones, and how to see all.
+
+    Args:
+        keys: each with what it does, three blanks between them.
+    """
+    parts = keys.split(_BETWEEN)
+    if len(keys) <= width or len(parts) == 1:
+        return shortened(keys, width)
+    kept = [part for part in parts if part != _ALL_KEYS]
+    while len(kept) > 1 and len(_BETWEEN.join((*kept, _ALL_KEYS))) > width:
+        kept.pop()
+    whole = _BETWEEN.join((*kept, _ALL_KEYS))
+    return whole if len(whole) <= width else shortened(kept[0], width)
 
 
 def shortened(text: str, width: int) -> str:

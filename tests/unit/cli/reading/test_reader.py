@@ -13,6 +13,7 @@ from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.cli.frame.half_blocks import half_blocks
 from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.telling import fitting
 from course.progress.store import Store
 from course.reading.record import Writer
 
@@ -386,3 +387,27 @@ def test_it_opens_at_a_section_whatever_place_was_kept(catalog: Catalog, tmp_pat
     reading(catalog, look, store=store, section="no-such-section")
     assert "· Swap two lines" in seen[0].splitlines()[0]
     assert seen[1] == seen[0]  # the last place
+
+
+def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(catalog: Catalog) -> None:
+    async def look(app: ReaderApp, pilot: Any) -> None:
+        page, book = app.page, app.page.book
+        assert book is not None
+        cut = page.end()
+        assert cut < page.top + page.room
+        figures = [n for n, block in enumerate(app.progress.script.blocks) if isinstance(block, b.Figure)]
+        app._rebuild(figures[-1])
+        await pilot.pause()
+        assert page.end() == cut
+
+    reading(catalog, look, size=(40, 20), section="swap-two-lines")
+
+
+def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:
+    keys = "r run   e change   u undo   c copy   w write   Space on   ? keys"
+    assert fitting(keys, 100) == keys
+    assert fitting(keys, 38) == "r run   e change   u undo   ? keys"
+    assert (
+        fitting("were you 1 right, 2 nearly, 3 wrong   Space on", 38) == "were you 1 right, 2 nearly, 3 wrong"
+    )
+    assert fitting("the cell runs   Ctrl-C stop it", 12) == "the cell ru…"

@@ -46,6 +46,7 @@ class PlainPrinter:
         self._figure_ids = figure_ids
         self._figures_dir = figures_dir
         self.pictures: list[Path] = []
+        self._told_how = False  # to save them: said once
 
     def head(self) -> None:
         """Title, summary, objectives."""
@@ -147,7 +148,9 @@ class PlainPrinter:
         self._prose(f"Figure {number}: {self._words(figure.caption)}")
         self._prose(f"What is to be seen: {figure.alt}")
         if self._figures_dir is None:
-            self._say(f"To save the picture: course lesson {self._lesson.id} --figures DIR")
+            if not self._told_how:
+                self._say(f"To save the pictures: course lesson {self._lesson.id} --figures DIR")
+            self._told_how = True
             return
 
         path = save(figure.id, self._figures_dir)

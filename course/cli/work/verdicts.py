@@ -174,7 +174,9 @@ class _Page:
         if check.blocked_by:
             self._text(f"Runs once {check.blocked_by} passes.")
             return
-        self._text(check.message)
+        if check.message not in self._said:
+            self._text(check.message)
+        self._said.add(check.message)
         self._details(check)
 
     def close(self) -> None:

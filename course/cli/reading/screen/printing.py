@@ -162,7 +162,8 @@ class ScreenPrinter(FancyPrinter):
         drawn = self._console.render_lines(shown, options, pad=False)
         lines = [[self._segment(text, style) for text, style, _ in line] for line in drawn]
         lines = [[], *lines] if index >= 0 else lines
-        whole = isinstance(block, b.CodeCell | b.Figure | b.Table | b.MathBlock | b.Diagram | b.Prediction)
+        kinds = b.CodeCell | b.Figure | b.Table | b.MathBlock | b.Diagram | b.Prediction | b.Heading
+        whole = isinstance(block, kinds)
         lead = next((most for kind, most in _LEAD.items() if isinstance(block, kind)), 2)
         after_head = index > 0 and isinstance(self._script.blocks[index - 1], b.Heading)
         rows, items = [], list(self._items(index))

@@ -41,6 +41,7 @@ _SETTLED = 1.0
 #: How often the last line and what runs are looked at anew, in s.
 _TICK = 0.25
 _WHEEL = 3
+_SAID = 2  # rows of what stands below a lesson: a rule, and that it was read
 #: The rest of a lesson is laid out this long after its first screen, in s.
 _REST = 0.02
 
@@ -265,12 +266,17 @@ class LessonApp(FullScreenApp):
         if choose and (self.page.item is None or self.page.item not in items):
             self.page.item = next((item for item in items if self._is_offered(item)), None)
         book = self.page.book
-        if book is not None and book.whole and self.page.end() >= len(book.layout):
+        if book is not None and book.whole and self.page.end() >= self._last_word(book):
             self.progress.reached_end()
         self._say_round()
         if self._place_timer is not None:
             self._place_timer.stop()
         self._place_timer = self.set_timer(_SETTLED, self.keep_place)
+
+    def _last_word(self, book: Book) -> int:
+        """The row below the line that says that the lesson was read, which stands below its last block."""
+        tail = book.layout.span(len(self.progress.script.blocks))
+        return len(book.layout) if tail is None else min(len(book.layout), tail[0] + _SAID)
 
     def _is_offered(self, item: Item) -> bool:
         """Whether keys act on it unasked."""

@@ -69,11 +69,12 @@ def lesson(
         bool, typer.Option("--no-browser", help="Open no page and no picture; say where each is.")
     ] = False,
 ) -> int:
-    """Read a lesson, or a section of one: course lesson numerical-integration#swap-two-lines.
+    """Read a lesson.
 
     On a terminal it fills the screen: predict, run its cells, search; ? there lists the keys. With --plain,
     in a pipe or with --page it is printed. Without an id: the next lesson you have not read. Inside a
-    workspace your place and predictions are kept, and a lesson is read once its end was reached.
+    workspace your place and predictions are kept, and a lesson is read once its end was reached. ID#SECTION
+    opens it at a section, or prints that section.
     """
 
     console = current()

@@ -11,7 +11,6 @@ import os
 import socket
 import sys
 import threading
-import webbrowser
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
@@ -52,6 +51,8 @@ def opened(address: str) -> bool:
     """Show an address in a window, and say whether that was tried; False where there is no display."""
     if not can_open():
         return False
+    import webbrowser  # a lesson opens without it, and it finds out what browsers there are
+
     with contextlib.suppress(webbrowser.Error, OSError):
         browser = webbrowser.get()
         if getattr(browser, "basename", "") not in _IN_TERMINAL:

@@ -6,7 +6,7 @@ import json
 import shutil
 from pathlib import Path
 
-MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+MINI_COURSE = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
 
 def test_hints_come_one_per_attempt_and_are_never_counted(course, write):

@@ -14,7 +14,7 @@ import msgspec
 from course.ids import WARM_UPS, ExerciseId, LessonId
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
 __all__ = [
     "FORMAT_VERSION",
@@ -173,10 +173,15 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TaskHints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The hints of one task, mildest first."""
+    """The hints of one task, mildest first.
+
+    Attributes:
+        fits: by number of a hint, counted from 1, the diagnoses after which it is the one to give.
+    """
 
     id: str
     hints: tuple[str, ...]
+    fits: dict[str, tuple[str, ...]] = {}
 
 
 class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -187,6 +192,13 @@ class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def of(self, task_id: str) -> Sequence[str]:
         return next((task.hints for task in self.task if task.id == task_id), ())
+
+    def after(self, task_id: str, diagnoses: Collection[str], given: Collection[int]) -> int | None:
+        """The next hint, from 0: one that fits a diagnosis, else the mildest; None if all are given."""
+        task = next((task for task in self.task if task.id == task_id), TaskHints(task_id, ()))
+        left = [index for index in range(len(task.hints)) if index not in given]
+        fitting = [int(number) - 1 for number, codes in task.fits.items() if set(codes) & set(diagnoses)]
+        return next((index for index in fitting if index in left), left[0] if left else None)
 
 
 class Rubric(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

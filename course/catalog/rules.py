@@ -194,6 +194,13 @@ def check_hints(document: Document[Hints], exercise: Exercise) -> None:
         seen.add(entry.id)
         for number, hint in enumerate(entry.hints):
             _check_words(document, ("task", index, "hints", number), hint)
+        for fitting in entry.fits:
+            if fitting not in map(str, range(1, len(entry.hints) + 1)):
+                document.fail(
+                    ("task", index, "fits"),
+                    f"task {entry.id} has no hint number {fitting}.",
+                    fix=f"Its hints are 1 to {len(entry.hints)}.",
+                )
 
 
 def check_rubric(document: Document[Rubric]) -> None:

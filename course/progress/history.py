@@ -68,6 +68,7 @@ class CheckRun:
         seconds: how long it took.
         fingerprint: of the file that was checked.
         statuses: status by check id, in the order the checks ran.
+        diagnoses: diagnosis by check id, of those that have one.
         tasks: task by check id.
     """
 
@@ -82,6 +83,7 @@ class CheckRun:
     seconds: float
     fingerprint: str
     statuses: Mapping[str, str]
+    diagnoses: Mapping[str, str]
     tasks: Mapping[str, str]
 
     @property
@@ -147,9 +149,19 @@ class History:
                 tasks.update(run.tasks)
         return frozenset(tasks.get(check, "") for check, status in statuses.items() if status != _PASS)
 
-    def hints_for(self, task: str) -> int:
-        """How many hints of a task were shown."""
-        return 1 + max((hint.index for hint in self.hints if hint.task == task), default=-1)
+    def hints_for(self, task: str) -> tuple[int, ...]:
+        """Which hints of a task were shown, in that order."""
+        return tuple(dict.fromkeys(hint.index for hint in self.hints if hint.task == task))
+
+    def diagnosed(self, task: str) -> frozenset[str]:
+        """What the newest run that had a check of this task thinks is wrong with it."""
+        runs = (run for run in reversed(self.runs) if task in run.tasks.values())
+        run = next(runs, None)
+        return (
+            frozenset(code for check, code in run.diagnoses.items() if run.tasks.get(check) == task)
+            if run
+            else frozenset()
+        )
 
     def hint_is_due(self, stub: str) -> bool:
         """True if a check failed on a file that changed since the last hint (since the stub, for the first).
@@ -264,5 +276,10 @@ def _run(event: Event) -> CheckRun:
         seconds=_number(data.get("seconds")),
         fingerprint=str(data.get("fingerprint", "")),
         statuses={str(check.get("id")): str(check.get("status")) for check in checks},
+        diagnoses={
+            str(check["id"]): str(check["diagnosis"])
+            for check in checks
+            if check.get("diagnosis") and "id" in check
+        },
         tasks={str(check.get("id")): str(check.get("task")) for check in checks},
     )

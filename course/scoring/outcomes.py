@@ -119,10 +119,10 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         # A MemoryError, which is what deep nesting ends in, says nothing.
         reason = failure.message or "it is nested more deeply than Python can read"
         message = f"{where} is no Python source: {reason}."
-        return (
-            message,
-            "Was something else saved under its name? `course reset` puts the stub back, and keeps it.",
-        )
+        # Python says the same of a letter beyond ASCII in another encoding and of what is no text at all.
+        letters = "Save it as UTF-8, or declare its encoding in the first line. "
+        other = "Was something else saved under its name? `course reset` puts the stub back, and keeps it."
+        return message, letters + other if "encoding" in reason else other
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
     message = f"{where}: Python cannot read this file: {failure.message}{shown}."
     return message, "Run `python -m py_compile` on it, or look at that line and the one above it."

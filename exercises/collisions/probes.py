@@ -253,9 +253,14 @@ def _of_speeds(scene, v):
     kept = abs(float(np.dot(scene.m, v[-1] - scene.v0))) < 1e-8 * float(np.dot(scene.m, np.abs(scene.v0)))
     if kept:
         parting = (v[-1, 1] - v[-1, 0]) / (scene.v0[0] - scene.v0[1])
-        for code, becomes in _PARTINGS:
-            if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9):
-                return code
+        same = (
+            c
+            for c, becomes in _PARTINGS
+            if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9)
+        )
+        codes = set(same)
+        if len(codes) == 1:  # where e is 0 or 1, several look alike
+            return codes.pop()
     if energy(*scene.m, *v[-1]) > energy(*scene.m, *scene.v0) * (1 + 1e-9):
         return "ENERGY_CREATED"
     return None if kept else "MOMENTUM_LOST"

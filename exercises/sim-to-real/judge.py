@@ -204,7 +204,7 @@ def expect_intervals(estimates, carts):
                 source="the README's; correct solutions use a third of it",
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
-                message="An interval is too wide to say anything.",
+                message="An interval is wider than what is of use.",
                 diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
                 input={"parameter": name, "value": value},
             )

@@ -267,10 +267,6 @@ def of_gains(submission, estimate, box, gains, success):
     kp, kd = gains
     if success(kd, kp) > 1.2 * success(kp, kd):
         return named("GAINS_SWAPPED")
-    if _is_ratio(kp, kd, estimate, box, success):
-        return named("KD_IS_RATIO")
-    if kd < 0.05 * kp:
-        return named("NO_DAMPING")
     heavy, light = (_with(estimate, ("m", "b"), factor) for factor in (2.5, 0.4))
     late = _with(estimate, ("latency", "lag"), 2.2)
     loaded = {k: [_LOAD.get(k, 1.0) * end for end in ends] for k, ends in box.items()}
@@ -295,6 +291,11 @@ def of_gains(submission, estimate, box, gains, success):
         )
 
     looks = (
+        (
+            "KD_IS_RATIO",
+            lambda: _are_ratios([gains, *other]) and _would_do(kp, kp * kd, gains, estimate, box, success),
+        ),
+        ("NO_DAMPING", lambda: kd < 0.05 * kp),
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
         ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
         ("ESTIMATE_IGNORED", lambda: all(same[:3]) and not same[3]),
@@ -316,13 +317,14 @@ def _never_changes(submission, estimate, box, gains):
     return far is not None and all(pair == gains for pair in far)
 
 
-def _is_ratio(kp, kd, estimate, box, success):
-    """Whether kp times kd in the place of kd would be right, and kd is of the size of such a ratio."""
-    return (
-        0.2 < kd < 1.0 < kp
-        and success(kp, kp * kd) > 1.2 * success(kp, kd)
-        and _is_best(kp, kp * kd, estimate, box)
-    )
+def _are_ratios(pairs):
+    """Whether every kd is of the size of a good ratio kd/kp, whatever was asked."""
+    return all(0.2 < kd < 1.0 < kp for kp, kd in pairs)
+
+
+def _would_do(kp, kd, gains, estimate, box, success):
+    """Whether these gains are right and do far better than those that came."""
+    return success(kp, kd) > 1.2 * success(*gains) and _is_best(kp, kd, estimate, box)
 
 
 #: How a box is shifted to see whether it is read: a load, and everything later.

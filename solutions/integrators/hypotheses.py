@@ -321,6 +321,6 @@ _SEARCH = {
         ("ACCELERATION_WRONG", lambda omega: 1.0),
     ),
     "probe": (("OMEGA_SQUARED_IN_STEP", lambda z, omega: z),),
-    "dz": tuple(("SEARCH_SKIPS_A_RANGE", dz) for dz in (1.0, 2.5, 4.975, 9.95)),
+    "dz": tuple(("LARGEST_STABLE_STEP", dz) for dz in (1.0, 2.5, 4.975, 9.95)),
     "last": (("SEARCH_ENDS_EARLY", 1.7), ("SEARCH_ENDS_EARLY", 2.5)),
 }

@@ -1,10 +1,13 @@
 """What protection costs: the same graders over the same submissions, in workers and in one bare process.
 
-    python tests/benchmarks/protection.py [EXERCISE...] [--rounds N]
+    python tests/benchmarks/protection.py [EXERCISE...] [--rounds N] [--diagnosis]
 
 Both sides run in this process, in turn, submission by submission, so that a noisy machine disturbs both
 alike. The CPU of the protected side includes the zygote and every worker. The third side is what a simple
 autograder does: one `pytest` process per submission.
+
+With --diagnosis the two sides are a protected grading with diagnoses and one without: the median over the
+mutants of an exercise, each handed in again and again as one common mistake would be.
 """
 
 from __future__ import annotations
@@ -32,6 +35,7 @@ from course.authoring.exercises.variants import (  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
+from course.scoring.kit import expectations  # noqa: E402
 from course.scoring.session import GradingSession, Submission, kept_on  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")
@@ -124,6 +128,36 @@ def protection(exercise_id: str, rounds: int) -> None:
         per_pytest(guarded, exercise.module, work["solution"], "one_pytest.py")
     guarded.close()
     bare.close()
+
+
+def diagnosis(exercise_id: str, rounds: int) -> None:
+    """What naming the mistake costs: each mutant ``rounds`` times with diagnoses and without, in turn."""
+    catalog = Catalog()
+    exercise = catalog.exercise(exercise_id)
+    model = solution_path(catalog, exercise)
+    explained = expectations._explained
+    ratios = {}
+    with GradingSession(exercise, catalog, scope="full", processor=0) as session:
+        explainer = session._explainer
+        for path in mutant_files(catalog, exercise):
+            handed_in, cpu = Submission({exercise.module: compose(model, path)}), [0.0, 0.0]
+            for number in range(2 * rounds + 2):
+                silent = number % 2
+                session._explainer = None if silent else explainer
+                expectations._explained = (lambda _: (None, "")) if silent else explained
+                start = time.process_time() + descendants_cpu(os.getpid())
+                session.grade(handed_in)
+                # The first of each side is not counted: what all students of a run share is made in it.
+                if number > 1:
+                    cpu[silent] += time.process_time() + descendants_cpu(os.getpid()) - start
+            ratios[path.stem] = cpu[0] / cpu[1]
+    expectations._explained = explained
+    worst = sorted(ratios, key=ratios.__getitem__)[-5:]
+    print(
+        f"{exercise_id}: {len(ratios)} mistakes, {rounds} gradings each; with diagnosis over without: median"
+        f" {statistics.median(ratios.values()):.3f} (target 1.1), most "
+        + ", ".join(f"{name} {ratios[name]:.2f}" for name in reversed(worst))
+    )
 
 
 def counted() -> dict[str, int]:
@@ -234,8 +268,9 @@ if __name__ == "__main__":
     )
     parser.add_argument("exercise", nargs="*", default=["integrators"])
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--diagnosis", action="store_true")
     options = parser.parse_args()
     for chosen in options.exercise:
-        protection(chosen, options.rounds)
-    if "integrators" in options.exercise:
+        (diagnosis if options.diagnosis else protection)(chosen, options.rounds)
+    if "integrators" in options.exercise and not options.diagnosis:
         trivial()

@@ -2,6 +2,7 @@
 
 import ast
 import importlib.util
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
 
 FOLDER = Path(__file__).resolve().parents[1] / "benchmarks" / "mended"
-MISTAKES = sorted(FOLDER.glob("mistakes/*/*.py"))
+MISTAKES = sorted([*FOLDER.glob("mistakes/*/*.py"), *FOLDER.glob("afresh/*/*.py")])
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,19 @@ def test_a_wrong_module_holds_neither_the_right_definition_nor_the_comment(mende
         assert path.read_text().splitlines()[0] not in text, path
 
 
-def test_there_are_at_least_eleven_mistakes_for_each_exercise():
-    counts = [len(list(folder.glob("*.py"))) for folder in (FOLDER / "mistakes").iterdir() if folder.is_dir()]
+@pytest.mark.parametrize(("name", "least"), [("mistakes", 11), ("afresh", 12)])
+def test_there_are_enough_mistakes_for_each_exercise(name, least):
+    counts = [len(list(folder.glob("*.py"))) for folder in (FOLDER / name).iterdir() if folder.is_dir()]
     assert len(counts) == 6
-    assert min(counts) >= 11
+    assert min(counts) >= least
+
+
+def test_what_misled_once_is_there_and_its_answer_is_kept(mended):
+    rows = tomllib.loads(mended.ROWS.read_text(encoding="utf-8"))["row"]
+    kept = mended.ROWS.with_name("told.md").read_text(encoding="utf-8")
+    assert len(rows) >= 20
+    for row in rows:
+        assert f"## {row['did']}" in kept
+        for program in row["programs"]:
+            assert (mended.ROOT / program.split(": ")[1]).is_file(), program
+            assert f"`{program.rpartition('/')[2].removesuffix('.py')}`" in kept

@@ -19,6 +19,8 @@ from course.catalog.models import Exercise
 from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
 from course.reading.parts import read_script
+from course.scoring.explain.words import FILE as WORDS
+from course.scoring.explain.words import read_words
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -162,6 +164,19 @@ def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> No
                 "hints",
                 f"task {task.id} has {len(hints)} hints, and needs {least}.",
                 "Add hints, mildest first.",
+            )
+    words = exercise.readme_path.with_name(WORDS)
+    if not words.is_file():
+        return
+    known = read_words(words).entries.keys()
+    for index, entry in enumerate(document.value.task):
+        for code in sorted({code for codes in entry.fits.values() for code in codes} - known):
+            findings.add(
+                exercise.hints_path,
+                document.lines.line(("task", index, "fits")),
+                "hints",
+                f"{WORDS} has no diagnosis {code}.",
+                "A hint can only follow a diagnosis that there is.",
             )
 
 

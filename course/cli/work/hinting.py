@@ -1,7 +1,8 @@
 """``course hint`` and ``course solution``: help, as much as has been worked for.
 
 Hints come one at a time, and each needs an attempt since the last one: a check that failed on code that had
-changed. How many are left is never shown, because people who can count them down click through them.
+changed. The next one fits what that check thinks is wrong, or else it is the mildest. How many are left is
+never shown, because people who can count them down click through them.
 """
 
 from __future__ import annotations
@@ -100,20 +101,21 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         done = after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
         step = again if wanted else done
         return _no_hint(exercise, "passing", f"{which}: there is nothing to hint at.", step)
-    hints = here.catalog.hints(exercise).of(task)
-    shown = history.hints_for(task)
+    known = here.catalog.hints(exercise)
+    hints, shown = known.of(task), history.hints_for(task)
     if not history.hint_is_due(fingerprint(here.stub(exercise))):
-        shown_last = hints[min(shown, len(hints)) - 1] if shown and hints else None
+        shown_last = next((hints[index] for index in reversed(shown) if index < len(hints)), None)
         return _not_due(exercise, task, shown_last, named or _file_name(here, exercise))
-    if shown >= len(hints):
+    following = known.after(task, history.diagnosed(task), shown)
+    if following is None:
         message = (
             f"Every hint for this function has been given; you have worked for all of them. "
             f"Read the lesson again with this function beside it: course lesson {exercise.lesson}. "
             "A solution can be shown after a pass, where one was released."
         )
         return _no_hint(exercise, "exhausted", message, f"course lesson {exercise.lesson}", task)
-    here.record("hint", exercise.id, {"task": task, "index": shown, "fingerprint": last.fingerprint})
-    return _hint(exercise, given=True, task=task, hint=hints[shown], step=again)
+    here.record("hint", exercise.id, {"task": task, "index": following, "fingerprint": last.fingerprint})
+    return _hint(exercise, given=True, task=task, hint=hints[following], step=again)
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:

@@ -2,11 +2,14 @@
 
     python tests/benchmarks/mended/mended.py ask DIR     a folder for each: README, wrong module, finding
     python tests/benchmarks/mended/mended.py score DIR   what became of them after one edit each
+    python tests/benchmarks/mended/mended.py tell        what each of ``afresh`` is told, as Markdown
+    python tests/benchmarks/mended/mended.py rows        what each program of misleading/rows.toml is told
 
 ``mistakes/EXERCISE/NAME.py`` holds the definitions that differ from the model solution. They were written
 from READMEs, stubs and solutions, not from checks; ``told.md`` says of which functions hypotheses had been
-seen, and what each mistake is told. A folder of ``ask`` says nothing of the mistake but what
-the course says; ``DIR/manifest.json``, which whoever mends must not see, says which mistake it is.
+seen, and what each mistake is told. Those in ``afresh`` were written later, from READMEs and stubs. A folder
+of ``ask`` says nothing of the mistake but what the course says; ``DIR/manifest.json``, which whoever mends
+must not see, says which mistake it is.
 """
 
 from __future__ import annotations
@@ -18,11 +21,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 ROOT = Path(__file__).resolve().parents[3]
 MISTAKES = Path(__file__).with_name("mistakes")
+AFRESH = Path(__file__).with_name("afresh")
+ROWS = Path(__file__).with_name("misleading") / "rows.toml"
+#: A file that is no UTF-8 says so before any check: it has a row of its own.
+LATIN = "# \N{LATIN SMALL LETTER E WITH ACUTE}\n"
 sys.path.insert(0, str(ROOT))
 
 from course.authoring.exercises.variants import compose, solution_path  # noqa: E402
@@ -163,13 +171,62 @@ def score(folder: Path) -> None:
     print("\nNot mended:", ", ".join(n for n, kind in fates.items() if kind != "mended") or "none")
 
 
+def told(verdict: Verdict) -> list[str]:
+    """Each thing that is said of what failed, once: at home, or by hidden checks if nothing fails at home."""
+    if verdict.error:
+        return [f"{verdict.error.message} {verdict.error.help}"]
+    failed = [check for check in checks_for_student(verdict) if check.status not in {"pass", "skip"}]
+    seen = [check for check in failed if check.visibility == "public"] or failed
+    return list(dict.fromkeys(f"{check.message} {check.help}" for check in seen))
+
+
+def tell() -> None:
+    """Print what each mistake of ``afresh`` is told."""
+    catalog, sources = Catalog(), {}
+    for path in sorted(AFRESH.glob("*/*.py")):
+        exercise = catalog.exercise(path.parent.name)
+        sources[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
+    for name, verdict in sorted(graded(sources).items()):
+        print(f"**{name}**\n")
+        print("".join(f"- {line}\n" for line in told(verdict) or ["loses no point"]))
+
+
+def rows() -> None:
+    """Print what the programs of every row are told now, verbatim."""
+    catalog, table = Catalog(), tomllib.loads(ROWS.read_text(encoding="utf-8"))["row"]
+    sources = {}
+    for program in {program for row in table for program in row["programs"]}:
+        exercise_id, path = program.split(": ")
+        exercise = catalog.exercise(exercise_id)
+        source = compose(solution_path(catalog, exercise), ROOT / path)
+        sources[program] = (exercise_id, source.decode())
+    verdicts = graded(sources)
+    first = next(iter(catalog.exercises()))
+    source = LATIN.encode("latin-1") + solution_path(catalog, first).read_bytes()
+    latin = next(iter(grade_all([Entry("x", first, Submission({first.module: source}))], Terms(), graders=1)))
+    print(
+        "# What once misled\n\nWhat was done, what version 1.2.0 said of it, and what is said now, verbatim."
+    )
+    print("Written by `tests/benchmarks/mended/mended.py rows`.\n")
+    print("## a latin-1 byte in a comment\n\nWas told: Was something else saved under its name?\n")
+    print("".join(f"- {line}\n" for line in told(latin.verdict)))
+    for row in table:
+        print(f"## {row['did']}\n\nWas told: {row['was']}\n")
+        for program in row["programs"]:
+            print(f"`{Path(program).stem}`\n")
+            print("".join(f"- {line}\n" for line in told(verdicts[program]) or ["loses no point"]))
+
+
 def main() -> None:
-    """Ask, or score."""
+    """Ask, score, or tell."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("verb", choices=("ask", "score"))
-    parser.add_argument("folder", type=Path, metavar="DIR")
+    verbs = {"ask": ask, "score": score, "tell": tell, "rows": rows}
+    parser.add_argument("verb", choices=tuple(verbs))
+    parser.add_argument("folder", type=Path, metavar="DIR", nargs="?")
     given = parser.parse_args()
-    {"ask": ask, "score": score}[given.verb](given.folder)
+    if (given.folder is None) != (given.verb in {"tell", "rows"}):
+        parser.error("ask and score take a folder, tell and rows do not")
+    verbs[given.verb](*[given.folder] * (given.folder is not None))
 
 
 if __name__ == "__main__":

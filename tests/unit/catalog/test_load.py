@@ -155,7 +155,7 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (EXERCISE, "order = 1", "order = ", 6, "not valid TOML", "quotes"),
         (EXERCISE, "order = 1", "order = 1\norder = 2", 7, "not valid TOML", "quotes"),
         (HINTS, 'id = "double"', 'id = "dubble"', 4, "has no task 'dubble'", "double, doublings"),
-        (HINTS, 'id = "doublings"', 'id = "double"', 12, "hints twice", "one list"),
+        (HINTS, 'id = "doublings"', 'id = "double"', 15, "hints twice", "one list"),
         (HINTS, '"Return x + x."', '""', 8, "`hints` is empty", "Fill it in."),
         (HINTS, '"Return x + x."', "3", 8, "`task[1].hints[3]` must be text in quotes", "Write text"),
         (MUTANTS, '"squares.py"', '"../squares.py"', 4, "no plain Python file name", "wrong_sign.py"),

@@ -152,6 +152,13 @@ def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSes
         assert "course reset" in error.help
 
 
+def test_a_file_in_another_encoding_is_told_to_be_saved_as_utf_8(session: GradingSession) -> None:
+    for source in (b"# \xe9\nx = 1\n", b"x = 1\n\ny = 2  # \xe9\n"):
+        error = grade(session, source).error
+        assert error is not None
+        assert error.help.startswith("Save it as UTF-8")
+
+
 def test_a_file_that_exhausts_the_parser_is_told_why(session: GradingSession) -> None:
     error = grade(session, b"x = " + b"-" * 400_000 + b"1\n").error
     assert error is not None

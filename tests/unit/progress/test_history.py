@@ -48,7 +48,7 @@ def test_the_first_hint_follows_a_failed_check_of_changed_code():
 def test_no_second_hint_for_the_same_code():
     history = _history(_check(FIRST), _hint(FIRST), _check(FIRST))
     assert not history.hint_is_due(STUB)
-    assert history.hints_for("double") == 1
+    assert history.hints_for("double") == (0,)
 
 
 def test_the_next_hint_follows_a_failed_check_of_code_changed_since():

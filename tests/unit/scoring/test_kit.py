@@ -178,6 +178,14 @@ def test_equality_asks_for_the_same_type_and_truth_for_true_itself():
     finding_of(kit.expect_true, 1, "It is wrong.")
 
 
+def test_no_finding_is_without_advice_whatever_becomes_of_its_diagnosis():
+    for diagnose in (None, "A_CODE", Diagnosis("A_CODE", "It is so.", "")):
+        with pytest.raises(CheckFailed) as caught:
+            kit.fail("It is wrong.", diagnose=diagnose)
+        assert caught.value.finding.help
+        assert caught.value.bare[1]
+
+
 def test_evaluations_outside_the_allowed_numbers_fail():
     kit.expect_evaluations(2, (1, 2), **WORDS)
     assert finding_of(kit.expect_evaluations, 3, (1, 2), **WORDS).expected == [1, 2]

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
+from pathlib import Path
+
+MINI_COURSE = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
 
 def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
@@ -23,6 +27,22 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
         words = json.dumps(reply)
         assert "left" not in words
         assert " of 3" not in words
+
+
+def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, tmp_path):
+    content = tmp_path / "content"
+    shutil.copytree(MINI_COURSE, content)
+    hints = content / "exercises" / "doubling" / "hints.toml"
+    hints.write_text(hints.read_text().replace("SQUARES_INSTEAD", "NOT_RIGHT"))
+    monkeypatch.setenv("COURSE_CONTENT", str(content))
+    write("wrong", "RIGHT")
+    course("check")
+    assert course("hint", "--json").json["hint"] == "Try your function on a negative number too."
+    # The same mistake again: what fits has been said, so the mildest that is left comes next.
+    write("wrong again", "RIGHT")
+    course("check")
+    assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
+    assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
 
 
 def test_an_untouched_stub_earns_no_hint(course, workspace):

@@ -120,7 +120,7 @@ class Overlay(ModalScreen[Answer | None]):
     DEFAULT_CSS = """
     Overlay { align: center middle; background: black 40%; }
     Overlay > .box {
-        width: 96%; max-width: 84; height: auto; max-height: 96%;
+        width: 100%; max-width: 84; height: auto; max-height: 96%;
         border: round $primary; padding: 0 1; background: $surface; scrollbar-size-vertical: 1;
     }
     Overlay OptionList { height: auto; max-height: 80vh; border: none; background: $surface; padding: 0; }

@@ -124,6 +124,11 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return f"{WARM_UPS}/{self.id}" if self.is_warm_up else self.id
 
     @property
+    def comes_with_faults(self) -> bool:
+        """Whether it hands out a program to mend, not functions to write."""
+        return self.is_warm_up and "NotImplementedError" not in self.stub_path.read_text(encoding="utf-8")
+
+    @property
     def given(self) -> tuple[Path, ...]:
         """The files that a student gets: the README, what else it speaks of, the stub."""
         found = (Path(self.folder) / name for name in ("README.md", "boxes.py"))

@@ -50,7 +50,8 @@ if TYPE_CHECKING:
 
 __all__ = ["CheckRun", "History", "check_data", "fingerprint", "history_of"]
 
-_PASS = "pass"
+_PASS, _SKIP = "pass", "skip"
+_UNWRITTEN = "NOT_IMPLEMENTED"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +71,7 @@ class CheckRun:
         statuses: status by check id, in the order the checks ran.
         diagnoses: diagnosis by check id, of those that have one.
         tasks: task by check id.
+        unwritten: checks that found a function as it was handed out.
     """
 
     id: int
@@ -85,6 +87,7 @@ class CheckRun:
     statuses: Mapping[str, str]
     diagnoses: Mapping[str, str]
     tasks: Mapping[str, str]
+    unwritten: frozenset[str]
 
     @property
     def failed(self) -> bool:
@@ -139,15 +142,23 @@ class History:
 
         The newest run of all checks counts, corrected by checks that were run alone after it.
         """
-        statuses: dict[str, str] = {}
-        tasks: dict[str, str] = {}
+        return frozenset(task for task, status, _ in self._known() if status != _PASS)
+
+    def unwritten_tasks(self) -> frozenset[str]:
+        """Failing tasks whose function is as it was handed out, or was never reached by a check."""
+        begun = {task for task, status, new in self._known() if status not in {_PASS, _SKIP} and not new}
+        return self.failing_tasks() - begun
+
+    def _known(self) -> list[tuple[str, str, bool]]:
+        """Of every check last run: task, status, and whether it found the function not written yet."""
+        found: dict[str, tuple[str, str, bool]] = {}
         for run in self.runs:
             if run.state == "graded":
                 if not run.only:
-                    statuses.clear()
-                statuses.update(run.statuses)
-                tasks.update(run.tasks)
-        return frozenset(tasks.get(check, "") for check, status in statuses.items() if status != _PASS)
+                    found.clear()
+                for check, status in run.statuses.items():
+                    found[check] = (run.tasks.get(check, ""), status, check in run.unwritten)
+        return list(found.values())
 
     def hints_for(self, task: str) -> tuple[int, ...]:
         """Which hints of a task were shown, in that order."""
@@ -166,10 +177,14 @@ class History:
     def hint_is_due(self, stub: str) -> bool:
         """True if a check failed on a file that changed since the last hint (since the stub, for the first).
 
+        A function that is not begun fails, too, and is no attempt.
+
         Args:
             stub: fingerprint of the file as it was handed out.
         """
         hint = self.hints[-1] if self.hints else None
+        if self.failing_tasks() == self.unwritten_tasks():
+            return False
         before = hint.fingerprint if hint else stub
         since = hint.id if hint else 0
         return any(run.id > since and run.failed and run.fingerprint != before for run in self.runs)
@@ -282,4 +297,5 @@ def _run(event: Event) -> CheckRun:
             if check.get("diagnosis") and "id" in check
         },
         tasks={str(check.get("id")): str(check.get("task")) for check in checks},
+        unwritten=frozenset(str(check.get("id")) for check in checks if check.get("diagnosis") == _UNWRITTEN),
     )

@@ -125,6 +125,10 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         return message, letters + other if "encoding" in reason else other
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
     message = f"{where}: Python cannot read this file: {failure.message}{shown}."
+    if (
+        "triple-quoted" in failure.message
+    ):  # the line is where the last quotes stand, not where they are missing
+        return message, "Three quotes are missing there or further up. Look at what you changed last."
     return message, "Run `python -m py_compile` on it, or look at that line and the one above it."
 
 

@@ -12,8 +12,11 @@ Rich is imported only for the first. Commands call ``current()`` and never ``pri
 from __future__ import annotations
 
 import contextlib
+import io
 import os
+import shutil
 import sys
+import textwrap
 import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO, cast
@@ -89,7 +92,7 @@ class Console:
                 stream.reconfigure(errors="replace")
         self._out = Stream(stdout or sys.stdout)
         self._err = Stream(stderr or sys.stderr)
-        self._human = self._err if self.settings.json else self._out
+        self._human: Stream = self._err if self.settings.json else self._out
         self.fancy = self._is_fancy()
         self._rich: RichConsole | None = None
         self.emitted = False
@@ -128,6 +131,11 @@ class Console:
         return self.rich().color_system in {"256", "truecolor"} and encoding.lower().startswith("utf")
 
     @property
+    def wraps(self) -> bool:
+        """True on a terminal without layout, where words wrap; --plain keeps each fact on one line."""
+        return self.plain and not (self.settings.plain or self.json) and bool(self._human.isatty())
+
+    @property
     def width(self) -> int:
         """Columns to write in."""
         return self.rich().width if self.fancy else min(self.terminal_width, MAX_WIDTH)
@@ -135,9 +143,12 @@ class Console:
     @property
     def terminal_width(self) -> int:
         """Columns of the terminal, or what COLUMNS says."""
-        import shutil
-
         return shutil.get_terminal_size().columns
+
+    @property
+    def height(self) -> int:
+        """Lines of the terminal, or what LINES says."""
+        return shutil.get_terminal_size().lines
 
     def _is_fancy(self) -> bool:
         if self.settings.json or self.settings.plain or self._environ.get("TERM") == "dumb":
@@ -153,11 +164,12 @@ class Console:
                 file=cast("TextIO", self._human),
                 force_terminal=self.fancy,
                 no_color=True if self.plain or self._environ.get("NO_COLOR") else None,
-                width=max(20, min(self.terminal_width, MAX_WIDTH)),
                 markup=False,
                 emoji=False,
                 highlight=False,
             )
+        # A command that goes on for long sees its window become narrower.
+        self._rich.width = max(20, min(self.terminal_width, MAX_WIDTH))
         return self._rich
 
     # -- what a person reads -------------------------------------------------------------------------
@@ -169,7 +181,7 @@ class Console:
         it can be copied.
         """
         if not self.fancy:
-            self._human.write(" " * indent + "".join(_bare(piece) for piece in pieces) + "\n")
+            self._fact("".join(_bare(piece) for piece in pieces), indent)
             return
         from rich.padding import Padding
 
@@ -178,6 +190,17 @@ class Console:
             self.rich().print(_text((" " * indent, *pieces)), soft_wrap=True)
         else:
             self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
+
+    def _fact(self, text: str, indent: int = 0, hanging: int = 0) -> None:
+        """A line of plain output; on a terminal it wraps between words, and nowhere else."""
+        margin = " " * indent
+        rows = text.split("\n") if self.wraps else []
+        if not any(len(row) + indent > self.width for row in rows):
+            self._human.write(f"{margin}{text}\n")
+            return
+        wrapper = textwrap.TextWrapper(self.width, margin, margin + " " * hanging)
+        wrapper.break_long_words = wrapper.break_on_hyphens = False
+        self._human.write("".join(f"{wrapper.fill(row)}\n" for row in rows))
 
     def blank(self) -> None:
         """An empty line, where there is layout to speak of."""
@@ -195,7 +218,7 @@ class Console:
         """A short label and a text beside it; in a terminal the text wraps under itself."""
         label = _harmless(label)
         if not self.fancy:
-            self._human.write(" " * indent + f"{label}: " + "".join(_bare(p) for p in pieces) + "\n")
+            self._fact(f"{label}: " + "".join(_bare(p) for p in pieces), indent, hanging=2)
             return
         from rich.padding import Padding
         from rich.table import Table
@@ -214,7 +237,7 @@ class Console:
                 facts = [
                     f"{head}: {_bare(cell)}" for head, cell in zip(headers, row, strict=True) if _bare(cell)
                 ]
-                self._human.write("; ".join(facts) + "\n")
+                self._fact("; ".join(facts), hanging=2)
             return
         from rich import box
         from rich.table import Table
@@ -334,6 +357,33 @@ class Console:
         self._out.flush()
         answer = sys.stdin.readline()
         return bool(answer) and answer.strip().lower() not in {"q", "quit", "n", "no"}
+
+    def pause(self, where: str) -> bool:
+        """Wait for Enter on a terminal that a person reads; elsewhere there is nothing to wait for."""
+        if not (self.motion and self.interactive):
+            return True
+        going = self.go_on(where)
+        self._human.write("\x1b[A\x1b[2K")  # the question is answered: what follows takes its line
+        return going
+
+    @contextlib.contextmanager
+    def paged(self) -> Iterator[None]:
+        """Stop at each screenful of what is said inside, where a person reads it; q leaves out the rest."""
+        if not (self.motion and self.interactive):
+            yield
+            return
+        human, held, rich = self._human, io.StringIO(), self.rich()
+        self._human, rich.file = Stream(held), held
+        try:
+            yield
+        finally:
+            self._human, rich.file = human, cast("TextIO", human)
+        rows = held.getvalue().splitlines(keepends=True)
+        height = max(3, self.height - 1)
+        for start in range(0, len(rows), height):
+            if start and not self.pause(f"{start} of {len(rows)} lines."):
+                return
+            human.write("".join(rows[start : start + height]))
 
     @contextlib.contextmanager
     def working(self, what: str) -> Iterator[None]:

@@ -14,32 +14,54 @@ if TYPE_CHECKING:
     from course.cli.frame.here import Here
     from course.scoring.verdict import Verdict
 
-__all__ = ["after_warm_up", "next_in_course", "next_step"]
+__all__ = ["after_report", "after_warm_up", "hint_is_due", "next_in_course", "next_step"]
 
 
 def next_step(here: Here, exercise: Exercise, verdict: Verdict, source: bytes) -> str:
     """After a check: hand in, take a hint if one is due, or go on working."""
     if verdict.all_pass:
         return after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
-    stub = fingerprint(here.stub(exercise))
-    if fingerprint(source) == stub:
+    if fingerprint(source) == fingerprint(here.stub(exercise)):
         return _before_writing(here, exercise)
+    return f"course {'hint' if hint_is_due(here, exercise) else 'watch'} {exercise.id}"
+
+
+def hint_is_due(here: Here, exercise: Exercise) -> bool:
+    """Whether ``course hint`` would give a new one; not where the record cannot be read."""
     try:
-        due = here.history(exercise).hint_is_due(stub)
+        return here.history(exercise).hint_is_due(fingerprint(here.stub(exercise)))
     except CourseError:
-        due = False
-    return f"course hint {exercise.id}" if due else f"course watch {exercise.id}"
+        return False
 
 
 def after_warm_up(here: Here, warm_up: Exercise) -> str:
-    """Once a warm-up is done: what it has to show, the next one of its lesson, or the lesson itself."""
+    """Once a warm-up is done: what it has to show, or what comes next."""
     if (Path(warm_up.folder) / "report.py").is_file():
         return f"course report {warm_up.id}"
+    return _rest_of_lesson(here, warm_up)
+
+
+def after_report(here: Here, exercise: Exercise) -> str:
+    """Its checks; once they pass, what comes after the exercise."""
     try:
+        last = here.history(exercise).last_graded
+    except CourseError:
+        last = None
+    if last is None or not last.all_pass:
+        return f"course check {exercise.id}"
+    return _rest_of_lesson(here, exercise) if exercise.is_warm_up else "course submit"
+
+
+def _rest_of_lesson(here: Here, warm_up: Exercise) -> str:
+    """Its lesson, if that is half read; else the next warm-up of it, the lesson, or what comes next."""
+    try:
+        begun = here.workspace.store.events("bookmark", warm_up.lesson)
         done = {e.subject for e in here.workspace.store.events("check") if e.data.get("all_pass")}
         read = any(event.subject == warm_up.lesson for event in here.workspace.store.events("lesson"))
     except CourseError:
-        done, read = set(), False
+        begun, done, read = (), set(), False
+    if begun and not read:  # the other warm-ups wait there, each in its place
+        return f"course lesson {warm_up.lesson}"
     left = [one.id for one in here.catalog.warm_ups(warm_up.lesson) if one.id not in {*done, warm_up.id}]
     if left:
         return f"course warmup {left[0]}"

@@ -57,14 +57,16 @@ def go() -> int:
         return 0
     while True:
         words = _as_run(console, step)
-        console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(here, step)}", "dim"))
+        if not (words[0] == "lesson" and console.fancy):  # the reader covers it, and says where it was left
+            console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(here, step)}", "dim"))
         code = again(words)
         if not console.interactive:
             return code
         here = Here.load()
         before, step = step, next_in_course(here)
         if step == before:
-            console.note(f"Not finished yet: {step}. `course go` goes on from here.")
+            left = "" if words[0] == "lesson" else f"Not finished yet: {step}. "  # a lesson says it itself
+            console.note(f"{left}`course go` goes on from here.")
             return code
         if not console.go_on(f"Next: {step} ({_why(here, step)})."):
             return 0

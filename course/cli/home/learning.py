@@ -106,6 +106,7 @@ class Learning:
                 last_seen=one.last.isoformat(),
                 runs=one.runs,
                 mended_at=one.mended.isoformat() if one.mended else None,
+                given=exercise.comes_with_faults,
             )
 
     # -- what to read again ----------------------------------------------------------------------------
@@ -143,7 +144,7 @@ class Learning:
 
 
 def show_learning(console: Console, learning: Learning) -> None:
-    """Print what there is; nothing for somebody who predicted nothing and made no mistake."""
+    """Print what there is; nothing for a student who predicted nothing and made no mistake."""
     if learning.predictions is not None:
         _show_predictions(console, learning.predictions)
     if learning.mistakes:
@@ -167,8 +168,16 @@ def _show_predictions(console: Console, predictions: PredictionsState) -> None:
 
 
 def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
+    _show_some(console, "Mistakes", "made", [one for one in mistakes if not one.given])
+    _show_some(console, "Faults in programs to mend", "found", [one for one in mistakes if one.given])
+
+
+def _show_some(console: Console, what: str, done: str, mistakes: Sequence[MistakeState]) -> None:
+    """How many, and each that is open or was mended last."""
+    if not mistakes:
+        return
     mended = sum(one.mended_at is not None for one in mistakes)
-    console.heading("Mistakes", f"{len(mistakes)} made, {mended} mended")
+    console.heading(what, f"{len(mistakes)} {done}, {mended} mended")
     for one in mistakes:
         seen = f"seen {day(one.first_seen)}"
         if one.runs > 1:

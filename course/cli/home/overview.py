@@ -63,28 +63,19 @@ def progress() -> int:
     exercises = tuple(exercise_state(here, exercise) for exercise in here.catalog.exercises())
     lessons = lesson_states(here)
     sent = tuple(event.at.isoformat() for event in here.workspace.store.events("submit"))
-    console.heading("Lessons", f"{sum(x.read_at is not None for x in lessons)} of {len(lessons)} read")
-    for lesson in lessons:
-        when = f"read {day(lesson.read_at)}" if lesson.read_at else "not read yet"
-        console.line(f"{lesson.title} ({lesson.id}): {when}", indent=2)
-    done = sum(x.state in {"passed", "complete"} for x in exercises)
-    console.heading("Exercises", f"{done} of {len(exercises)} passed")
-    for exercise in exercises:
-        console.line(f"{exercise.title} ({exercise.id}): {_progress_line(exercise)}", indent=2)
-    warm_ups = warm_up_states(here)
-    if warm_ups:
-        console.heading("Warm-ups", _done_of(warm_ups))
-        for lesson in lessons:
-            ours = [state for state in warm_ups if state.lesson == lesson.id]
-            if any(state.state != "new" for state in ours):
-                console.line(f"{lesson.title} ({lesson.id}): {_done_of(ours)}", indent=2)
-    quiz = quiz_state(here)
-    if quiz is not None:
-        console.heading("Quiz", _quiz_line(quiz))
-    often = _count(len(sent), "time")
-    console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
+    warm_ups, quiz = warm_up_states(here), quiz_state(here)
     learning = Learning(here.catalog, here.workspace.store.events())
-    show_learning(console, learning)
+    with console.paged():
+        _show_reading(console, lessons, warm_ups)
+        done = sum(x.state in {"passed", "complete"} for x in exercises)
+        console.heading("Exercises", f"{done} of {len(exercises)} passed")
+        for exercise in exercises:
+            console.line(f"{exercise.title} ({exercise.id}): {_progress_line(exercise)}", indent=2)
+        if quiz is not None:
+            console.heading("Quiz", _quiz_line(quiz))
+        often = _count(len(sent), "time")
+        console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
+        show_learning(console, learning)
     step = next_in_course(here)
     console.note(f"Next: {step}")
     console.emit(
@@ -103,6 +94,20 @@ def progress() -> int:
         )
     )
     return 0
+
+
+def _show_reading(console: Console, lessons: Sequence[LessonState], warm_ups: Sequence[WarmUpState]) -> None:
+    """A line for each lesson that was read, or has a warm-up that was begun."""
+    console.heading("Lessons", f"{sum(x.read_at is not None for x in lessons)} of {len(lessons)} read")
+    if warm_ups:
+        console.heading("Warm-ups", _done_of(warm_ups))
+    for lesson in lessons:
+        ours = [state for state in warm_ups if state.lesson == lesson.id]
+        begun = any(state.state != "new" for state in ours)
+        if lesson.read_at or begun:
+            when = f"read {day(lesson.read_at)}" if lesson.read_at else "not read to its end yet"
+            small = f", warm-ups {_done_of(ours)}" if begun else ""
+            console.line(f"{lesson.title} ({lesson.id}): {when}{small}", indent=2)
 
 
 def warm_up_states(here: Here) -> tuple[WarmUpState, ...]:
@@ -250,9 +255,10 @@ def _inside(console: Console, here: Here) -> int:
     total = len(catalog.lesson_ids())
     console.heading(catalog.title)
     console.line(f"Workspace: {here.workspace.root}")
-    console.line(f"Lessons read: {read} of {total}")
-    if warm_ups:
-        console.line(f"Warm-ups: {_done_of(warm_ups)}")
+    done = [f"Lessons read: {read} of {total}"]
+    done += [f"warm-ups: {_done_of(warm_ups)}"] if warm_ups else []
+    done += [f"quiz: {_quiz_line(quiz)}"] if quiz is not None else []
+    console.line("; ".join(done))
     if objectives:
         show_objectives(console, objectives, {state.id: _evidence(state) for state in states})
     elif states:
@@ -260,8 +266,6 @@ def _inside(console: Console, here: Here) -> int:
             ("Exercise", "State", "Score"),
             [(state.id, WORDS[state.state], score_of(state)) for state in states],
         )
-    if quiz is not None:
-        console.line(f"Quiz: {_quiz_line(quiz)}")
     if here.workspace.version != catalog.version:
         console.note(
             f"The course is at version {catalog.version}, this workspace at {here.workspace.version}: "
@@ -269,8 +273,7 @@ def _inside(console: Console, here: Here) -> int:
         )
     if objectives:
         console.note("To play with: course sandbox")
-    console.note((f"Next: {step}", "bold"))
-    console.note("`course go` runs it, and goes on from there.")
+    console.note((f"Next: {step}", "bold"), " (`course go` runs it, and goes on from there)")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(

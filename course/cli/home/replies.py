@@ -173,6 +173,7 @@ class PredictionsState(msgspec.Struct, frozen=True, kw_only=True):
 class MistakeState(msgspec.Struct, frozen=True, kw_only=True):
     """A mistake that checks recognised. ``read`` is where it is explained, as "lesson#section" or "lesson".
 
+    ``given`` is True in a program that is handed out with faults.
     ``mended_at`` is None while a check that showed it has not passed since; ``looks_like`` is "" where the
     exercise keeps no words for the code.
     """
@@ -187,6 +188,7 @@ class MistakeState(msgspec.Struct, frozen=True, kw_only=True):
     last_seen: str
     runs: int
     mended_at: str | None
+    given: bool = False
 
 
 class Revisit(msgspec.Struct, frozen=True, kw_only=True):

@@ -91,20 +91,14 @@ def _show_prompt(console: Console, posed: Posed, indent: int = 0) -> None:
 
 def show_result(console: Console, result: Result) -> None:
     """The score, then each question: every option of what was missed, the right one of the rest."""
-    _show_score(console, result)
-    for number, marked in enumerate(result.marked, start=1):
-        show_marked(console, marked, number)
-    if console.fancy:
-        # By now the score has scrolled out of the window.
-        _show_score(console, result)
-
-
-def _show_score(console: Console, result: Result) -> None:
     verdict = ("passed", "green") if result.passed else ("not passed", "red")
-    console.blank()
-    console.line(
-        (f"{result.score} of {result.total} right, {needed(result.total)} needed: ", "bold"), verdict
-    )
+    with console.paged():
+        console.blank()
+        console.line(
+            (f"{result.score} of {result.total} right, {needed(result.total)} needed: ", "bold"), verdict
+        )
+        for number, marked in enumerate(result.marked, start=1):
+            show_marked(console, marked, number)
 
 
 def show_marked(console: Console, marked: Marked, number: int) -> None:
@@ -120,7 +114,7 @@ def show_marked(console: Console, marked: Marked, number: int) -> None:
     if not marked.right:
         for choice in posed.choices:
             if choice is not chosen and not choice.right:
-                _show_choice(console, "Also wrong", choice, "yellow")
+                _show_choice(console, "Wrong", choice, "yellow")
         console.line((f"Source: {posed.source}", "dim"), indent=2)
         if posed.read:
             console.line((f"Read again: course lesson {posed.read}", "dim"), indent=2)

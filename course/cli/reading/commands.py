@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import bisect
 import contextlib
 import io
+import itertools
 from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,10 +21,13 @@ from course.cli.reading.replies import LessonReply, Lessons
 from course.errors import CourseError, NotFoundError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from course.catalog.load import Catalog
     from course.catalog.models import Lesson
     from course.cli.frame.here import Here
     from course.cli.reading.lesson import Reader
+    from course.progress.store import Event
     from course.reading.parts import Section
 
 __all__ = ["lesson", "lessons"]
@@ -71,10 +76,10 @@ def lesson(
 ) -> int:
     """Read a lesson.
 
-    On a terminal it fills the screen: predict, run its cells, search; ? there lists the keys. With --plain,
-    in a pipe or with --page it is printed. Without an id: the next lesson you have not read. Inside a
-    workspace your place and predictions are kept, and a lesson is read once its end was reached. ID#SECTION
-    opens it at a section, or prints that section.
+    ID#SECTION is one of its sections, such as numerical-integration#swap-two-lines. On a terminal the lesson
+    fills the screen: predict, run its cells, search; ? there lists the keys. With --plain, in a pipe or with
+    --page it is printed. Without an id: the next lesson you have not read. Inside a workspace your place and
+    predictions are kept, and a lesson is read once its end was reached.
     """
 
     console = current()
@@ -147,7 +152,13 @@ def _reader(
 
     if text is None:
         return Reader(
-            catalog, chosen, console.rich(), plain=console.plain, figures_dir=figures, width=console.width
+            catalog,
+            chosen,
+            console.rich(),
+            plain=console.plain,
+            figures_dir=figures,
+            width=console.width,
+            wraps=console.wraps,
         )
     from rich.console import Console as RichConsole
 
@@ -216,30 +227,53 @@ def _print_all(reader: Reader) -> bool:
 
 def _read_by_page(console: Console, here: Here | None, chosen: Lesson, reader: Reader) -> bool:
     """Show a page at a time, from where the reader stopped last time; False if they stop before the end."""
+    from course.reading.pages import Place
+    from course.reading.parts import read_script
+    from course.reading.record import InProgress
+
     total = len(reader.pages)
-    first = _place(here, chosen, total)
+    starts = list(itertools.accumulate((len(page.blocks) for page in reader.pages), initial=0))
+    events = _events(here, chosen)
+
+    def write(kind: str, subject: str, data: Mapping[str, object]) -> None:
+        if here is not None:
+            here.record(kind, subject, dict(data))
+
+    progress = InProgress(read_script(chosen), events, write)
+    first = _page(events, progress.place.block, starts)
     if first:
         console.line(f"Going on with page {first + 1} of {total}. Without --page: the whole lesson.")
     for number in range(first, total):
         reader.show(reader.pages[number])
         if number + 1 < total and not console.go_on(f"Page {number + 1} of {total}."):
-            if here is not None:
-                here.record("place", chosen.id, {"page": number + 1})
+            progress.at(Place(starts[number + 1]), starts[number + 1] - 1)
             return False
     return True
 
 
-def _place(here: Here | None, chosen: Lesson, total: int) -> int:
-    """The page to go on with: after the last one seen, or the first if the lesson was read since."""
-    if here is None:
+def _events(here: Here | None, chosen: Lesson) -> tuple[Event, ...]:
+    """What is recorded about a lesson; nothing where that cannot be read."""
+    if here is not None:
+        with contextlib.suppress(CourseError):
+            return here.workspace.store.events(subject=chosen.id)
+    return ()
+
+
+def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:
+    """The page to go on with: where this or the reader on the whole screen was left, or the first if the
+    lesson was read since.
+
+    Args:
+        block: the one at the top when the student stopped; below 0 for none.
+        starts: the first block of each page, and after the last one the number of blocks.
+    """
+    last = next((event for event in reversed(events) if event.kind in {"place", "bookmark", "lesson"}), None)
+    if last is None or last.kind == "lesson":
         return 0
-    try:
-        events = here.workspace.store.events(subject=chosen.id)
-    except CourseError:
-        return 0
-    last = next((event for event in reversed(events) if event.kind in {"place", "lesson"}), None)
-    page = last.data.get("page", 0) if last is not None else 0
-    return page if isinstance(page, int) and 0 <= page < total else 0
+    if last.kind == "place":  # as version 1.2 kept it
+        page = last.data.get("page", 0)
+        return page if isinstance(page, int) and 0 <= page < len(starts) - 1 else 0
+    return max(0, bisect.bisect_right(starts, block) - 1)
 
 
 def _after(here: Here | None, chosen: Lesson) -> str:

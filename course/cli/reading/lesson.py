@@ -59,6 +59,7 @@ class Reader:
         plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
         figures_dir: folder to write the figures to as PNG; None writes none.
         width: columns to use; the console's own if left out.
+        wraps: plain lines wrap between words.
 
     Raises:
         ContentError: the lesson cannot be read or parsed.
@@ -77,6 +78,7 @@ class Reader:
         plain: bool = False,
         figures_dir: Path | None = None,
         width: int | None = None,
+        wraps: bool = False,
     ) -> None:
         self._lesson = lesson
         self.pages = lesson_pages(lesson)
@@ -85,7 +87,7 @@ class Reader:
         self._printer: FancyPrinter | PlainPrinter
         # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
         if plain or not console.encoding.lower().startswith("utf"):
-            self._printer = PlainPrinter(catalog, lesson, console, numbers, figures_dir)
+            self._printer = PlainPrinter(catalog, lesson, console, numbers, figures_dir, wraps)
         else:
             self._printer = FancyPrinter(
                 catalog, lesson, console, numbers, figures_dir, width or console.width, os.environ

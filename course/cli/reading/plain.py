@@ -1,7 +1,8 @@
 """A lesson for a screen reader or a log: one fact a line, no boxes, nothing said by position or colour.
 
 Formulae are words, a diagram is its description, a table row is one "column: value" line per cell, and a
-paragraph has one sentence a line. Lines are never broken to a width: whoever reads them knows better.
+paragraph has one sentence a line. Lines are never broken to a width, which a screen reader knows better; only
+on a terminal without layout (TERM=dumb) do words wrap.
 """
 
 from __future__ import annotations
@@ -39,12 +40,14 @@ class PlainPrinter:
         console: Console,
         figure_ids: list[str],
         figures_dir: Path | None,
+        wraps: bool = False,
     ) -> None:
         self._catalog = catalog
         self._lesson = lesson
         self._console = console
         self._figure_ids = figure_ids
         self._figures_dir = figures_dir
+        self._wraps = wraps
         self.pictures: list[Path] = []
         self._told_how = False  # to save them: said once
 
@@ -66,8 +69,8 @@ class PlainPrinter:
                 self._say("")
             self._block(block)
 
-    def _say(self, line: str) -> None:
-        self._console.print(Text(line), soft_wrap=True)
+    def _say(self, line: str, *, whole: bool = False) -> None:
+        self._console.print(Text(line), soft_wrap=whole or not self._wraps)
 
     def _block(self, block: b.Block) -> None:  # noqa: C901, PLR0912 - one per kind
         match block:
@@ -140,7 +143,7 @@ class PlainPrinter:
         rows = text.splitlines()
         self._say(f"{label}, {len(rows)} line{'s' if len(rows) != 1 else ''}:")
         for row in rows:
-            self._say(row)
+            self._say(row, whole=True)
         self._say(f"End of {'output' if label == 'It prints' else label.lower()}")
 
     def _figure(self, figure: b.Figure) -> None:

@@ -75,14 +75,15 @@ def _list(console: Console) -> int:
     if not states:
         console.line("This course has no warm-ups.")
     marks = _MARKS if console.fancy else _PLAIN_MARKS
-    for lesson in catalog.lessons():
-        ours = [state for state in states if state.lesson == lesson.id]
-        if not ours:
-            continue
-        done = sum(state.state == "done" for state in ours)
-        console.heading(lesson.title.partition(":")[0], f"{done} of {len(ours)} done")
-        for state in ours:
-            console.item(marks[state.state], f"{state.title} ({state.id}), {state.minutes} min", width=6)
+    with console.paged():
+        for lesson in catalog.lessons():
+            ours = [state for state in states if state.lesson == lesson.id]
+            if not ours:
+                continue
+            done = sum(state.state == "done" for state in ours)
+            console.heading(lesson.title.partition(":")[0], f"{done} of {len(ours)} done")
+            for state in ours:
+                console.item(marks[state.state], f"{state.title} ({state.id}), {state.minutes} min", width=6)
     left = next((state for state in states if state.state != "done"), None)
     step = f"course warmup {left.id}" if left else ""
     if step:
@@ -97,7 +98,14 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
 
     if not console.quiet and not console.json:
         lesson = here.catalog.lesson(chosen.lesson)
-        reader = Reader(here.catalog, lesson, console.rich(), plain=console.plain, width=console.width)
+        reader = Reader(
+            here.catalog,
+            lesson,
+            console.rich(),
+            plain=console.plain,
+            width=console.width,
+            wraps=console.wraps,
+        )
         console.heading(chosen.title, f"{chosen.minutes} minutes")
         reader.show_task(chosen)
         console.blank()
@@ -108,7 +116,7 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
     )
     console.note(f"Check it:          {step}")
     console.note(f"On every save:     course watch {chosen.id}")
-    console.note(f"When you are stuck: course hint {chosen.id}")
+    console.note(f"Still failing:     course hint {chosen.id}")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))

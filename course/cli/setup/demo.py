@@ -7,6 +7,7 @@ both motions are drawn. Nothing is written anywhere.
 from __future__ import annotations
 
 import difflib
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,6 +41,8 @@ STRETCH, RATE, STEP, STEPS = 0.1, 2.0, 0.05, 200
 #: Two panels stand side by side from this width on, in columns.
 _WIDE = 70
 _PANEL_ROWS = 17
+#: Lines beside the picture: the heading, what is to be seen, where to read on.
+_WORDS = 9
 
 
 @dataclass(frozen=True)
@@ -74,28 +77,14 @@ def demo() -> int:
     ]
     change = _change(*sources)
     with open_session(example, catalog) as session:
-        console.heading("1. This function calls itself explicit Euler")
-        console.block(_function(sources[0]), "python", indent=2)
-        console.blank()
-        before = _motion(console, session, sources[0])
-        show_verdict(console, example, before.verdict)
-        console.blank()
-        console.heading("2. The one line, mended")
-        console.block("\n".join(change), "diff", indent=2)
-        console.blank()
-        after = _motion(console, session, sources[1])
-        show_verdict(console, example, after.verdict)
+        before, after = (_motion(console, session, source) for source in sources)
     if before.verdict.all_pass or not after.verdict.all_pass:
         raise InternalError(
             "The demonstration went wrong: the mistake must fail its checks and the mended file pass them.",
             help="Run `course doctor`; if it finds nothing, please report this.",
             code="demo_failed",
         )
-    console.blank()
-    console.heading("3. What the mistake hid")
-    _draw(console, before, after)
-    console.line(_said(before, after))
-    console.note(f"Read the example and its checks: {example.folder}")
+    _show(console, example, before, after, change)
     console.note(("Next: course init my-course", "bold"))
     course = catalog.ref
     console.emit(
@@ -110,6 +99,31 @@ def demo() -> int:
         )
     )
     return 0
+
+
+def _show(
+    console: Console, example: Exercise, before: _Motion, after: _Motion, change: tuple[str, ...]
+) -> None:
+    """Three screens; where a person reads, each waits for Enter, and q leaves out the rest."""
+    with console.paged():
+        console.heading("1. This function calls itself explicit Euler. Each of its steps:")
+        console.block(_loop(before.source), "python", indent=2)
+        console.blank()
+        show_verdict(console, example, before.verdict, whole=False, brief=True)
+    if not console.pause("The mended line:"):
+        return
+    console.blank()
+    console.heading("2. The one line, mended")
+    console.block("\n".join(change), "diff", indent=2)
+    console.blank()
+    show_verdict(console, example, after.verdict)
+    if not console.pause("Both motions:"):
+        return
+    console.blank()
+    console.heading("3. What the mistake hid")
+    _draw(console, before, after)
+    console.line(_said(before, after))
+    console.note(f"Read the example and its checks: {example.folder}")
 
 
 def worked_example(catalog: Catalog) -> Exercise:
@@ -141,9 +155,10 @@ def _motion(console: Console, session: GradingSession, source: str) -> _Motion:
     return _Motion(source, verdict, np.array(x), np.array(v))
 
 
-def _function(source: str) -> str:
-    """A module without its own docstring: the function."""
-    return source[source.index("def ") :].rstrip()
+def _loop(source: str) -> str:
+    """The body of the function's loop up to where it keeps the step: the method itself."""
+    body = source.partition("for _ in range(n):\n")[2].partition("        xs.append")[0]
+    return textwrap.dedent(body).rstrip()
 
 
 def _change(before: str, after: str) -> tuple[str, ...]:
@@ -174,6 +189,8 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 
     wide = console.width >= _WIDE
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
+    if console.interactive:  # else nobody watches: a file, or the picture of a page
+        rows = max(_PANEL_ROWS // 2, min(rows, console.height - _WORDS))
     with console.working("Drawing"):
         drawn = terminal_plot(_plot(before, after, wide=wide), columns, rows)
     labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]

@@ -67,11 +67,10 @@ def init(
     _say_written(console, written)
     if "github" in kinds and not (root / ".git").exists():
         console.note("GitHub reads workflows in the top folder of a repository only.")
-    first = catalog.lesson_ids()[0] if catalog.lesson_ids() else ""
-    step = f"course lesson {first}".strip()
+    step = "course go"
     if root != here:
-        console.note(f"Go there:  cd {_quoted(root, here)}")
-    console.note(f"Then read: {step}")
+        console.note(f"Go there: cd {_quoted(root, here)}")
+    console.note(f"Then: {step}" if root != here else f"Next: {step}")
     console.emit(
         Init(
             workspace=str(workspace.root),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from course.errors import CourseError
     from course.scoring.verdict import CheckResult, Verdict
 
-__all__ = ["FORMATS", "annotate", "annotate_error", "github", "known_format"]
+__all__ = ["FORMATS", "annotate", "annotate_error", "github", "known_format", "line_of", "unread_line"]
 
 FORMATS = ("text", "github", "lines")
 
@@ -57,12 +57,8 @@ def annotate(console: Console, here: Here, work: Work, verdict: Verdict, form: s
 
 def annotate_error(console: Console, here: Here, work: Work, error: CourseError, form: str) -> None:
     """One line for what keeps the whole file from being checked."""
-    line, text = 1, f"{error.message}\n{error.help}".strip()
-    if work.notebook is None:
-        try:
-            compile(work.source, work.name, "exec", dont_inherit=True)
-        except (SyntaxError, ValueError) as problem:
-            line = getattr(problem, "lineno", None) or 1
+    text = f"{error.message}\n{error.help}".strip()
+    line = unread_line(work.source) if work.notebook is None else 1
     title = f"{work.exercise.title} [{error.code}]"
     console.raw(_shown(form, "error", _path(here, work, form), line, title, text))
 
@@ -102,11 +98,29 @@ def _words(check: CheckResult) -> Iterator[str]:
     yield from (f"{label}: {text}" for label, text in numbers_of(check) if label != "diagnosis")
 
 
+def unread_line(source: bytes | str) -> int:
+    """Where Python stops reading a file; 1 where it reads it to its end."""
+    try:
+        compile(source, "", "exec", dont_inherit=True)
+    except (SyntaxError, ValueError) as problem:
+        return getattr(problem, "lineno", None) or 1
+    return 1
+
+
 def _line_of(work: Work, check: CheckResult) -> int:
-    """Where the student's code raised; else where the function begins, be it in a notebook's JSON."""
-    if work.notebook is None and (frames := _FRAME.findall(check.traceback or "")):
-        return int(frames[-1])
     text = work.data.decode("utf-8", "replace")
+    return line_of(text, check, traced=work.notebook is None)
+
+
+def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:
+    """Where the student's code raised; else where the function begins, be it in a notebook's JSON.
+
+    Args:
+        text: the file.
+        traced: the lines of a traceback are lines of this file.
+    """
+    if traced and (frames := _FRAME.findall(check.traceback or "")):
+        return int(frames[-1])
     defined = re.compile(rf"""^[\s"]*def\s+{re.escape(check.task)}\s*\(""", re.MULTILINE)
     # The last definition of a name is the one that counts.
     found = [match.end() for match in defined.finditer(text)]

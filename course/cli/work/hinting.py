@@ -103,7 +103,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         return _no_hint(exercise, "passing", f"{which}: there is nothing to hint at.", step)
     known = here.catalog.hints(exercise)
     hints, shown = known.of(task), history.hints_for(task)
-    if not history.hint_is_due(fingerprint(here.stub(exercise))):
+    begun = task not in history.unwritten_tasks()
+    if not begun or not history.hint_is_due(fingerprint(here.stub(exercise))):
         shown_last = next((hints[index] for index in reversed(shown) if index < len(hints)), None)
         return _not_due(exercise, task, shown_last, named or _file_name(here, exercise))
     following = known.after(task, history.diagnosed(task), shown)
@@ -119,8 +120,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:
-    """The task to hint at: the one asked for if it fails, or the first that does."""
-    failing = history.failing_tasks()
+    """The task to hint at: the one asked for if it fails, or the first that does and was begun."""
+    failing, new = history.failing_tasks(), history.unwritten_tasks()
     known = [task.id for task in exercise.task]
     if wanted is not None and wanted not in known:
         raise NotFoundError(
@@ -129,7 +130,8 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
             code="task_not_found",
         )
     candidates = known if wanted is None else [wanted]
-    return next((task for task in candidates if task in failing), None)
+    found = [task for task in candidates if task in failing]
+    return next((task for task in found if task not in new), found[0] if found else None)
 
 
 def _file_name(here: Here, exercise: Exercise) -> str:
@@ -143,7 +145,7 @@ def _file_name(here: Here, exercise: Exercise) -> str:
 def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> Hint:
     if last is None:
         message = (
-            f"The first hint follows an attempt. Write something in {file}, however rough, "
+            f"The first hint follows an attempt at this function. Write something in {file}, however rough, "
             "and check it; then ask again."
         )
     else:

@@ -13,6 +13,7 @@ from course.cli.frame import files
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.home.advice import after_report
 from course.cli.work.checking import say_which
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import ReportReply, SectionReply
@@ -59,7 +60,7 @@ def report(
         for number, section in enumerate(made.sections, 1)
     )
     written = _write_bag(console, made, bag) if bag is not None else None
-    console.note(f"Next: course check {chosen.id}")
+    console.note(f"Next: {after_report(here, chosen)}")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(

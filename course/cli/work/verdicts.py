@@ -1,7 +1,7 @@
 """A verdict on the screen: grouped by task; the message first, then advice, then numbers.
 
-What a student needs to act on comes before what they need to argue with, and the summary comes last, where
-the eye is when a terminal has finished scrolling.
+What a student needs to act on comes before what they need to argue with. What failed comes after what passed
+and what is not begun, and the summary comes last, where the eye is when a terminal has finished scrolling.
 """
 
 from __future__ import annotations
@@ -18,10 +18,16 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise, Task
     from course.scoring.verdict import CheckResult, Verdict
 
-__all__ = ["show_everything", "show_verdict", "summary"]
+    Tasks = Sequence[tuple[Task, Sequence[CheckResult]]]
+
+__all__ = ["is_unwritten", "show_everything", "show_verdict", "summary"]
 
 _DETAIL_INDENT = 4
 _LABEL_WIDTH = 9
+#: Columns beside a number: its indent, its label and the space between them.
+_BESIDE = _DETAIL_INDENT + _LABEL_WIDTH + 2
+#: Lines that a number may take where details are brief: the message must stay on the screen.
+_SHORT = 2
 _UNWRITTEN = "NOT_IMPLEMENTED"
 
 
@@ -40,20 +46,13 @@ def show_verdict(
     Args:
         verbose: show tracebacks (the student's own lines) and what the student's code printed.
         whole: all public checks were run, so that there is something to sum up.
-        brief: show the details of one function only, the first that fails; people work on one at a time.
+        brief: show the first failure of one function in detail, the first that fails, as the last thing of
+            all, and a line for whatever else there is; people work on one at a time.
         focus: with ``brief``, the function to show instead.
     """
     if not console.quiet:
         page = _Page(console, verbose=verbose, brief=brief, focus=focus, scored=not exercise.is_warm_up)
-        unwritten: list[tuple[Task, list[CheckResult]]] = []
-        for task in exercise.task:
-            checks = [check for check in verdict.checks if check.task == task.id]
-            if _is_unwritten(checks):
-                unwritten.append((task, checks))
-            elif checks:
-                page.task(task.title, checks)
-        if unwritten:
-            page.unwritten(unwritten)
+        page.tasks([(task, [c for c in verdict.checks if c.task == task.id]) for task in exercise.task])
         # Checks of a task that the exercise does not list must not vanish.
         known = {task.id for task in exercise.task}
         for check in verdict.checks:
@@ -123,24 +122,73 @@ class _Page:
         self._hidden = hidden
         self._verbose = verbose
         self._brief = brief
-        self._detailed = focus
+        self._focus = focus
         self._left_out = False
         self._said: set[str] = set()
         self._kept_back = False
+        self._shortened = False
+
+    def tasks(self, tasks: Tasks) -> None:
+        """What passed, what is not written yet, and last what fails."""
+        done: list[tuple[Task, Sequence[CheckResult]]] = []
+        unwritten, failing = done.copy(), done.copy()
+        for task, checks in tasks:
+            if is_unwritten(checks):
+                unwritten.append((task, checks))
+            elif checks:
+                whole = all(check.status == "pass" for check in checks)
+                (done if whole else failing).append((task, checks))
+        if self._brief and failing:
+            failing = [self._but_one(done, unwritten, failing)]
+        else:
+            for task, checks in done:
+                self.task(task.title, checks)
+            if unwritten:
+                self.unwritten(unwritten)
+        for task, checks in failing:
+            self.task(task.title, checks)
+
+    def _but_one(self, done: Tasks, unwritten: Tasks, failing: Tasks) -> tuple[Task, Sequence[CheckResult]]:
+        """A line for each function but the one in detail, which is given back."""
+        for task, checks in done:
+            self._label("pass", task.title, f"  {_number_of(checks)}")
+        if unwritten:
+            names = ", ".join(task.id for task, _ in unwritten)
+            self._console.item("to do", names, style="yellow", width=_LABEL_WIDTH)
+        chosen = next((pair for pair in failing if pair[0].id == self._focus), failing[0])
+        for task, checks in failing:
+            if task is not chosen[0]:
+                self._left_out = True
+                first = next(check for check in checks if check.status != "pass")
+                self._label(first.status, task.title, f"  [{task.id}]")
+        if done or unwritten or self._left_out:
+            self._gap()
+        return chosen
 
     def task(self, title: str, checks: Sequence[CheckResult]) -> None:
         """A heading with the points, and the task's checks."""
         self._console.heading(title, self._worth(checks))
-        if not self._detailed and any(check.status != "pass" for check in checks):
-            self._detailed = checks[0].task
         if _all_alike(checks) and not self._hidden:
             self._alike(next(check for check in checks if check.status != "skip"))
+        elif self._brief and not self._verbose:
+            self._first_failure(checks)
         else:
             for check in checks:
                 self.check(check)
         self._gap()
 
-    def unwritten(self, tasks: Sequence[tuple[Task, Sequence[CheckResult]]]) -> None:
+    def _first_failure(self, checks: Sequence[CheckResult]) -> None:
+        """One check in detail, below a line for each other that does not pass."""
+        passing = [check for check in checks if check.status == "pass"]
+        failing = sorted((c for c in checks if c.status != "pass"), key=lambda check: check.status == "skip")
+        if passing:
+            self._label("pass", _number_of(passing))
+        for check in failing[1:]:
+            self._label(check.status, check.title, "" if check.status == "skip" else f"  [{check.id}]")
+        for check in failing[:1]:
+            self.check(check)
+
+    def unwritten(self, tasks: Tasks) -> None:
         """The functions that still are as the stub has them: what is true of all is said once."""
         every = [check for _, checks in tasks for check in checks]
         self._console.heading("Not written yet", self._worth(every))
@@ -169,8 +217,6 @@ class _Page:
             if self._verbose:
                 self._printed(check)
             return
-        if self._is_left_out(check):
-            return
         if check.blocked_by:
             self._text(f"Runs once {check.blocked_by} passes.")
             return
@@ -183,28 +229,24 @@ class _Page:
         """Say once how to see what was kept back."""
         if self._left_out:
             command = "`course check`" if self._scored else "--verbose"
-            self._console.note((f"Details of one function at a time; {command} shows all.", "dim"))
+            self._console.note((f"One function at a time in detail; {command} shows all.", "dim"))
+        if self._shortened:
+            self._console.note(("Long lists of numbers are left out; --verbose shows them.", "dim"))
         if self._kept_back:
             self._console.note(("--verbose shows tracebacks.", "dim"))
 
     def _alike(self, check: CheckResult) -> None:
         """The same thing keeps every check of the task from running: say it once."""
         self._label(check.status, check.message)
-        if not self._is_left_out(check):
-            self._details(check)
-
-    def _is_left_out(self, check: CheckResult) -> bool:
-        """True if the details of another function were shown, and those of one are enough."""
-        if self._brief and check.task != self._detailed:
-            self._left_out = True
-            return True
-        return False
+        self._details(check)
 
     def _details(self, check: CheckResult) -> None:
         if check.help and check.help not in self._said:
             self._text(check.help)
         for label, text in numbers_of(check):
-            if label != "diagnosis" or check.help not in self._said:
+            if self._brief and not self._verbose and len(text) > _SHORT * (self._console.width - _BESIDE):
+                self._shortened = True
+            elif label != "diagnosis" or check.help not in self._said:
                 self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
         self._said.add(check.help)
         self._printed(check)
@@ -238,10 +280,14 @@ class _Page:
         self._console.item(word, text, (aside, "dim"), style=STATUS_STYLE.get(status, ""), width=_LABEL_WIDTH)
 
 
-def _is_unwritten(checks: Sequence[CheckResult]) -> bool:
+def is_unwritten(checks: Sequence[CheckResult]) -> bool:
     """True if the task's function is as the stub has it."""
     ran = [check for check in checks if check.status != "skip"]
     return bool(ran) and all(check.diagnosis == _UNWRITTEN for check in ran)
+
+
+def _number_of(checks: Sequence[CheckResult]) -> str:
+    return f"{len(checks)} {'check' if len(checks) == 1 else 'checks'}"
 
 
 def _all_alike(checks: Sequence[CheckResult]) -> bool:

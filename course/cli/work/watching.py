@@ -20,7 +20,7 @@ from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply
-from course.cli.home.advice import next_step
+from course.cli.home.advice import hint_is_due, next_step
 from course.cli.work import checking
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.curves import show_curve
@@ -28,7 +28,7 @@ from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
 from course.cli.work.prints import show_loading
 from course.cli.work.replies import Watch, WatchRun
-from course.cli.work.verdicts import show_verdict
+from course.cli.work.verdicts import is_unwritten, show_verdict
 from course.errors import CourseError, UngradableError
 
 if TYPE_CHECKING:
@@ -53,8 +53,6 @@ SECOND_LOOK = 0.05
 #: How often a newer save is looked for, in s.
 _GLANCE = 0.05
 _LABEL_WIDTH = 9
-#: What can be pressed.
-KEYS = "Keys: h next hint, n next failing function, v details, r again, q leave"
 
 Signature = tuple[int, int, int] | None
 
@@ -98,7 +96,7 @@ def watch(
                 if watcher.look(session) or told:
                     # The first line of a watch is off the screen by now.
                     if keys is not None:
-                        console.note((f"Waiting for a save of {shown}. {KEYS}.", "dim"))
+                        console.note((f"Waiting for a save of {shown}. Keys: {watcher.keys}.", "dim"))
                     console.flush()
     except KeyboardInterrupt:
         if console.fancy:
@@ -223,6 +221,14 @@ class Watcher:
         self._flush_warnings()
         return True
 
+    @property
+    def keys(self) -> str:
+        """What can be pressed now: a hint once one is due, another function if another one fails."""
+        due = hint_is_due(self.here, self.exercise)
+        hint = "h next hint, " if due else ""
+        following = "n next failing function, " if len(self._failing()) > 1 else ""
+        return f"{hint}{following}v details, r again, q leave"
+
     def reply(self) -> Watch:
         """The answer that ``--json`` prints at the end."""
         return Watch(
@@ -278,10 +284,14 @@ class Watcher:
             show_curve(self.console, self.exercise, verdict, self._session, focus=focus, drawn=drawn)
 
     def _failing(self) -> list[str]:
-        """Functions with a check that does not pass, in the order of the exercise."""
-        checks = self._verdict.checks if self._verdict is not None else ()
-        failing = {check.task for check in checks if check.status != "pass"}
-        return [task.id for task in self.exercise.task if task.id in failing]
+        """Functions that were begun and have a check that does not pass, in the order of the exercise."""
+        every = self._verdict.checks if self._verdict is not None else ()
+        found = []
+        for task in self.exercise.task:
+            checks = [check for check in every if check.task == task.id]
+            if any(check.status != "pass" for check in checks) and not is_unwritten(checks):
+                found.append(task.id)
+        return found
 
     def _say_changes(self, verdict: Verdict) -> None:
         """First of all what broke since the last run, and what turned green."""

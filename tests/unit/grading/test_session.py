@@ -444,3 +444,11 @@ def double(x):
     verdict = grade(session, solution + bushy)
     assert all(len(str(check.actual)) < 50_000 for check in results(verdict, "double"))
     assert results(verdict, "double")[0].status is Status.FAIL
+
+
+def test_a_string_that_is_not_closed_is_looked_for_above_the_line_that_python_names(
+    session: GradingSession,
+) -> None:
+    verdict = grade(session, b'def double(x):\n    """Twice x.\n    return x\n\n\n"""Later."""\n')
+    assert verdict.error is not None
+    assert "further up" in verdict.error.help

@@ -135,18 +135,25 @@ class Find(Overlay[str]):
 
 
 class Edit(Overlay[tuple[str, bool]]):
-    """A cell's code. Dismissed with the code and whether to run it, or None to leave it as it was."""
+    """A cell's code. Dismissed with the code and whether to run it, or None to leave it as it was.
 
-    DEFAULT_CSS = "Edit TextArea { height: 1fr; border: none; } Edit > .box { height: 96%; }"
+    Args:
+        line: where to begin.
+    """
+
+    DEFAULT_CSS = """
+    Edit TextArea, Edit TextArea:focus { height: 1fr; border: none; padding: 0; }
+    Edit > .box { height: 96%; }
+    """
     BINDINGS: ClassVar[list[Any]] = [
         Binding("escape", "keep", show=False, priority=True),
         Binding("ctrl+r,f5", "run", show=False, priority=True),
         Binding("ctrl+d", "drop", show=False, priority=True),
     ]
 
-    def __init__(self, title: str, source: str) -> None:
+    def __init__(self, title: str, source: str, line: int = 1) -> None:
         super().__init__()
-        self._title, self._source = title, source
+        self._title, self._source, self._line = title, source, line
 
     def compose(self) -> ComposeResult:
         """The code, with the keys that end editing below it."""
@@ -158,8 +165,10 @@ class Edit(Overlay[tuple[str, bool]]):
             yield area
 
     def on_mount(self) -> None:
-        """Ready to type."""
-        self.query_one(TextArea).focus()
+        """Ready to type, with what is to be changed in sight."""
+        area = self.query_one(TextArea)
+        area.focus()
+        area.move_cursor((self._line - 1, 0), center=True)
 
     def action_keep(self) -> None:
         """Keep the code as it is now."""

@@ -9,6 +9,7 @@ from textual.binding import Binding
 
 from course.catalog.blocks import Task
 from course.cli.reading.screen.cells import CellsApp
+from course.cli.reading.screen.tasks import hint_is_named, line_to_mend
 from course.errors import CourseError
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ class TasksApp(CellsApp):
             return "done in a workspace   Space on   ? keys"
         if not self._practice.of(item.target).file:
             return "Enter start it   Space on   ? keys"
-        return "r check   e edit   h hint   Space on   ? keys"
+        hint = "h hint   " if hint_is_named(self._practice.of(item.target)) else ""
+        return f"r check   e edit   {hint}Space on   ? keys"
 
     @property
     def _at_hand(self) -> Item | None:
@@ -126,7 +128,8 @@ class TasksApp(CellsApp):
                 practice.check(item.target)
             self._rebuild(item.block)
 
-        self.push_screen(Edit(practice.of(item.target).file, practice.source(item.target)), done)
+        now, source = practice.of(item.target), practice.source(item.target)
+        self.push_screen(Edit(now.file, source, line_to_mend(now, source)), done)
 
     def _task_changed(self, name: str) -> None:
         """A task's standing has changed (from another thread)."""

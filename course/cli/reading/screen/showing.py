@@ -63,7 +63,8 @@ class LessonApp(FullScreenApp):
         page: what of it is on the screen, and what there keys act on.
     """
 
-    CSS = "Screen { overflow: hidden; }"
+    # Letters of the page beside a box would be read with it.
+    CSS = "Screen { overflow: hidden; } Overlay { background: $background; }"
     BINDINGS: ClassVar[list[Any]] = [
         Binding("ctrl+q", "quit", priority=True, show=False),
         Binding("q", "quit", show=False),

@@ -8,6 +8,7 @@ import msgspec
 from rich.text import Text
 
 from course.cli.frame.console import STATUS_STYLE
+from course.cli.work.annotations import line_of, unread_line
 from course.scoring.numbers import numbers_of
 from course.scoring.verdict import CheckResult
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from course.cli.reading.screen.practice import Standing
 
-__all__ = ["standing_lines"]
+__all__ = ["hint_is_named", "line_to_mend", "standing_lines"]
 
 #: Lines of what a student's code printed: there is more to see on a screen than these.
 _PRINTED = 4
@@ -38,6 +39,8 @@ def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text
     yield Text.assemble(("Your file: ", "bold"), now.file)
     if now.busy:
         yield Text(f"{now.busy} …", style="dim")
+    elif now.reply is None and now.done:
+        yield Text("Done: every check passed.", style="bold green")
     elif now.reply is None:
         yield Text.assemble(
             ("e", "bold"), " changes it here, or save it in an editor of yours; ", ("r", "bold"), " checks it"
@@ -46,6 +49,25 @@ def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text
         yield from _said(now.reply, name)
     if now.hint:
         yield Text(now.hint, style="italic")
+
+
+def hint_is_named(now: Standing) -> bool:
+    """Whether the last check named a hint as the next step: one is due."""
+    return _names_hint(now.reply or {})
+
+
+def _names_hint(reply: dict[str, Any]) -> bool:
+    return _step(reply).startswith("course hint")
+
+
+def line_to_mend(now: Standing, source: str) -> int:
+    """The line that the first finding of the last check is about; the first line before one."""
+    reply = now.reply or {}
+    if "error" in reply:
+        return unread_line(source)
+    checks = msgspec.convert(reply.get("checks", ()), tuple[CheckResult, ...])
+    first = next((check for check in checks if check.status != "pass"), None)
+    return line_of(source, first) if first is not None else 1
 
 
 def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
@@ -59,7 +81,7 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
     yield from _printed("Loading your file printed:", reply.get("printed"))
     if first is None:
         yield Text("Done: every check passes.", style="bold green")
-        step = (reply.get("next") or {}).get("command", "")
+        step = _step(reply)
         if step.startswith("course report"):
             yield Text.assemble(("$ ", "dim"), (step, "bold cyan"), "   shows what has changed")
         return
@@ -72,8 +94,15 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
         if label != "diagnosis":
             yield Text(f"{label}: {text}", style="dim")
     yield from _printed("Your code printed:", first.stdout)
-    if len(checks) > 1:
-        yield Text(f"{passing} of {len(checks)} checks pass.  course hint {name} or h: a hint", style="dim")
+    some = f"{passing} of {len(checks)} checks pass.  " if len(checks) > 1 else ""
+    offer = f"course hint {name} or h: a hint" if _names_hint(reply) else ""
+    if some or offer:
+        yield Text(f"{some}{offer}".rstrip(), style="dim")
+
+
+def _step(reply: dict[str, Any]) -> str:
+    """The command that the reply names as the next."""
+    return str((reply.get("next") or {}).get("command", ""))
 
 
 def _printed(heading: str, text: str | None) -> Iterator[Text]:

@@ -170,3 +170,62 @@ def test_numbers_that_json_has_not_are_words():
 
     body = Values([math.nan, {"a": math.inf}, (-math.inf, 1.5, True, None)])
     assert encode(body) == b'{"values":["nan",{"a":"inf"},["-inf",1.5,true,null]]}'
+
+
+class Enter(io.StringIO):
+    """Somebody who types these lines."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize(("typed", "seen"), [("\n\n\n\n", 20), ("\nq\n", 10), ("", 5)])
+def test_a_long_answer_stops_at_each_screenful(monkeypatch, typed, seen):
+    monkeypatch.setattr("sys.stdin", Enter(typed))
+    monkeypatch.setenv("LINES", "6")
+    monkeypatch.setenv("COLUMNS", "60")
+    console, out, _ = _console()
+    with console.paged():
+        for number in range(20):
+            console.line(f"fact {number}.")
+    console.line("after")
+    words = out.getvalue()
+    assert words.count("fact") == seen
+    assert words.count("q stops") == -(-seen // 5) - (seen == 20)
+    assert words.rstrip().endswith("after")
+
+
+def test_a_short_answer_and_a_pipe_stop_nowhere(monkeypatch):
+    monkeypatch.setattr("sys.stdin", Enter(""))
+    monkeypatch.setenv("LINES", "6")
+    for terminal, lines in ((True, 5), (False, 50)):
+        console, out, _ = _console(terminal=terminal)
+        with console.paged():
+            for number in range(lines):
+                console.line(f"fact {number}.")
+        assert out.getvalue().count("fact") == lines
+        assert "q stops" not in out.getvalue()
+
+
+def test_words_wrap_on_a_terminal_without_layout_and_stay_on_one_line_under_plain(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    words = "equilibrium " * 10 + "https://example.org/" + "x" * 60
+    for settings, most in (({}, 40), ({"plain": True}, len(words))):
+        console, out, _ = _console(environ={"TERM": "dumb"}, **settings)
+        console.line(words)
+        console.item("help", words, indent=2)
+        rows = out.getvalue().splitlines()
+        assert sum(row.count("https://example.org/" + "x" * 60) for row in rows) == 2
+        assert max(len(row) for row in rows if "https" not in row or settings) >= min(most, 30)
+        assert all(len(row) <= most + 8 for row in rows if "https" not in row)
+        assert " ".join(out.getvalue().split()) == f"{words} help: {words}"
+
+
+def test_a_window_that_becomes_narrower_is_seen(monkeypatch):
+    console, out, _ = _console(environ={"NO_COLOR": "1"})
+    for columns in (80, 40):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        console.line("word " * 30)
+    rows = [len(row.rstrip()) for row in out.getvalue().splitlines()]
+    assert max(rows[:2]) > 70
+    assert max(rows[2:]) <= 40

@@ -8,6 +8,9 @@ from course.catalog.load import Catalog
 from course.cli.frame.console import Console
 from course.progress.quiz import DONE, START
 from course.progress.store import Store
+from course.reading.pages import Place
+from course.reading.parts import read_script
+from course.reading.record import InProgress
 
 
 def record(workspace):
@@ -83,6 +86,26 @@ def test_a_lesson_that_was_read_names_the_step_that_the_dashboard_names(course, 
     step = course("next", "--json").json["next"]["command"]
     assert ran.out.endswith(f"Next: {step}\n")
     assert step == "course check doubling", "it was started"
+
+
+def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_was_left(
+    course, workspace, monkeypatch
+):
+    def reader():
+        store = record(workspace)
+        script = read_script(Catalog().lesson("twice-as-much"))
+        return InProgress(script, store.events(subject="twice-as-much"), store.append)
+
+    monkeypatch.setattr(Console, "interactive", property(lambda _: True))
+    monkeypatch.setattr(Console, "go_on", lambda *_: False)
+    course("lesson", "twice-as-much", "--page")
+    second = reader().place
+    assert second.block > 0
+    reader().at(Place(), second.block)  # back to the top, on the whole screen
+    assert "Going on" not in course("lesson", "twice-as-much", "--page").out
+    reader().at(Place(second.block + 1), second.block + 1)
+    assert "Going on with page 2" in course("lesson", "twice-as-much", "--page").out
+    assert "Going on" not in course("lesson", "twice-as-much", "--page").out, "it was read to its end"
 
 
 def test_go_is_one_loop_until_a_step_is_not_finished(course, workspace, write, someone, monkeypatch):

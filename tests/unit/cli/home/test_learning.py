@@ -86,6 +86,12 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     assert "Mistakes: 1 made, 1 mended\n" in course("progress", "--plain").out
 
 
+def test_a_function_that_was_to_be_written_has_mistakes_of_its_author(course, workspace, write):
+    write("wrong", "RIGHT")
+    course("check")
+    assert "Mistakes: 1 made, 0 mended" in course("progress").out
+
+
 def test_who_did_nothing_yet_reads_nothing_about_it(course, workspace):
     shown = course("progress", "--plain").out
     assert not any(word in shown for word in ("Predictions", "Mistakes", "To read again"))

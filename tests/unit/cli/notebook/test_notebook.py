@@ -109,7 +109,7 @@ def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, workspace)
     write_into(path, GOOD)
     ran = course("notebook", "check", str(path))
     assert ran.code == 1
-    assert "It is not right." in ran.out
+    assert "Not written yet" in ran.out
     write_into(path, GOOD, OTHER)
     ran = course("notebook", "check", str(path), "--json")
     assert ran.code == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -371,6 +372,23 @@ def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
     first, second = write_new("a-1.py", "x = 1\n"), write_new("a-1.py", "x = 2\n")
     assert (first.name, second.name) == ("a-1.py", "a-1-2.py")
     assert first.read_text() == "x = 1\n"
+
+
+@pytest.mark.parametrize("columns", [40, 80, 90, 120])
+def test_a_box_leaves_no_letters_of_the_page_beside_it(catalog, columns):
+    rows = []
+
+    async def journey(app, pilot):
+        await pilot.press("question_mark")
+        await pilot.pause(0.2)
+        rows.extend("".join(s.text for s in strip) for strip in app.screen._compositor.render_strips())
+        await pilot.press("escape")
+
+    reading(catalog, journey, size=(columns, 24))
+    within = [re.split("[│╭╰╮╯]", row) for row in rows if set(row) & {*"│╭╰"}]
+    assert len(within) > 10
+    for left, *_, right in within:
+        assert not left.strip() + right.strip()
 
 
 def test_it_opens_at_a_section_whatever_place_was_kept(catalog: Catalog, tmp_path: Path) -> None:

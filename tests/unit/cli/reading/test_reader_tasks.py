@@ -162,3 +162,55 @@ def test_outside_of_a_workspace_it_says_what_is_needed(catalog: Catalog) -> None
         assert "Make a workspace first" in screen(app)
 
     doing(catalog, None, journey)
+
+
+def test_its_editor_opens_at_the_function_that_the_finding_is_about(
+    catalog: Catalog, workspace: Workspace
+) -> None:
+    from textual.widgets import TextArea
+
+    at: list[str] = []
+
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("enter")
+        await pilot.pause()
+        path = workspace.root / "warm-ups" / TASK / "which_line_first.py"
+        path.write_text("# a note\n" * 30 + path.read_text())
+        await pilot.pause(0.6)
+        await answered(app, pilot)
+        await pilot.press("e")
+        await pilot.pause(0.2)
+        area = app.screen.query_one(TextArea)
+        at.append(area.text.splitlines()[area.cursor_location[0]])
+
+    doing(catalog, workspace, journey)
+    (task,) = catalog.exercise(TASK).task
+    assert at[0].startswith(f"def {task.id}(")
+
+
+def test_a_hint_is_offered_once_one_is_due_and_a_task_that_was_done_says_so_when_it_is_opened_again(
+    catalog: Catalog, workspace: Workspace
+) -> None:
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        path = workspace.root / "warm-ups" / TASK / "which_line_first.py"
+        await pilot.press("enter")
+        await pilot.pause()
+        assert "h hint" not in screen(app)
+        await pilot.press("r")
+        await answered(app, pilot)
+        assert "hint" not in screen(app), "nothing was tried yet"
+        path.write_text(path.read_text().replace("return", "return -1.0 *", 1))
+        await pilot.pause(0.6)
+        await answered(app, pilot)
+        assert "h hint" in screen(app)
+        path.write_bytes(solution_path(catalog, catalog.exercise(TASK)).read_bytes())
+        await pilot.pause(0.6)
+        await answered(app, pilot)
+
+    async def again(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press(*["down"] * 12)
+        await pilot.pause()
+        assert "Done: every check passed." in screen(app)
+
+    doing(catalog, workspace, journey)
+    doing(catalog, workspace, again)

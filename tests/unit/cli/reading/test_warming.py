@@ -170,3 +170,42 @@ def test_they_are_handed_in_only_when_asked_for(warm, workspace, tmp_path_factor
     entries = [read_student(one, asked, required=True) for one in class_list(folder).students]
     found = {entry.student: entry.submission is not None for (entry,) in entries}
     assert found == {"ada": True, "bob": False, "cem": True}
+
+
+def test_what_follows_a_report_is_no_check_that_sends_back_to_it(warm, workspace):
+    from course.cli.frame.here import Here
+    from course.cli.home.advice import after_report
+
+    def step() -> str:
+        here = Here.load()
+        return after_report(here, here.catalog.exercise("adding"))
+
+    warm("start", "adding")
+    write(workspace, "adding", "RIGHT", "wrong")
+    warm("check", "adding")
+    assert step() == "course check adding"
+    write(workspace, "adding", "RIGHT", "RIGHT")
+    warm("check", "adding")
+    assert step() == "course warmup taking"
+
+
+def test_a_lesson_that_is_half_read_goes_on_and_has_its_other_warm_ups_in_their_places(warm, workspace):
+    from course.progress.store import Store
+
+    store = Store(workspace / ".course" / "progress.sqlite")
+    store.append("bookmark", "twice-as-much", {"block": 1, "part": 0.0, "words": ""})
+    warm("start", "adding")
+    write(workspace, "adding", "RIGHT", "RIGHT")
+    assert warm("check", "adding", "--json").json["next"]["command"] == "course lesson twice-as-much"
+    store.append("lesson", "twice-as-much")
+    assert warm("check", "adding", "--json").json["next"]["command"] == "course warmup taking"
+
+
+def test_faults_of_a_program_to_mend_are_nobody_s_mistakes(warm, workspace):
+    warm("start", "adding")
+    write(workspace, "adding", "wrong", "RIGHT")
+    warm("check", "adding")
+    said = warm("progress").out
+    assert "Faults in programs to mend: 1 found, 0 mended" in said
+    assert "Mistakes" not in said
+    assert [one["given"] for one in warm("progress", "--json").json["mistakes"]] == [True]

@@ -52,6 +52,18 @@ def test_an_untouched_stub_earns_no_hint(course, workspace):
     assert "follows an attempt" in ran.out
 
 
+def test_a_function_that_is_not_begun_has_no_hint_and_another_one_that_fails_goes_first(course, write):
+    write("raise NotImplementedError", "wrong")
+    course("check")
+    reply = course("hint", "--json").json
+    assert (reply["given"], reply["task"]) == (True, "doublings")
+    write("RIGHT", "raise NotImplementedError")
+    assert course("check", "--json").json["next"]["command"] == "course watch doubling"
+    reply = course("hint", "--json").json
+    assert (reply["given"], reply["reason"], reply["hint"]) == (False, "unchanged", reply["hint"])
+    assert course("hint", "--task", "double", "--json").json["reason"] == "passing"
+
+
 def test_a_comment_is_no_attempt(course, write):
     write("wrong", "wrong")
     course("check")

@@ -91,3 +91,8 @@ def test_outside_of_a_workspace_a_command_says_how_to_make_one(course, command):
     ran = course(*command.split())
     assert ran.code == 5
     assert "course init" in ran.err
+
+
+def test_a_new_workspace_names_the_command_that_the_readme_names(course, tmp_path):
+    assert course("init", "mine", "--json").json["next"]["command"] == "course go"
+    assert "course go" in course("init", "yours").out

@@ -113,7 +113,31 @@ def test_a_failure_says_what_was_measured_expected_why_and_where():
     ]
 
 
-def test_functions_not_written_yet_are_listed_once_at_the_end():
+def test_what_passed_and_what_is_not_written_yet_stands_above_what_fails():
+    words = _shown(_check("a", "euler", Status.FAIL), _unwritten("b", "verlet"), _check("c", "rk4"))
+    assert words.index("RK4") < words.index("Not written yet") < words.index("Explicit Euler")
+
+
+def test_a_brief_verdict_fits_a_small_terminal_and_ends_with_its_finding(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    words = _shown(
+        *(
+            _check(f"a{n}", "euler", Status.FAIL, message="Wrong sign.", actual=1.0, expected=[0.12345] * 99)
+            for n in range(9)
+        ),
+        *(_check(f"b{n}", "verlet") for n in range(9)),
+        *(_unwritten(f"c{n}", "rk4") for n in range(9)),
+        brief=True,
+        plain=False,
+    )
+    # 24 rows, less what a watch says around it: its rule, the next step, the file and the keys.
+    assert len(words.splitlines()) <= 24 - 5
+    assert words.count("Wrong sign.") == words.count("measured") == words.count("Long lists") == 1
+    places = [words.index(text) for text in ("to do", "a8 works", "a0 works", "Wrong sign.")]
+    assert places == sorted(places)
+
+
+def test_functions_not_written_yet_are_listed_once():
     words = _shown(
         _unwritten("a", "euler"), _check("b", "verlet"), _unwritten("c", "rk4"), _unwritten("d", "rk4")
     )
@@ -211,7 +235,7 @@ def test_a_brief_verdict_has_the_details_of_one_function_and_says_so():
     second = _check("b", "verlet", Status.FAIL, message="Second.", help="Help two.")
     words = _shown(first, second, brief=True)
     assert "Help one." in words
-    assert "FAIL: b works" in words
+    assert words.index("FAIL: Velocity Verlet  [verlet]") < words.index("FAIL: a works")
     assert "Second." not in words
     assert "course check" in words
     assert "Help two." in _shown(first, second)

@@ -235,3 +235,17 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     assert not watcher.press("x", session)
     assert not watcher.press("\n", session)
     assert len(_said(watcher)) == said
+
+
+def test_keys_name_a_hint_once_one_is_due_and_another_function_once_another_one_fails(watching, write):
+    watcher, session = watching
+    watcher.look(session)
+    assert watcher.keys == "v details, r again, q leave"
+    write("wrong", "raise NotImplementedError")
+    watcher.look(session)
+    assert watcher.keys == "h next hint, v details, r again, q leave"
+    watcher.press("h", session)
+    assert "next hint" not in watcher.keys
+    write("wrong", "also wrong")
+    watcher.look(session)
+    assert watcher.keys == "h next hint, n next failing function, v details, r again, q leave"

@@ -76,9 +76,9 @@ def run(
 ) -> int:
     """Grade a folder of submissions.
 
-    One folder per student, or what Canvas, Moodle or Gradescope gave for download, unpacked. The exit code is
-    0 when every submission was graded, whatever the scores; 6 when some could not be, and then each is listed
-    with its reason.
+    One folder per student, or an unpacked download from Canvas, Moodle or Gradescope. The exit code is 0 if
+    every submission was graded, whatever the scores; 6 if some could not be graded, and then each of these is
+    listed with the reason.
     """
     from course.grading.running.run import RunOptions, grade_class
 

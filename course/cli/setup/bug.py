@@ -42,8 +42,8 @@ def bug(
 ) -> int:
     """Write what a fault report needs into a file.
 
-    Versions, what this machine can protect, and the last traceback of the course itself. Names of the user
-    and the machine and the paths to home are taken out. Nothing is sent anywhere.
+    The file has versions, the protection levels of this machine, and the last traceback of the course itself.
+    Names of the user and the machine and paths to the home folder are removed. Nothing is sent anywhere.
     """
     console = current()
     target = files.target(out or Path("course-bug.txt"), "-o", ("txt", "md"))

@@ -108,8 +108,8 @@ def update(
 ) -> int:
     """Bring newer course content in.
 
-    For what you started: a file you never edited is replaced (a copy is kept); beside one that you edited
-    the newer one is put as NAME.new, and yours stays.
+    For exercises you started: a file that you never edited is replaced (a copy is kept). A file that you
+    edited stays, and the newer one is put beside it as NAME.new.
     """
 
     console, here = current(), Here.load()

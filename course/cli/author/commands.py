@@ -211,7 +211,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
     for path in written:
         console.line(path, indent=2)
     if kind == "lesson":
-        console.note("Put its id into syllabus.toml, where it is to be read.")
+        console.note("Put its id into syllabus.toml, at the place where it is read.")
     if kind == "warm-up":
         console.note(f"What wrong solutions answer is computed by: course author build {name}")
     then = "sandbox play" if kind == "scene" else "author check"
@@ -311,7 +311,7 @@ def build(
     ] = None,
     confusion: Annotated[
         bool,
-        typer.Option("--confusion", help="Try every wrong program too, and keep what each is told. Minutes."),
+        typer.Option("--confusion", help="Grade every wrong program too; takes minutes."),
     ] = False,
 ) -> int:
     """Generate the files that follow from an exercise's sources.

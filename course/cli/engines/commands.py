@@ -148,7 +148,7 @@ def _step(text: str) -> float:
         step = float(top) / (float(bottom) if slash else 1.0)
     except (ValueError, ZeroDivisionError):
         raise UsageError(
-            f"--dt {text}: this is no step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
+            f"--dt {text}: this is not a step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
         ) from None
     if not _SHORTEST <= step <= _LONGEST:
         raise UsageError(

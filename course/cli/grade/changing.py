@@ -282,7 +282,7 @@ def _show_late(
     if results.policy is not None:
         console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
         if unknown_time:
-            console.note(f"{unknown_time} have no time anybody trusted gives; they count as in time.")
+            console.note(f"{unknown_time} have no trusted submission time; they count as in time.")
     for name in unknown:
         console.warn(f"The gradebook has no {name}.")
 
@@ -338,6 +338,6 @@ def similar(
     if found.left_out:
         console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
     if found.unreadable:
-        console.note(f"{len(found.unreadable)} are no Python or longer than 200 kB, and were not compared.")
+        console.note(f"{len(found.unreadable)} are not Python or exceed 200 kB, and were not compared.")
     console.note(f"Side by side: {target}")
     return 0

@@ -118,9 +118,7 @@ def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...]
         return
     names = ", ".join(summary.edited)
     console.line((f"The graders were edited since these scores were given: {names}.", "bold"))
-    console.line(
-        f"Nobody's score was changed by that. With the graders as they are now, {len(changes)} would:"
-    )
+    console.line(f"No score was changed by that. With the graders as they are now, {len(changes)} would:")
     for change in changes[:_MOST_TROUBLED]:
         show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
@@ -162,7 +160,7 @@ def _show_people(console: Console, summary: Summary) -> None:
     for listed, words in (
         (summary.missing, "enrolled and handed in nothing"),
         (summary.strangers, "not in the roster, or not told apart by it"),
-        (summary.unrecognised, "could not be told whose they are"),
+        (summary.unrecognised, "unknown owner"),
     ):
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))

@@ -1,4 +1,4 @@
-"""``course bug``: what somebody needs who looks for a fault, in a file, without anything personal in it."""
+"""``course bug``: a file for a developer who looks for a fault, without personal data."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ def update(
 def _agreed(console: Console, shown: str) -> bool:
     if not console.interactive:
         raise UsageError(
-            f"This would replace {shown}, and nobody is here to be asked.",
+            f"This would replace {shown}, and there is no terminal to ask on.",
             help="Add --yes; a copy of the file is kept.",
             code="needs_yes",
         )

@@ -319,8 +319,8 @@ def build(
     The points and counts in `exercise.toml`, which come from the checks' markers, and the time that its slow
     public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of every
     known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home, where
-    there are no solutions; and docs/graders.md. `course author check` refuses files that are out of date. With
-    --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
+    there are no solutions; and docs/graders.md. `course author check` refuses files that are out of date.
+    With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
     beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import build as desk

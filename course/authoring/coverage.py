@@ -156,7 +156,7 @@ def check_coverage(
 def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:
     """What is wrong with a part in itself, and the fix."""
     if not part.span:
-        yield f"{part.lines!r} are no lines.", 'Write "12", "12-15" or "12-15, 20".'
+        yield f"{part.lines!r} are not lines.", 'Write "12", "12-15" or "12-15, 20".'
     if part.word not in WORDS:
         yield f"there is no word {part.word!r}.", f"The words are {', '.join(WORDS)}."
     if not part.where:

@@ -1,7 +1,7 @@
 """What a lesson consists of, as frozen types: inline pieces inside blocks.
 
 Every reader of a lesson (terminal, notebook, audit) works from these and never from Markdown. A block knows
-the line it starts on, so that whoever finds fault with it can say where.
+the line it starts on, so that a fault in it can be reported with its line.
 """
 
 from __future__ import annotations
@@ -226,7 +226,7 @@ class Prediction:
     blocks: tuple[Block, ...]
 
 
-#: Closed on purpose: a label nobody knows is a typing error, not a new kind.
+#: Closed on purpose: an unknown label is a typing error, not a new kind.
 CalloutKind = str
 CALLOUTS: tuple[CalloutKind, ...] = ("myth", "fact", "analogy", "answer", "remember", "note")
 

@@ -78,7 +78,7 @@ def content() -> Content:
 
 
 def chosen(folder: Path) -> Content:
-    """The course under a folder somebody named.
+    """The course under a named folder.
 
     Raises:
         UsageError: there is none.

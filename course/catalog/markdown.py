@@ -42,7 +42,7 @@ def read_blocks(path: Path) -> tuple[b.Block, ...]:
 
 
 def read_task(path: Path) -> tuple[b.Block, ...]:
-    """The blocks of a warm-up's README, below its title, which whoever shows it has already.
+    """The blocks of a warm-up's README below its title; the caller has the title already.
 
     Raises:
         ContentError: the file cannot be read, or holds something a lesson could not hold.
@@ -169,11 +169,11 @@ class _Builder:
         caption = self._inlines(pieces[1:], line)
         if not target.startswith("figure:"):
             raise self._wrong(
-                line, f"the picture {target} is no figure", "Name a figure: ![what is seen](figure:id)."
+                line, f"the picture {target} is not a figure", "Name a figure: ![what is seen](figure:id)."
             )
         if len(alt.split()) < 5:
             raise self._wrong(
-                line, "the figure has no alternative text", "Say in [ ] what is to be seen in it."
+                line, "the figure has no alternative text", "Say in [ ] what the picture shows."
             )
         if not b.plain_text(caption).strip():
             raise self._wrong(
@@ -244,7 +244,7 @@ class _Builder:
         for offset, row in enumerate(text.splitlines(), start=1):
             if not row.startswith("$ "):
                 raise self._wrong(
-                    line + offset, "a line that is no command", "Start each line with $ and a space."
+                    line + offset, "a line that is not a command", "Start each line with $ and a space."
                 )
             command, _, note = row[2:].partition("  # ")
             commands.append(b.Command(command.strip(), note.strip()))

@@ -52,7 +52,7 @@ _NOT_A_ZIP = (
     RuntimeError,
     OSError,
 )
-_ASK_AGAIN = "Ask whoever sent it for a new copy."
+_ASK_AGAIN = "Ask for a new copy where you got it."
 
 
 class PackedFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -210,7 +210,7 @@ def _check_entry(path: str, content: bytes) -> tuple[str, str]:
     match = _ENTRY.fullmatch(path)
     if match is None or len(content) > MAX_FILE_BYTES:
         raise UsageError(
-            f"{path[:80]!r} is no entry a pack may have, or is larger than {MAX_FILE_BYTES} bytes."
+            f"{path[:80]!r} is not an entry that a pack may have, or is larger than {MAX_FILE_BYTES} bytes."
         )
     return ExerciseId(match["exercise"]), match["name"]
 

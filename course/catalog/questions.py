@@ -55,7 +55,7 @@ class Option(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         right: True for the one that is right.
-        misconception: of a wrong one, what whoever picks it believes: a key of the question's table.
+        misconception: of a wrong one, what a student who picks it believes: a key of the question's table.
         explanation: why it is right or wrong; shown after the attempt.
     """
 

@@ -103,7 +103,7 @@ def read_document(
     first_line: int = 1,
     reserved: Iterable[str] = (),
 ) -> Document[T]:
-    """Like ``read_toml``, with the lines kept for whoever has more to check.
+    """Like ``read_toml``, with the lines kept for the caller's own checks.
 
     Args:
         text, first_line: the TOML and the line it starts on, where it is only a part of the file.

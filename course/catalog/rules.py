@@ -102,7 +102,9 @@ def check_exercise(document: Document[Exercise]) -> None:
     for index, name in enumerate(exercise.imports):
         if not name.isidentifier():
             document.fail(
-                ("imports", index), f"{name!r} is no top-level package.", fix='Name packages alone: "numpy".'
+                ("imports", index),
+                f"{name!r} is not a top-level package.",
+                fix='Name packages alone: "numpy".',
             )
     _check_tasks(document)
 
@@ -130,7 +132,7 @@ def _check_module(document: Document[Exercise], module: str) -> None:
     if not _MODULE.fullmatch(module):
         document.fail(
             ("module",),
-            f"`module` is {module!r}, which is no plain Python file name.",
+            f"`module` is {module!r}, which is not a plain Python file name.",
             fix="Use lower-case letters, digits and underscores, then .py: sim_to_real.py",
         )
     if module in _TAKEN_MODULES:
@@ -145,7 +147,7 @@ def _check_tasks(document: Document[Exercise]) -> None:
         if not task.id.isidentifier():
             document.fail(
                 ("task", index, "id"),
-                f"{task.id!r} is no Python name.",
+                f"{task.id!r} is not a Python name.",
                 fix="The id of a task is the name of the function the student writes.",
             )
         if any(other.id == task.id for other in exercise.task[:index]):
@@ -227,7 +229,9 @@ def check_mutants(document: Document[MutantList], exercise: Exercise) -> None:
         where = ("mutant", index)
         if not _MODULE.fullmatch(mutant.file):
             document.fail(
-                (*where, "file"), f"{mutant.file!r} is no plain Python file name.", fix="Write: wrong_sign.py"
+                (*where, "file"),
+                f"{mutant.file!r} is not a plain Python file name.",
+                fix="Write: wrong_sign.py",
             )
         if mutant.file in files:
             document.fail((*where, "file"), f"{mutant.file} is listed twice.", fix="Remove one entry.")

@@ -84,7 +84,7 @@ class Wall:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Everything an engine has to be told.
+    """Everything an engine needs to know.
 
     Attributes:
         bodies: those that move, in the order in which ``World.motion`` reports them.

@@ -57,7 +57,7 @@ def fingerprints(rows: Iterable[Row]) -> str:
     if not kinds:
         return ""
     parts = "; ".join(f"{kind}: {_list(names)}" for kind, names in kinds.items())
-    return f"The free fall gives the integrator away. {parts[0].upper()}{parts[1:]}."
+    return f"The free fall shows the integrator. {parts[0].upper()}{parts[1:]}."
 
 
 def same_algorithm(rows: Iterable[Row]) -> str:
@@ -113,7 +113,7 @@ def defaults(rows: Sequence[Row]) -> str:
         return ""
     return (
         f"Defaults are part of the model: in {len(beyond)} of {compared} scenarios ({', '.join(beyond)}) "
-        "options moved one engine further than all well-set engines lie apart."
+        "options change one engine by more than all well-set engines differ."
     )
 
 

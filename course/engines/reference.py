@@ -12,7 +12,7 @@ import msgspec
 from course.engines.results import Comparison, Reference, Row, Setting
 from course.engines.scenarios.scenario import DT
 
-__all__ = ["FORMAT_VERSION", "load", "made_of", "row"]
+__all__ = ["FORMAT_VERSION", "encoded", "load", "row"]
 
 FORMAT_VERSION = 1
 _RATES = ("steps_per_second", "slowest", "fastest", "pymunk_steps_per_second")
@@ -45,7 +45,7 @@ def row(engine: str, scenario: str, setting: Setting, dt: float = DT) -> Row:
     raise LookupError(f"The reference has no {engine}, {scenario}, {setting}, {dt}.")
 
 
-def made_of(comparison: Comparison, measured: str) -> bytes:
+def encoded(comparison: Comparison, measured: str) -> bytes:
     """A comparison as the file that ``load`` reads: values only, and neither repeated words nor failures.
 
     Rates of another machine on another day say nothing here, so of speed only the ratio to pymunk is kept.

@@ -11,7 +11,7 @@ documentation it was read from, and the values worth trying for a topic; those l
 Of all combinations, the defaults among them, the one that comes nearest to the truth is taken, on the
 mean over the phases of a step; among equals the one that sets least. No engine's solver gets more than
 ``BUDGET`` iterations a step, nor another step. So no engine is worse well set than as it comes, and none is
-judged by options that nobody tried. ``tests/benchmarks/engines_settings.py`` makes the choice and writes
+judged by options that were not tried. ``tests/benchmarks/engines_settings.py`` makes the choice and writes
 ``well_set.json``.
 """
 

@@ -127,12 +127,12 @@ def chaos() -> Figure:
     t, angles = swing(pair, 0.005, 15.0)
     apart = np.max(np.abs(angles[:, 1] - angles[:, 0]), axis=-1)
     left.plot(t[1:], apart[1:], color=PALETTE["blue"], linewidth=1.2)
-    for level, text, place in ((1e-3, "a thousandth", (0.4, 3e-2)), (1.0, "strangers", (4.2, 2.0e1))):
+    for level, text, place in ((1e-3, "a thousandth", (0.4, 3e-2)), (1.0, "1 rad", (4.2, 2.0e1))):
         when = float(t[np.argmax(apart > level)])
         left.plot([when], [level], marker="o", color=PALETTE["black"])
         note(left, f"{text}\nat {when:.1f} s", (when, level), place, PALETTE["black"])
     left.set(yscale="log", xlim=(0, 15), ylim=(1e-10, 1e3))
-    left.set_title("Two paths: no forecast")
+    left.set_title("Two paths drift apart")
     left.set_xlabel("time (s)")
     left.set_ylabel("difference of the angles (rad)")
     edges = np.linspace(-180, 180, 19)
@@ -141,7 +141,7 @@ def chaos() -> Figure:
     right.text(-170, 9.4, f"{STARTS} starts, step 0.02 s", color="#B34F00", fontweight="bold", fontsize=8.5)
     right.text(-170, 8.7, "the same, step 0.01 s (dashed)", fontsize=8.5)
     right.set(xlim=(-180, 180), ylim=(0, 10.4), xticks=(-90, 0, 90))
-    right.set_title("Two crowds: the same habits")
+    right.set_title("Two crowds: equal statistics")
     right.set_xlabel("lower rod from hanging (degrees)")
     right.set_ylabel("share of the time (%)")
     title(figure, "In chaos no path can be checked, but statistics can be")

@@ -44,7 +44,7 @@ def pair() -> Figure:
     figure, (left, right) = new_figure(3.6, 1, 2, sharex=True, sharey=True)
     t, x = head_on(None)
     _two(left, t, x, "-")
-    left.set_title("No contact: they trade places")
+    left.set_title("No contact: they change sides")
     for e, line in ((1.0, "-"), (0.5, "--"), (0.0, ":")):
         t, x = head_on(e)
         _two(right, t, x, line)

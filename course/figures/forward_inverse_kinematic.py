@@ -101,10 +101,10 @@ def planned() -> Figure:
     most = int(np.argmax(q[:, 1]))
     note(right, "bends, then\nstraightens", (float(t[most]), float(q[most, 1])), (0.44, 62), PALETTE["black"])
     right.set(xlim=(0, 1), ylim=(-90, 145), yticks=range(-90, 136, 45))
-    right.set_title("The joints: anything but")
+    right.set_title("The joints: curved paths")
     right.set_xlabel("time (s)")
     right.set_ylabel("joint angle (degrees)")
-    title(figure, "A straight line for the hand is a detour for the joints")
+    title(figure, "On a straight line of the hand the joints turn back and forth")
     return figure
 
 
@@ -123,7 +123,7 @@ def torques() -> Figure:
     note(left, "to hold\nits weight", (0.8, 12.9), (0.7, 33), PALETTE["black"])
     left.set(xlim=(0, 1), ylim=(-70, 90))
     left.set_title("Inverse: what it takes")
-    left.set_xlabel("share of the way in time (1)")
+    left.set_xlabel("share of the duration (1)")
     left.set_ylabel("shoulder torque (N m)")
     for load, feedback, line, color, width in (
         (0.0, False, "-", "blue", 3.2),
@@ -145,5 +145,5 @@ def torques() -> Figure:
     right.set_title("Forward: what happens")
     right.set_xlabel("x of the hand (m)")
     right.set_ylabel("y of the hand (m)")
-    title(figure, "Haste multiplies the torque, and a forgotten load spoils the plan")
+    title(figure, "Faster motion needs more torque, and a forgotten load spoils the plan")
     return figure

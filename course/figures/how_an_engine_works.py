@@ -47,12 +47,12 @@ def turning_over() -> Figure:
     for k, (color, line, width) in enumerate(looks):
         above.plot(t, w[:, k], color=color, linestyle=line, linewidth=width)
     above.axhline(0.0, color=PALETTE["black"], linewidth=0.8)
-    above.set_title("No torque, and yet the body turns over")
+    above.set_title("No torque, and yet the body flips over")
     above.set_ylabel("angular velocity (rad/s)")
     above.set(xlim=(0, DURATION_S), ylim=(-7.4, 7.4))
     above.text(0.25, 5.7, "about the middle axis", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
     flip = int(np.flatnonzero(np.diff(np.sign(w[:, 1])))[0])
-    note(above, "turned over", (float(t[flip]), 0.0), (4.0, 2.9), PALETTE["black"])
+    note(above, "flips over", (float(t[flip]), 0.0), (4.0, 2.9), PALETTE["black"])
     late = flip + 35
     note(above, "the other two", (float(t[late]), w[late, 0]), (4.0, -2.9), PALETTE["black"])
     for method in ("explicit_euler", "rk4", "split"):
@@ -67,9 +67,9 @@ def turning_over() -> Figure:
         19.8, 1.6, "Runge-Kutta 4 and split rotations", color=METHODS["velocity_verlet"].ink,
         fontweight="bold", ha="right",
     )  # fmt: skip
-    below.set_title("Only explicit Euler finds energy in the void")
+    below.set_title("Only explicit Euler adds energy")
     below.set(ylim=(-3, 34), xticks=range(0, 21, 5))
     below.set_ylabel("energy gained (%)")
     below.set_xlabel("time (s)")
-    title(figure, "A free body turns over by itself, and explicit Euler adds energy each time")
+    title(figure, "A free body flips over by itself, and explicit Euler adds energy each time")
     return figure

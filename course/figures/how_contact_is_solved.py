@@ -42,7 +42,7 @@ def rest() -> Figure:
     axes.set(xlim=(0, 0.4), ylim=(1.85, -0.1), xticks=[0.0, 0.1, 0.2, 0.3, 0.4])
     axes.set_xlabel("time since the ball was laid down (s)")
     axes.set_ylabel("depth in the floor (mm)")
-    title(figure, "What a floor is made of shows in a ball that only lies there")
+    title(figure, "How deep a resting ball lies depends on the contact model")
     return figure
 
 
@@ -70,7 +70,7 @@ def phases() -> Figure:
     axes.axhline(0.25, color=PALETTE["black"], linewidth=1.2)
     axes.text(0.99, 0.257, "event-driven: 0.25", ha="right", fontsize=8.5, fontweight="bold")
     axes.text(
-        0.99, 0.188, "looked at once a step", ha="right", fontsize=8.5, fontweight="bold",
+        0.99, 0.188, "once a step, no correction", ha="right", fontsize=8.5, fontweight="bold",
         color=PALETTE["blue"],
     )  # fmt: skip
     axes.text(
@@ -100,5 +100,5 @@ def cone() -> Figure:
     axes.legend(loc="upper right", handlelength=3.0, title="friction by")
     axes.set_xlabel("x, an axis of the pyramid (m)")
     axes.set_ylabel("y (m)")
-    title(figure, "A friction pyramid holds more along its diagonal, and bends paths")
+    title(figure, "A friction pyramid is stronger along its diagonal, and bends paths")
     return figure

@@ -110,7 +110,7 @@ def energy_error(z: float = ENERGY_Z, n: int = 3000) -> Figure:
     axes.plot([crossing], [z * z / 4], marker="o", markersize=9, markerfacecolor="none", color="black")
     note(
         axes,
-        f"after about 18/z⁴ = {crossing:.0f} steps\nVerlet is the better keeper",
+        f"after about 18/z⁴ = {crossing:.0f} steps\nVerlet has the smaller error",
         (crossing, z * z / 4),
         (crossing * 0.75, 6e-3),
         PALETTE["black"],
@@ -209,5 +209,5 @@ def _name_limits(axes: Axes) -> None:
     both = f"{METHODS['semi_implicit_euler'].name}\nand {verlet.name}:\nlimit 2"
     note(axes, both, (2.0, 1.0), (2.2, 1.68), verlet.ink)
     note(axes, "limit 2√2 = 2.83", (2.0 * math.sqrt(2.0), 1.0), (2.32, 1.22), rk4.ink)
-    axes.text(0.05, 2.09, "above 1: the swing grows without end", color=black, fontsize=8.5)
+    axes.text(0.05, 2.09, "above 1: the swing grows without limit", color=black, fontsize=8.5)
     axes.text(0.05, 0.44, "below 1: the swing dies away", color=black, fontsize=8.5)

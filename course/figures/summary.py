@@ -20,7 +20,7 @@ _FINE = 1e-5  # s; a step whose own error does not count
 _LOOKS = {
     "numerical": (PALETTE["blue"], "o"),
     "sensor": (PALETTE["green"], "s"),
-    "surroundings": (PALETTE["orange"], "^"),
+    "environment": (PALETTE["orange"], "^"),
     "model": (PALETTE["vermillion"], "D"),
 }
 
@@ -29,7 +29,7 @@ MISTAKES = {
     "step of 1 ms": "numerical",
     "step of 10 ms": "numerical",
     "speed sensor 1 % off": "sensor",
-    "floor tilted by 1°": "surroundings",
+    "floor tilted by 1°": "environment",
     "friction 10 % too high": "model",
     "delay of 50 ms left out": "model",
 }
@@ -108,7 +108,7 @@ def two_questions() -> Figure:
         axes.set_xticks([0.1, 1, 10, 100, 1000, 10_000], ["0.1", "1", "10", "100", "1000", ""])
         axes.set_xlabel("error of the answer (%)")
     panels[0].set_yticks(np.arange(len(MISTAKES)), list(MISTAKES))
-    title(figure, "The same mistakes, another order: what matters depends on the question")
+    title(figure, "Which of the same mistakes matters depends on the question")
     return figure
 
 

@@ -76,7 +76,7 @@ def following() -> Figure:
     figure, (upper, lower) = new_figure(5.6, 2, 1, sharex=True)
     figure.subplots_adjust(hspace=0.26)
     looks = (
-        ("model", PALETTE["vermillion"], ":", "#B34F00", "never measured: digital model", (26, 0.62)),
+        ("model", PALETTE["vermillion"], ":", "#B34F00", "never corrected: digital model", (26, 0.62)),
         ("state", PALETTE["blue"], "--", "#0072B2", "position corrected: digital shadow", (23, 0.075)),
         ("learning", PALETTE["green"], "-", "#007A58", "friction corrected too", (27, 0.0011)),
     )
@@ -95,6 +95,6 @@ def following() -> Figure:
     lower.set_title("How fast does it go?")
     for axes in (upper, lower):
         axes.axvline(WEAR_AT, color=PALETTE["black"], linewidth=0.8)
-    note(lower, "the wheels begin to rub", (WEAR_AT, 0.8), (3, 0.65), PALETTE["black"])
-    title(figure, "Measuring keeps a copy close; answering keeps the robot on course")
+    note(lower, "the wheels start to rub", (WEAR_AT, 0.8), (3, 0.65), PALETTE["black"])
+    title(figure, "Measurements keep a copy close; commands restore the robot's speed")
     return figure

@@ -67,7 +67,7 @@ def standing() -> Figure:
     kp, kd = gains()
     before = fate(kp, kd, 0.0)
     after = fate(kp, kd, DELAY_S)
-    _map(axes[0], kp, kd, before, "The simulator forgets the delay")
+    _map(axes[0], kp, kd, before, "The simulator leaves out the delay")
     _map(axes[1], kp, kd, after, f"The robot acts {DELAY_S:g} s late")
     _name(axes[0], [(1900, 540, "stands still"), (140, 830, "leans,\nsways"), (70, 130, "falls")])
     _name(
@@ -83,7 +83,7 @@ def standing() -> Figure:
     share = np.count_nonzero((before == STANDING) & (after == STANDING)) / np.count_nonzero(
         before == STANDING
     )
-    title(figure, f"Of the settings that stand in the simulator, {100 * share:.0f} % stand on the robot")
+    title(figure, f"Of the gains that work in the simulator, {100 * share:.0f} % work on the robot")
     return figure
 
 

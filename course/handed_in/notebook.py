@@ -72,7 +72,7 @@ class NotebookSource(Places):
         return cls(source=source, notes=kept.notes, starts=kept.starts)
 
     def submission(self, exercise: Exercise) -> Submission:
-        """The module to be graded, whose lines are told as cells."""
+        """The module to be graded; its lines are reported as cells."""
         return Submission({exercise.module: self.source}, replace(self, module=exercise.module), self.notes)
 
     def phrase(self, line: int) -> str:

@@ -1,4 +1,4 @@
-"""What somebody has run in a notebook so far, as the module it stands for.
+"""The code that a student has run in a notebook so far, as a module.
 
 A kernel knows every cell that was run, old versions included, in the order they were run. Of these only the
 newest counts: a cell is left out once all it defined has been defined again.

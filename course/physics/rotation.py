@@ -2,7 +2,7 @@
 
 A unit quaternion [w, x, y, z] = [cos(a/2), sin(a/2) n] turns by the angle a about the unit vector n. Here it
 takes vectors from the body's axes to the world's. Products of unit quaternions are unit quaternions, sums are
-not: whoever *adds* ``h dq/dt`` leaves the sphere, whoever *multiplies* by a small rotation stays on it.
+not: *adding* ``h dq/dt`` leaves the sphere, *multiplying* by a small rotation stays on it.
 
 A free body obeys Euler's equations ``I dw/dt = torque - w x (I w)`` in its own axes. The second term, the
 gyroscopic one, is why a body spun about its middle axis flips over and over (Dzhanibekov's wing nut).

@@ -81,7 +81,7 @@ class RigidBodyState:
         turn = arrays["orientation"]
         size = np.linalg.norm(turn, axis=-1, keepdims=True)
         if np.any(size == 0.0):
-            raise ValueError("A quaternion of length 0 is no orientation; [1, 0, 0, 0] is the unturned one.")
+            raise ValueError("A quaternion of length 0 is not an orientation; use [1, 0, 0, 0].")
         return cls(arrays["position"], arrays["velocity"], turn / size, arrays["angular_velocity"])
 
     @property

@@ -8,7 +8,7 @@ Units are SI and angles radians. ``q`` and ``v`` have shape (d,); the systems of
 apply to each component on its own.
 
 This file stands alone: it is copied beside a stranger's code. It imports only the standard library and
-numpy, and holds neither an integrator nor a solution. Whoever adds either hands out answers.
+numpy, and has neither an integrator nor a solution: either would hand out answers.
 """
 
 # ruff: noqa: ARG002 - every right-hand side takes (t, q, v); most need only some of them

@@ -1,4 +1,4 @@
-"""Which mistakes a student made, and when each was mended: told by the checks of a record.
+"""Which mistakes a student made, and when each was mended, from the recorded checks.
 
 A mistake is a diagnosis of one function. It is mended when every check that showed it has passed since;
 checks that now fail for another reason do not mend it.

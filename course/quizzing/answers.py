@@ -103,7 +103,7 @@ class AnswerFile:
         if not isinstance(given, str):
             self.fail(
                 name,
-                f"the answer to {name} is no text.",
+                f"the answer to {name} is not text.",
                 'Write an option\'s letter: "b".',
                 "answer_not_text",
             )
@@ -173,7 +173,7 @@ def read_answers(path: Path) -> AnswerFile:
             "answers_format",
         )
     if seed is not None and (not isinstance(seed, int) or isinstance(seed, bool)):
-        file.fail("seed", "`seed` is no whole number.", "Write: seed = 42", "answers_format")
+        file.fail("seed", "`seed` is not a whole number.", "Write: seed = 42", "answers_format")
     return file
 
 

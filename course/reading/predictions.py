@@ -40,7 +40,7 @@ class Said:
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """How many of some predictions went which way; ``unjudged`` were said and never judged."""
+    """How many of some predictions went which way; ``unjudged`` were made and never judged."""
 
     right: int = 0
     nearly: int = 0

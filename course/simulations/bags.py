@@ -134,7 +134,7 @@ def read_bag(path: Path) -> tuple[Stream, ...]:
     rosbag2 = _rosbag2()
     if not (path / "metadata.yaml").is_file():
         raise NotFoundError(
-            f"{path} is no bag: it holds no metadata.yaml.",
+            f"{path} is not a bag: it has no metadata.yaml.",
             help="Name the folder that the bag was written to.",
             code="bag_not_found",
         )

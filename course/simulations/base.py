@@ -28,7 +28,7 @@ class Parameter:
 
     Attributes:
         name: what ``--set`` calls it.
-        default: its value if nobody does; the type of the default is the type of the parameter.
+        default: its value if it is not set; the type of the default is the type of the parameter.
         unit: "" for words, "1" for pure numbers.
         low, high: the range, both ends allowed. ``above``: the lower end itself is not.
         choices: the words that are allowed, for a parameter that is a word.

@@ -1,4 +1,4 @@
-"""``key=value`` pairs become checked settings; what cannot be used is said with its place and its fix."""
+"""``key=value`` pairs become checked settings; an unusable pair is refused with its place and its fix."""
 
 from __future__ import annotations
 

@@ -86,9 +86,9 @@ def _head_on(submission, title):
     return kit.Section(
         title,
         text="Two balls of 1 kg and radius 0.5 m start 10 m apart, at 2 m/s each. They must touch at 2.25 s. "
-        "The momentum is zero from beginning to end, and of the 4 J a share of e squared is left. Do "
+        "The momentum is zero from beginning to end, and of the 4 J a share of e squared is left. If "
         "your balls "
-        "change sides? Then nothing has happened between them.",
+        "change sides, there was no contact between them.",
         columns=("e", "your last x1", "exact", "largest momentum", "energy left", "exact"),
         rows=tuple(rows),
         plot=kit.Plot(
@@ -172,13 +172,13 @@ def _pymunk_head_on(submission, title):
         )
     return kit.Section(
         title,
-        text="Balls of 1 kg and 3 kg, e = 0.6, in pymunk and in yours. pymunk moves all bodies first "
+        text="Balls of 1 kg and 3 kg, e = 0.6, in pymunk and in your program. pymunk moves all bodies first "
         "and looks "
-        "for overlaps after, so the blow comes at the first sample after the contact. Until then the "
+        "for overlaps afterwards, so the impact comes at the first sample after the contact. Until then the "
         "ball keeps "
         "its old velocity, and from then on it is off by the change of velocity times the delay.\n\n"
-        "If your program is right, the last but one column is the same as the one before it: you can predict "
-        "another engine's error to the digit.",
+        "If your program is right, the last but one column equals the column before it: you can predict "
+        "another engine's error to the last digit.",
         columns=("step", "pymunk's delay", "predicted difference", "pymunk less yours", "at most"),
         rows=tuple(rows),
         plot=kit.Plot(
@@ -214,11 +214,10 @@ def _pymunk_drop(submission, title):
         series.append(kit.Series(f"h = {1000 * h:g} ms", t, 1000 * off))
     return kit.Section(
         title,
-        text="The same ball as above, up to its second contact. In the air pymunk's position lags by "
-        "one velocity, "
-        "which makes g h t/2. At the floor it bounces late, for a moment it is deep in the floor, "
+        text="The same ball as above, up to its second contact. In the air pymunk's position is behind, "
+        "by g h t/2. At the floor pymunk's ball bounces late: for a moment it is inside the floor, "
         "and the rebound "
-        "starts from there. All of it shrinks with the step, and none of it is in an exact flight.",
+        "starts from there. All these errors shrink with the step, and an exact flight has none of them.",
         columns=("step", "g h t/2 at the floor", "pymunk less yours there", "largest difference", "at most"),
         rows=tuple(rows),
         plot=kit.Plot(

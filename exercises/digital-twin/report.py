@@ -75,13 +75,13 @@ def _replay(submission):
     off_panel.append(kit.Series("one measurement, std", [0.0, 60.0], [scenes.SIGMA] * 2, quiet=True))
     return kit.Section(
         "The twin drifts, and comes back",
-        text="A cart rolls for a minute under a fixed drive; after 20 s its wheels begin to rub. A copy that "
-        "is never measured keeps believing in the old friction. Your twin gets ten positions a second, one "
+        text="A cart rolls for a minute under a fixed drive; after 20 s its wheels start to rub. A copy that "
+        "is never corrected keeps the old friction. Your twin gets ten positions a second, one "
         "in seven of them late" + ("." if followed else "; `sync` is still to be written."),
         columns=("copy", "off in the last 10 s", "friction"),
         rows=(*table, ("the cart", "", "0.80 1/s")),
         plot=kit.Plot(
-            "Without measurements the copy is lost; with them it comes back",
+            "Without measurements the copy drifts away; with them it comes back",
             (
                 kit.Panel("time / s", "off by / m", tuple(off_panel), title="Where is the cart?", log="y"),
                 kit.Panel("time / s", "friction / (1/s)", tuple(believed), title="Why is it slow?"),
@@ -119,15 +119,15 @@ def _loop(submission):
     )
     return kit.Section(
         "Both directions",
-        text="The same cart, and once a second your command sets its drive from your twin. The slower cart "
-        "teaches the twin, and the twin brings the cart back.",
+        text="The same cart, and once a second your command sets its drive from your twin. The twin learns "
+        "the new friction, and its command brings the cart back to its speed.",
         columns=("drive", "slowest after 20 s", "last 10 s"),
         rows=(
             ("as planned", f"{min(planned[200:]):.2f} m/s", f"{np.mean(planned[-100:]):.2f} m/s"),
             ("from your twin", f"{dip:.2f} m/s", f"{end:.2f} m/s"),
         ),
         plot=kit.Plot(
-            "A twin that answers brings the robot back to its speed",
+            "A twin that sends commands brings the robot back to its speed",
             (panel,),
             f"Speed over a minute; with the planned drive it stays at {np.mean(planned[-100:]):.2f} m/s "
             f"after 20 s, with the twin's it dips to {dip:.2f} and ends at {end:.2f} m/s.",
@@ -149,8 +149,8 @@ def _scan(submission):
     spread = 1000 * float(np.std(off[hit]))
     return kit.Section(
         "A scan",
-        text=f"{hit.sum()} of {len(angles)} beams come back, {spread:.0f} mm off (std; asked for 30 mm). The "
-        "others look out of the door or further than they reach.",
+        text=f"{hit.sum()} of {len(angles)} beams hit a wall, {spread:.0f} mm off (std; required: 30). The "
+        "others point through the door or exceed their range.",
         plot=kit.Plot(
             "Each beam ends at its nearest wall",
             (kit.Panel("x / m", "y / m", (*walls, dots, robot), equal=True),),
@@ -182,7 +182,7 @@ def _at_rest(submission):
             for key, unit in zip(made, units, strict=True)
         ),
         plot=kit.Plot(
-            "White noise hides a bias that wanders",
+            "White noise hides a bias that drifts",
             (kit.Panel("time / s", "turn rate / (rad/s)", series),),
             f"Samples over two minutes, {np.std(still - bias):.3g} rad/s (std) about a bias that starts at "
             f"{bias[0]:.3g} rad/s, ends at {bias[-1]:.3g} and lies between {bias.min():.3g} and "
@@ -229,7 +229,7 @@ def _actuators(submission):
         text="A swinging command, larger than the motor takes: dead band, saturation and lag, then a delay, "
         "then a gear with play.",
         plot=kit.Plot(
-            "What is commanded is not what happens",
+            "The motion differs from the command",
             (above, below),
             "Upper panel, the second of two swings: the command is largest at "
             f"{t[_crest(command)]:.2f} s, with {command[_crest(command)]:.1f} rad/s, your motor at "

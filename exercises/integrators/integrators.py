@@ -1,6 +1,6 @@
-"""Numerical integration: four steps, the loop around a step, and two ways to judge one.
+"""Numerical integration: four steps, the loop around a step, and two ways to judge a step.
 
-A step carries a system from time t to t + h. ``accel(t, q, v)`` gives the acceleration, an array like q.
+A step takes a system from time t to t + h. ``accel(t, q, v)`` gives the acceleration, an array like q.
 Replace each ``raise`` by your code; keep the names and the arguments. README.md has the formulae.
 """
 
@@ -10,11 +10,11 @@ import numpy as np  # noqa: F401 - yours to use
 
 
 def explicit_euler_step(accel, t, q, v, h):
-    """One step of explicit Euler: both halves of the state move with what they were at time t.
+    """One step of explicit Euler: position and velocity move with their rates at time t.
 
     accel: called as accel(t, q, v), once; returns the acceleration, shape (d,)
     t: time at the start of the step, s
-    q, v: position and velocity there, shape (d,); not to be changed
+    q, v: position and velocity at that time, shape (d,); do not change them
     h: step, s
     Returns (q_next, v_next), new arrays of shape (d,).
     """
@@ -22,7 +22,7 @@ def explicit_euler_step(accel, t, q, v, h):
 
 
 def semi_implicit_euler_step(accel, t, q, v, h):
-    """One step of semi-implicit Euler: one half of the state moves, then the other with the moved half.
+    """One step of semi-implicit Euler: one of position and velocity moves, then the other with the new value.
 
     Same arguments and result as explicit_euler_step; one call of accel.
     """
@@ -46,11 +46,11 @@ def rk4_step(accel, t, q, v, h):
 
 
 def integrate(step, accel, q0, v0, t_end, h):
-    """Step from time 0 to t_end and keep every state.
+    """Step from time 0 to t_end and return every state.
 
     step: one of the functions above, or any other called the same way
-    q0, v0: state at time 0, shape (d,); may hold whole numbers; not to be changed
-    t_end: end, s: a whole number N of steps
+    q0, v0: state at time 0, shape (d,); may contain whole numbers; do not change them
+    t_end: end, s; a whole number N of steps
     h: step, s
     Returns (t, q, v) of shapes (N+1,), (N+1, d), (N+1, d); row 0 is the initial state.
     Raises ValueError if t_end / h is further than 1e-6 from a whole number.
@@ -61,7 +61,7 @@ def integrate(step, accel, q0, v0, t_end, h):
 def observed_order(hs, errors):
     """The power p in error = C * h**p: least-squares slope of log error over log step.
 
-    hs, errors: two or more positive numbers each, in any order of size
+    hs, errors: two or more positive numbers each, in any order
     Returns p as a float.
     """
     raise NotImplementedError

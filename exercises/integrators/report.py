@@ -91,8 +91,8 @@ def _phase(submission, title):
         rows.append((STEPS[task], f"{far[-1]:.4g} m", f"{np.min(far):.4g} m", f"{np.max(far):.4g} m"))
     return kit.Section(
         title,
-        text=f"From rest at 1 m, {_PHASE_STEPS} steps of {_PHASE_Z:g} / ω. The motion itself is the circle "
-        "of radius 1 m. Which of your paths close, and what shape have they?" + kept,
+        text=f"From rest at 1 m, {_PHASE_STEPS} steps of {_PHASE_Z:g} / ω. The exact motion is the circle "
+        "of radius 1 m. Which of your paths close, and what shape do they have?" + kept,
         columns=("step", "distance from the centre at the end", "least", "largest"),
         rows=tuple(rows),
         plot=_plot(
@@ -120,9 +120,9 @@ def _energy(submission, title):
     panel = kit.Panel("steps taken", "largest energy error so far", tuple(series), log="xy")
     return kit.Section(
         title,
-        text="The energy that the spring began with is the one it should keep. With steps of "
-        f"{_ENERGY_Z:g} / ω: the largest error so far, as a share of it. A curve that turns flat belongs to "
-        "a method that keeps energy within a bound; one that climbs, to one that gains or loses with every "
+        text="The spring should keep the energy that it has at the start. The figure shows, for steps of "
+        f"{_ENERGY_Z:g} / ω, the largest error so far as a share of this energy. If a curve turns flat, "
+        "the method bounds the energy; if it climbs, the method gains or loses energy with every "
         "step." + kept,
         columns=("step", "after 10 steps", "after 100", f"after {_ENERGY_STEPS}"),
         rows=tuple(rows),

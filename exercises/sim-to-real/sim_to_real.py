@@ -1,7 +1,7 @@
-"""From simulation to reality: a plan that is executed on carts whose parameters nobody tells you.
+"""From simulation to reality: a plan that is carried out on carts whose parameters you do not know.
 
-What is given comes first: the cart as a simulation, and the pieces that a fit is put together from. The four
-functions at the end are yours. README.md has the cart, the words a plan may use, and a worked example.
+The given functions come first: the cart as a simulation, and the parts of a fit. The four functions at the
+end are yours. README.md has the cart, the words a plan may use, and a worked example.
 """
 
 import math
@@ -73,11 +73,11 @@ def record(cart, u, rng):
     return t[:-1], np.array(speed) + NOISE_SPEED * rng.standard_normal(len(u))
 
 
-# -- given: the pieces of a fit -------------------------------------------------------------------------
+# -- given: the parts of a fit --------------------------------------------------------------------------
 
 
 def motor_impulse(u, tau):
-    """Integral of the motor's force since the start, N s, (N,), if it heard the command u (N,) at once."""
+    """Integral of the motor's force since the start, N s, (N,), if the command u (N,) arrived at once."""
     keep = math.exp(-H / tau)
     force = impulse = 0.0
     impulses = []
@@ -90,7 +90,7 @@ def motor_impulse(u, tau):
 
 
 def delayed(x, latency):
-    """x(t - latency) for samples x (N,) that begin with zero; linear between samples."""
+    """x(t - latency) for samples x (N,) that start at zero; linear between samples."""
     t = H * np.arange(len(x))
     return np.interp(t - latency, t, x)
 
@@ -101,9 +101,9 @@ def cumulative(x):
 
 
 def in_blocks(x, size=100):
-    """Samples (N,) or (N, k) cut into blocks of ``size``, each less its own mean: (blocks, size, k).
+    """Samples (N,) or (N, k) cut into blocks of ``size``, each minus its own mean: (blocks, size, k).
 
-    An integral over a block starts from an unknown speed; without its mean a block does not care which.
+    An integral over a block starts from an unknown speed; without the mean this speed does not matter.
     Samples that do not fill a block are dropped.
     """
     count = len(x) // size
@@ -115,27 +115,27 @@ def in_blocks(x, size=100):
 
 
 def plan():
-    """What separates the simulation from the cart, and what is done about each of it.
+    """The gaps between the simulation and the cart, and how to narrow each of them.
 
     Returns {"gaps", "excitation_budget_s", "randomization", "metric", "threshold"}:
 
     gaps: at least three dicts from at least three sources, each with
         "source", "parameter", "excitation", "estimator", "mitigation", "metric": words of the README's lists
-        "threshold", "unit": the measurement has worked if the metric is at most this; "%" or "1"
+        "threshold", "unit": the measurement works if the metric is at most this; "%" or "1"
     excitation_budget_s: seconds on the bench, at most 20
     randomization: {"m", "b", "Fc", "tau", "latency"}, each [low, high]: factors on the estimate
-    metric: "success"; threshold: what the plan as a whole promises, 0.90 or more
+    metric: "success"; threshold: the success that the plan promises, 0.90 or more
     """
     raise NotImplementedError
 
 
 def design_excitation(budget_s, u_max, rng):
-    """Commands for the bench that let m, b, Fc and the lag be seen.
+    """Commands for the bench that show m, b, Fc and the lag.
 
     budget_s: duration, s
-    u_max: N, the largest force either way
+    u_max: N, the largest force in either direction
     rng: numpy Generator, if you want randomness
-    Returns shape (round(100 * budget_s),), N: one command each 0.01 s, none beyond u_max.
+    Returns shape (round(100 * budget_s),), N: one command every 0.01 s, none larger than u_max.
     """
     raise NotImplementedError
 
@@ -153,7 +153,7 @@ def identify(t, u, y):
 
 
 def tune(estimate, randomization):
-    """Gains with the least mean settling time over carts drawn about the estimate.
+    """Gains with the least mean settling time over carts drawn around the estimate.
 
     estimate: {"m", "b", "Fc", "tau", "latency", "lag"}, each [value, low, high]
     randomization: {"m", "b", "Fc", "tau", "latency"}, each [low, high]: factors on the value

@@ -103,10 +103,10 @@ def _consistency(submission, title):
     ]
     return kit.Section(
         title,
-        text=f"Three filters track the same {runs} runs of a cart; they differ in how noisy they believe "
-        "the sensor to be. Honest errors have an average NEES of 2, inside the right band at 95 % of the "
-        f"moments, and an average NIS of 1; yours are below, and your band is from {lo:.2f} to {hi:.2f}. A "
-        "filter that trusts its sensor too much belongs far above it.",
+        text=f"Three filters track the same {runs} runs of a cart; they assume different noise in "
+        "the sensor. With the right noise the average NEES is 2, inside the right band at 95 % of the "
+        f"moments, and the average NIS is 1. Your values are below, and your band is {lo:.2f} to {hi:.2f}. A "
+        "filter that trusts its sensor too much should lie far above the band.",
         columns=("noise believed", "mean NEES", "moments in the band", "mean NIS"),
         rows=tuple(rows),
         plot=kit.Plot(
@@ -132,11 +132,11 @@ def _intervals(submission, title):
     return kit.Section(
         title,
         text=f"400 errors with a bias of {dataset.BIAS} m, each of which keeps 0.9 of the one before. With "
-        "blocks of one sample an interval pretends that all 400 are independent; it has to come out narrow, "
-        "and wrong, and to grow with the block until the blocks are longer than the memory of the errors. "
-        "With very long blocks there are too few of them to draw from. Nominally they are 95 % intervals. Of "
-        f"{_SERIES} such series, with blocks of 40, {held:.0%} of yours hold the true bias: the ten blocks "
-        "of a series are too few to know their own spread, and cutting them apart loses some of it.",
+        "blocks of one sample an interval assumes that all 400 are independent. It must be too narrow, "
+        "and it must grow with the block until the blocks are longer than the correlation of the errors. "
+        "With very long blocks there are too few to draw from. Nominally these are 95 % intervals. Of "
+        f"{_SERIES} such series, with blocks of 40, {held:.0%} of your intervals contain the true bias: the "
+        "ten blocks of a series are too few to know their spread well, and cutting loses some of it.",
         columns=("block", "from", "to", "width"),
         rows=tuple(
             (word, f"{1000 * lo:+.1f} mm", f"{1000 * hi:+.1f} mm", f"{1000 * (hi - lo):.1f} mm")
@@ -213,8 +213,8 @@ def _verdicts(submission, title):
         title,
         text=f"Four runs of the cart, margins fixed beforehand: rmse up to {SPEC['rmse_max']} m/s, bias "
         f"within {SPEC['bias_max']} m/s, lag within {SPEC['lag_max_s']} s, coverage from "
-        f"{SPEC['coverage_min']} to {SPEC['coverage_max']}. A number is followed by its interval, from one "
-        "run or another left out: that is what is held against the margin.",
+        f"{SPEC['coverage_min']} to {SPEC['coverage_max']}. Each number is followed by its interval, from "
+        "leaving out one run at a time. The interval is compared with the margin.",
         columns=("twin", "accepted", "rmse m/s", "bias m/s", "lag s", "coverage", "reasons"),
         rows=tuple(rows),
     )

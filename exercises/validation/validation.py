@@ -1,14 +1,14 @@
-"""Validation: how wrong a simulation is, how sure you may be of that, and whether to trust it.
+"""Validation: how wrong a simulation is, how sure you can be of it, and whether to trust the simulation.
 
 An error is always simulated minus real. Replace each ``raise`` by your code; keep the names and the
-arguments. README.md has the formulae. Change no array that you are given.
+arguments. README.md has the formulae. Do not change the arrays that you are given.
 """
 
 import math  # noqa: F401 - yours to use
 
 import numpy as np  # noqa: F401 - yours to use
 
-#: What Student's t of 1, 2, 3 ... 10 degrees of freedom stays below with probability 0.95.
+#: The 0.95 quantiles of Student's t with 1, 2, 3 ... 10 degrees of freedom.
 T95 = (6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812)
 
 
@@ -31,16 +31,16 @@ def bias_variance(e):
 
 
 def wrap_angle(e):
-    """The same angles, whole turns taken off until they lie in [-pi, pi).
+    """The same angles, plus or minus whole turns, so that they lie in [-pi, pi).
 
     e: angles, rad, shape (N,); they may be many turns away
-    Returns an array of shape (N,). At half a turn either sign will do.
+    Returns an array of shape (N,). At half a turn either sign is accepted.
     """
     raise NotImplementedError
 
 
 def nees(err, P):
-    """Normalised estimation error squared: each error against the covariance claimed for it.
+    """Normalised estimation error squared: each error relative to the covariance claimed for it.
 
     err: errors of an estimate, shape (N, d)
     P: their covariances, shape (N, d, d)
@@ -60,11 +60,11 @@ def nis(nu, S):
 
 
 def consistency_band(dof, runs, alpha):
-    """Where the average of normalised squared errors over independent runs should lie.
+    """The band in which the average of normalised squared errors over independent runs should lie.
 
-    dof: degrees of freedom of one of them (the d above)
-    runs: how many are averaged; dof * runs >= 20
-    alpha: share of averages that fall outside, both sides together
+    dof: degrees of freedom of each error (the d above)
+    runs: number of runs that are averaged; dof * runs >= 20
+    alpha: share of averages that lie outside, on both sides together
     Returns (lo, hi), to 1 %.
     """
     raise NotImplementedError
@@ -82,19 +82,19 @@ def coverage(y, lo, hi):
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):
     """A confidence interval for a statistic of errors that resemble their neighbours.
 
-    e: errors in order of time, shape (N,)
+    e: errors in the order of time, shape (N,)
     statistic: called as statistic(samples) with an array of shape (N,); returns a float
     block: length of a block, in samples
     n_boot: number of resamples
     alpha: 1 - level; 0.05 for 95 %
-    rng: numpy.random.Generator, the only source of chance
+    rng: numpy.random.Generator, the only source of randomness
     Returns (lo, hi).
     """
     raise NotImplementedError
 
 
 def energy_error(q, v, energy):
-    """How far the energy has left its first value, relative to the size of that.
+    """Change of the energy from its first value, relative to the size of that value.
 
     q, v: positions and velocities of a run, shape (N, d)
     energy: called as energy(q_i, v_i) with two arrays of shape (d,); returns a float, J
@@ -118,7 +118,7 @@ def cross_validate(fit, predict, runs, k):
 
     fit: called as fit(list_of_runs); returns a model
     predict: called as predict(model, run); returns an array like run["y"]
-    runs: list of dicts; run["y"] is what was measured, shape (N,)
+    runs: list of dicts; run["y"] has the measurements, shape (N,)
     k: number of folds, each a contiguous piece of the list; sizes differ by at most one
     Returns shape (k,): for each fold in order, the RMSE over all samples of its runs.
     """
@@ -126,7 +126,7 @@ def cross_validate(fit, predict, runs, k):
 
 
 def validate(sim, real, spec):
-    """May this simulation stand in for the real thing?
+    """Can this simulation replace the real system?
 
     sim: {"calibrated_on": [ids], "runs": [{"id", "t", "y", "sigma"}, ...]}
     real: {"runs": [{"id", "t", "y"}, ...]}
@@ -138,6 +138,6 @@ def validate(sim, real, spec):
       2. one or none left: reasons ["single_run"] or ["calibration_data"], intervals None, not accepted
       3. a function that pools the errors of some pairs: rmse, bias, best shift, coverage
       4. call it for all pairs and with each one left out: intervals
-      5. hold each interval against its margin, and sort the reasons
+      5. compare each interval with its margin, and sort the reasons
     """
     raise NotImplementedError

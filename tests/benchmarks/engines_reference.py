@@ -50,10 +50,10 @@ def main() -> int:
         return 1
     if arguments.scenario:
         kept = [row for row in reference.load().rows if row.scenario not in arguments.scenario]
-        # The rows that are kept pass through `made_of` as if they had been measured now.
+        # The rows that are kept pass through `encoded` as if they had been measured now.
         kept = [msgspec.structs.replace(row, origin="cached") for row in kept]
         comparison = msgspec.structs.replace(comparison, rows=(*kept, *comparison.rows))
-    FILE.write_bytes(reference.made_of(comparison, datetime.datetime.now(datetime.UTC).date().isoformat()))
+    FILE.write_bytes(reference.encoded(comparison, datetime.datetime.now(datetime.UTC).date().isoformat()))
     print(f"{FILE.name}: {sum(row.ok for row in comparison.rows)} values")
     return 0
 

@@ -101,7 +101,7 @@ def _audit_check(
         _wrong(findings, check, "has no points that could be added up.", "Give it a number, 0 or more.")
     for required in check.requires:
         if required not in known:
-            _wrong(findings, check, f"requires {required!r}, which is no check.", "Correct the marker.")
+            _wrong(findings, check, f"requires {required!r}, which is not a check.", "Correct the marker.")
         elif known[required].hidden and not check.hidden:
             fix = "Let it depend on public checks alone: a student has no others."
             _wrong(findings, check, f"is public and requires the hidden check {required}.", fix)

@@ -1,4 +1,4 @@
-"""What every known wrong program is told: hypothesis by diagnosis, at home and in a grading run.
+"""The diagnosis of every known wrong program: hypothesis by diagnosis, at home and in a grading run.
 
 The programs are the course's own, so they run unprotected and fast, each against the checks of its own task.
 The table is kept with the solution, and the page about the graders shows it.
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 __all__ = [
     "FILE",
     "Confusion",
+    "Reported",
     "Tally",
-    "Told",
     "confusion_of",
     "fate_of",
     "made_from",
@@ -49,8 +49,8 @@ FILE = "confusion.json"
 _EVERY = 100
 
 
-class Told(msgspec.Struct, frozen=True, array_like=True):
-    """How often programs with these mistakes are told so.
+class Reported(msgspec.Struct, frozen=True, array_like=True):
+    """How often programs with these mistakes get this diagnosis.
 
     Attributes:
         codes: what is wrong in them.
@@ -67,7 +67,7 @@ class Confusion(msgspec.Struct, frozen=True, kw_only=True):
     """``confusion.json``: rows at home ("public") and in a grading run ("full")."""
 
     made_from: str
-    rows: dict[str, tuple[Told, ...]]
+    rows: dict[str, tuple[Reported, ...]]
 
 
 class _Rehearsal(GradingSession):
@@ -89,7 +89,7 @@ def confusion_of(
     chosen = [item for item in known if len(item[1]) == 1] + [item for item in known if len(item[1]) > 1][
         ::every
     ]
-    rows: dict[str, tuple[Told, ...]] = {}
+    rows: dict[str, tuple[Reported, ...]] = {}
     done, scopes = 0, ("public", "full")
     for scope in scopes:
         counts: Counter[tuple[str, tuple[str, ...], str]] = Counter()
@@ -98,12 +98,12 @@ def confusion_of(
             done += 1
             if on_progress:
                 on_progress(done, len(scopes) * len(chosen), exercise.id)
-        rows[scope] = tuple(Told(*key, count) for key, count in sorted(counts.items()))
+        rows[scope] = tuple(Reported(*key, count) for key, count in sorted(counts.items()))
     return Confusion(made_from=made_from(catalog, exercise), rows=rows)
 
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
-    """Over all that decides what a wrong program is told."""
+    """A digest of every file that affects the diagnosis of a wrong program."""
     found = hashlib.sha256(digest(catalog, exercise).encode())
     for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
         for path in sorted(
@@ -168,16 +168,16 @@ class Tally:
         )
 
 
-def tally(fate: Callable[[Told], str], rows: tuple[Told, ...]) -> Tally:
+def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
     """How the programs of these rows fare."""
     return sum((Tally(**{fate(row): row.count}) for row in rows), Tally())
 
 
-def fate_of(exercise: Exercise) -> Callable[[Told], str]:
+def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
     """Tells of a row under which word of ``Tally`` its programs are counted."""
     own, names = words(exercise.id), _names(exercise)
 
-    def fate(row: Told) -> str:
+    def fate(row: Reported) -> str:
         if row.said == "survives":
             return "survived"
         if row.said in row.codes or any((row.task, code, row.said) in names for code in row.codes):

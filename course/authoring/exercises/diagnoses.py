@@ -54,7 +54,7 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
             solutions_folder(catalog, exercise) / CONFUSION,
             None,
             "stale",
-            "what known wrong programs are told is not of these programs.",
+            "the kept diagnoses of known wrong programs are out of date.",
             f"Run `course author build {exercise.id} --confusion`.",
         )
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}

@@ -107,9 +107,9 @@ def new_exercise(
 ) -> int:
     """Write an exercise with blanks to fill in.
 
-    In a terminal it asks for what was not given: the functions, and a line about each. Every file has them
-    then, and only what nobody else can know is left blank. Nothing is overwritten. `course author check ID`
-    names each blank that is left.
+    In a terminal it asks for missing information: the functions, and a line about each. It fills them in
+    everywhere, and leaves blank only what you alone can know. Nothing is overwritten. `course author check
+    ID` names each blank that is left.
     """
     return _new_with_functions(scaffold.new_exercise, "exercise", name, function, title, summary, lesson)
 
@@ -211,7 +211,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
     for path in written:
         console.line(path, indent=2)
     if kind == "lesson":
-        console.note("Put its id into syllabus.toml, where it is to be read.")
+        console.note("Put its id into syllabus.toml, at the place where it is read.")
     if kind == "warm-up":
         console.note(f"What wrong solutions answer is computed by: course author build {name}")
     then = "sandbox play" if kind == "scene" else "author check"
@@ -233,10 +233,10 @@ def check(
 ) -> int:
     """Prove that the course is right.
 
-    Links lead somewhere, hints and titles are there, points add up, stubs fail, solutions and accepted
-    variants score full marks, and each mutant loses only its task's points, with the diagnosis it names.
-    What is built is up to date, and ruff has nothing to say. Scenes hold together, and every formula in their
-    texts has a value. Exit code 1 if something is wrong.
+    Links work, hints and titles exist, points add up, stubs fail, solutions and accepted variants score full
+    marks, and each mutant loses only its task's points, with the diagnosis it names. Generated files are up
+    to date, and ruff finds nothing. Scenes are valid, and every formula in their texts has a value. Exit code
+    1 if something is wrong.
     """
 
     console, catalog = current(), load_catalog()
@@ -311,17 +311,17 @@ def build(
     ] = None,
     confusion: Annotated[
         bool,
-        typer.Option("--confusion", help="Try every wrong program too, and keep what each is told. Minutes."),
+        typer.Option("--confusion", help="Grade every wrong program too; takes minutes."),
     ] = False,
 ) -> int:
-    """Write what follows from an exercise's files.
+    """Generate the files that follow from an exercise's sources.
 
-    The points and counts in `exercise.toml`, which its checks' markers add up to, and how long its slow
-    public checks take, which decides when a loop counts as hung; `hypotheses.json`, where it has hypotheses,
-    so that a diagnosis works at home, where there are no solutions: what every known wrong program answers to
-    the exercise's questions, as fingerprints; and docs/graders.md. `course author check` refuses what is out
-    of date. With --confusion each wrong program is graded, at home and as in a grading run, and what it is
-    told is kept beside the solution for docs/graders.md.
+    The points and counts in `exercise.toml`, which come from the checks' markers, and the time that its slow
+    public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of every
+    known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home, where
+    there are no solutions; and docs/graders.md. `course author check` refuses files that are out of date.
+    With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
+    beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import build as desk
     from course.authoring.exercises.kill_table import write_page
@@ -368,10 +368,10 @@ def mutants(
         typer.Option("--table", metavar="FILE", help="Write what is caught by what, as Markdown."),
     ] = None,
 ) -> int:
-    """Show what each wrong solution gets to read.
+    """Show the feedback for each wrong solution.
 
-    Every mutant is graded; the message, the advice and the diagnosis are those its author would see. Exit
-    code 1 if one is not caught as it says.
+    Grades every mutant and shows the message, the advice and the diagnosis that its author would see. Exit
+    code 1 if a mutant is not caught as its entry says.
     """
 
     console, catalog = current(), load_catalog()

@@ -26,10 +26,10 @@ __all__ = ["counted", "coverage", "is_command", "shown"]
 def coverage(
     write: Annotated[bool, typer.Option("--write", help="Make docs/coverage.md anew.")] = False,
 ) -> int:
-    """Show where the course has each part of the chapter it grew out of.
+    """Show where the course covers each part of the chapter that it is based on.
 
-    Its headings, objectives, examples, exercises and questions, each with one word on how it came over, and
-    that each place exists. Exit code 1 if a part or a place is missing.
+    Lists the chapter's headings, objectives, examples, exercises and questions, each with its place in the
+    course and one word on how it is covered. Exit code 1 if a part or a place is missing.
     """
 
     console, catalog = current(), load_catalog()

@@ -41,8 +41,8 @@ _LONGEST, _SHORTEST = 0.02, 1e-4
 def list_engines() -> int:
     """List the engines and the scenarios.
 
-    Each installed engine is started once, in a process of its own, to see whether it can. For what is missing
-    the command that installs it is shown.
+    Each installed engine is started once, in a process of its own, to see whether it runs. For each missing
+    engine the list shows the command that installs it.
     """
     from course.engines.compare import state_of
     from course.engines.scenarios.scenario import SCENARIOS
@@ -83,10 +83,10 @@ def compare(
         typer.Option("--dt", metavar="STEP", help="Step in s, as 0.005 or 1/240; repeatable."),
     ] = None,
     repeat: Annotated[
-        int, typer.Option("--repeat", min=1, max=100, help="Measure each so many times; show the spread.")
+        int, typer.Option("--repeat", min=1, max=100, help="Repeat each measurement; show the spread.")
     ] = 1,
     quick: Annotated[bool, typer.Option("--quick", help="Fewer starts, steps and repetitions.")] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Measure again what is remembered.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Measure again; use no stored results.")] = False,
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE", help="Write the figures: .png, .svg or .pdf.")
     ] = None,
@@ -96,8 +96,8 @@ def compare(
 ) -> int:
     """Run the same scenarios through every installed engine.
 
-    Each engine runs in a process of its own; one that crashes or hangs is a line that says so. What is not
-    installed is shown from a reference measurement, marked as such. Exit code 4 if nothing could be run.
+    Each engine runs in a process of its own; if one crashes or hangs, its line says so. For engines that are
+    not installed, reference measurements are shown and marked. Exit code 4 if no engine could run.
     """
     from course.cli.engines import screen as engines_screen
     from course.engines.compare import Request
@@ -148,7 +148,7 @@ def _step(text: str) -> float:
         step = float(top) / (float(bottom) if slash else 1.0)
     except (ValueError, ZeroDivisionError):
         raise UsageError(
-            f"--dt {text}: this is no step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
+            f"--dt {text}: this is not a step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
         ) from None
     if not _SHORTEST <= step <= _LONGEST:
         raise UsageError(

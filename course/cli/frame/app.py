@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from course.cli.frame.console import Console, current, install
-from course.cli.frame.options import Line, hoist
+from course.cli.frame.options import Line, global_options
 from course.cli.frame.registry import HOME, LazyGroup, build, find
 from course.errors import CourseError, NotFoundError, UsageError
 
@@ -44,7 +44,7 @@ def main() -> NoReturn:
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command line and return its exit code; whatever happens, nothing is raised."""
-    line = hoist(arguments)
+    line = global_options(arguments)
     console = install(Console(line.settings))
     try:
         code = _dispatch(line, console)

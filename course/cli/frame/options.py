@@ -14,7 +14,7 @@ from course.cli.frame.console import Settings
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Line", "hoist"]
+__all__ = ["Line", "global_options"]
 
 _FLAGS = {"--json": "json", "--plain": "plain", "--quiet": "quiet", "-q": "quiet", "--version": "version"}
 
@@ -37,7 +37,7 @@ class Line:
     problem: str = ""
 
 
-def hoist(arguments: Sequence[str]) -> Line:
+def global_options(arguments: Sequence[str]) -> Line:
     """Take the global options out of ``arguments``."""
     found: set[str] = set()
     directory: str | None = None

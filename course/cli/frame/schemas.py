@@ -1,4 +1,4 @@
-"""``course schema``: what ``--json`` prints, as JSON Schemas for whoever reads it with a program."""
+"""``course schema``: what ``--json`` prints, as JSON Schemas for programs that read it."""
 
 from __future__ import annotations
 

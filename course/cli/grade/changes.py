@@ -1,4 +1,4 @@
-"""A change of somebody's result, as a terminal shows it."""
+"""A change of a student's result, as a terminal shows it."""
 
 from __future__ import annotations
 

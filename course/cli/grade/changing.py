@@ -48,7 +48,7 @@ def rerun(
         bool, typer.Option("--dry-run", help="Show what would change; change nothing.")
     ] = False,
     everything: Annotated[
-        bool, typer.Option("--all", help="Also what these very graders scored before.")
+        bool, typer.Option("--all", help="Also regrade results of these same graders.")
     ] = False,
     jobs: Jobs = 1,
     timeout: Annotated[
@@ -61,9 +61,9 @@ def rerun(
 ) -> int:
     """Grade again, with the graders as they are now, or as they were.
 
-    Regrades what other graders scored, and what a fault of ours left without a score. Shows who changes, by
-    how much and by which check. The submissions are in the gradebook; old results stay beside the new, and
-    overrides go on counting.
+    Regrades the results of other graders, and results that a fault of the grader left without a score. Shows
+    whose score changes, by how much and because of which check. The submissions are in the gradebook; old
+    results stay beside the new ones, and overrides still count.
     """
     from course.cli.grade.replies import GradeRerun
     from course.grading.running.batch import grade_all
@@ -117,12 +117,12 @@ def override(
     student: Annotated[str, typer.Argument(metavar="STUDENT", autocompletion=student_ids)],
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
     score: Annotated[
-        float | None, typer.Option("--score", metavar="X", help="Points that are to count.")
+        float | None, typer.Option("--score", metavar="X", help="The points that count.")
     ] = None,
     reason: Annotated[
         str, typer.Option("--reason", metavar="TEXT", help="Shown wherever the score is.")
     ] = "",
-    lift: Annotated[bool, typer.Option("--lift", help="Let what the checks gave count again.")] = False,
+    lift: Annotated[bool, typer.Option("--lift", help="Remove the override again.")] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what would count; keep nothing.")] = False,
 ) -> int:
     """Set a score by hand, with a reason.
@@ -173,10 +173,10 @@ def late(
         bool, typer.Option("--dry-run", help="Show whose score would change; change nothing.")
     ] = False,
 ) -> int:
-    """Say what lateness costs, and who is late.
+    """Set the late policy, and show who is late.
 
-    The policy is kept in the gradebook and applied anew at every export; the scores of the checks never
-    change. Without options it shows what is in force.
+    The policy is kept in the gradebook and applied at every export; the scores of the checks never change.
+    Without options it shows the policy in force.
     """
     from course.cli.grade.replies import GradeLate
     from course.grading.results.journal import Recording, recorded
@@ -282,7 +282,7 @@ def _show_late(
     if results.policy is not None:
         console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
         if unknown_time:
-            console.note(f"{unknown_time} have no time anybody trusted gives; they count as in time.")
+            console.note(f"{unknown_time} have no trusted submission time; they count as in time.")
     for name in unknown:
         console.warn(f"The gradebook has no {name}.")
 
@@ -338,6 +338,6 @@ def similar(
     if found.left_out:
         console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
     if found.unreadable:
-        console.note(f"{len(found.unreadable)} are no Python or longer than 200 kB, and were not compared.")
+        console.note(f"{len(found.unreadable)} are not Python or exceed 200 kB, and were not compared.")
     console.note(f"Side by side: {target}")
     return 0

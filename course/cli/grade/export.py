@@ -51,11 +51,11 @@ def export(
         typer.Option("--assignment", metavar="EXERCISE=ID", help="The assignment on the platform."),
     ] = None,
     partial: Annotated[
-        bool, typer.Option("--partial", help="Leave out students the roster has not.")
+        bool, typer.Option("--partial", help="Leave out students who are not on the roster.")
     ] = False,
     missing: Missing = "blank",
     accept_zeros: Annotated[
-        bool, typer.Option("--accept-zeros", help="Write 0 for what could not be graded and nobody settled.")
+        bool, typer.Option("--accept-zeros", help="Write 0 for ungraded submissions without a decision.")
     ] = False,
     exercise: Exercises = None,
     seed: Annotated[
@@ -65,11 +65,11 @@ def export(
         float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="Of an autograder, per check.")
     ] = 10.0,
 ) -> int:
-    """Write the grades in the form another program reads.
+    """Write the grades in the format of another program.
 
-    Overrides and the late policy are applied anew each time. Students the roster has not are listed and stop
-    the export, unless --partial leaves them out. What could not be graded stops an export to a platform,
-    unless a score was given by hand or --accept-zeros says that it is worth 0.
+    Overrides and the late policy are applied each time. Students who are not on the roster are listed and
+    stop the export, unless --partial leaves them out. An ungraded submission stops an export to a platform,
+    unless it has a score by hand or --accept-zeros makes it 0.
     """
     console = current()
     exercises = tuple(exercise or ())

@@ -51,7 +51,7 @@ Layout = Annotated[
     one_of(
         "--layout",
         *LAYOUTS,
-        help="What kind of folder it is; auto finds out, and refuses what is two things at once.",
+        help="The kind of folder; auto finds out, and refuses a folder that fits two kinds.",
     ),
 ]
 LocalCluster = Annotated[
@@ -76,7 +76,7 @@ RosterFile = Annotated[
     typer.Option(
         "--roster",
         metavar="FILE",
-        help="Who is enrolled: what Canvas, Moodle or Gradescope hand out, or a CSV of your own.",
+        help="Who is enrolled: an export from Canvas, Moodle or Gradescope, or your own CSV.",
     ),
 ]
 Scheduler = Annotated[

@@ -64,7 +64,7 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
 
 
 class AssignedOne(msgspec.Struct, frozen=True, kw_only=True):
-    """A file that became somebody's submission; null scores count for nothing."""
+    """A file that became a student's submission; null scores do not count."""
 
     student: str
     exercise: str
@@ -130,7 +130,7 @@ class LateOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
-    """Who is late under the policy in force; ``time_unknown`` counts results nobody trusted dates."""
+    """Who is late under the policy in force; ``time_unknown`` counts results without a trusted date."""
 
     policy: bool
     late: tuple[LateOne, ...]

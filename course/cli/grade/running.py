@@ -76,9 +76,9 @@ def run(
 ) -> int:
     """Grade a folder of submissions.
 
-    One folder per student, or what Canvas, Moodle or Gradescope gave for download, unpacked. The exit code is
-    0 when every submission was graded, whatever the scores; 6 when some could not be, and then each is listed
-    with its reason.
+    One folder per student, or an unpacked download from Canvas, Moodle or Gradescope. The exit code is 0 if
+    every submission was graded, whatever the scores; 6 if some could not be graded, and then each of these is
+    listed with the reason.
     """
     from course.grading.running.run import RunOptions, grade_class
 
@@ -118,9 +118,7 @@ def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...]
         return
     names = ", ".join(summary.edited)
     console.line((f"The graders were edited since these scores were given: {names}.", "bold"))
-    console.line(
-        f"Nobody's score was changed by that. With the graders as they are now, {len(changes)} would:"
-    )
+    console.line(f"No score was changed by that. With the graders as they are now, {len(changes)} would:")
     for change in changes[:_MOST_TROUBLED]:
         show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
@@ -162,7 +160,7 @@ def _show_people(console: Console, summary: Summary) -> None:
     for listed, words in (
         (summary.missing, "enrolled and handed in nothing"),
         (summary.strangers, "not in the roster, or not told apart by it"),
-        (summary.unrecognised, "could not be told whose they are"),
+        (summary.unrecognised, "unknown owner"),
     ):
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))

@@ -49,10 +49,10 @@ def assign(
     jobs: Jobs = 1,
     isolation: Isolation = "auto",
 ) -> int:
-    """Say whose file it is, and grade it.
+    """Assign a file to a student, and grade it.
 
-    Without STUDENT it lists what could not be graded by its name, what there is for it, which functions that
-    defines, and the match that is proposed. Nothing is renamed; who decided, when and why is kept.
+    Without STUDENT it lists the students without a submission, the files there are for each, the functions
+    that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
     from course.cli.grade.replies import GradeAssign
     from course.grading.running import assign as assigning
@@ -182,10 +182,10 @@ def salvage(
     to: Annotated[Path, typer.Option("--to", metavar="NEW", help="Folder for what is whole; must be new.")],
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what there is; write nothing.")] = False,
 ) -> int:
-    """Get what is whole out of a damaged gradebook and its backups.
+    """Recover the intact parts of a damaged gradebook and its backups.
 
-    Everything goes into a new folder; the damaged file and its backups stay as they are. The exit code is 0
-    when nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
+    Everything goes into a new folder; the damaged file and its backups stay unchanged. The exit code is 0
+    if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
     from course.grading.running.folder import export_all

@@ -70,8 +70,7 @@ def build(
 ) -> int:
     """Write notebooks.
 
-    One that is there already and was worked in keeps that work: newer text is put around it, or the newer
-    notebook beside it.
+    Work in an existing notebook is kept: newer text is put around it, or the newer notebook beside it.
     """
     console = current()
     if form not in FORMATS:
@@ -91,10 +90,10 @@ def build(
 
 @app.command(epilog="Example: course notebook update")
 def update(ids: Ids = None, out: Out = None) -> int:
-    """Bring notebooks that are there up to date.
+    """Bring existing notebooks up to date.
 
-    Your work stays: cells you edited and cells of your own. Where newer text cannot be put around it, the
-    newer notebook is put beside yours as NAME.new.ipynb. A copy of whatever is replaced is kept.
+    Your work stays: cells you edited and cells you added. Where newer text cannot be put around it, the
+    newer notebook is put beside yours as NAME.new.ipynb. A copy of every replaced file is kept.
     """
 
     console, catalog = current(), load_catalog()
@@ -129,8 +128,8 @@ def check(
 ) -> int:
     """Run the public checks on a notebook.
 
-    The notebook itself is not run: its functions are, as a grading run would run them. Exit code 0 if every
-    check passes, 1 if one does not, 3 if there was nothing that could be checked.
+    Runs the functions of the notebook, as a grading run does, not the notebook itself. Exit code 0 if every
+    check passes, 1 if one does not, 3 if nothing could be checked.
     """
 
     return check_file(current(), file, exercise, verbose=verbose)

@@ -1,4 +1,4 @@
-"""Notebooks on disk. Nothing somebody wrote is overwritten, and whatever is replaced is kept as a copy."""
+"""Notebooks on disk. Student's work is never overwritten, and a copy of every replaced file is kept."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
             number = float(value)
         except ValueError:
             raise UsageError(
-                f"--set {pair}: {value[:40]!r} is no number.",
+                f"--set {pair}: {value[:40]!r} is not a number.",
                 help=f"For example --set {key}=1.",
                 code="bad_parameter",
             ) from None

@@ -103,9 +103,7 @@ def play(console: Console, options: PlayOptions) -> int:
 
 def _check(options: PlayOptions) -> None:
     if options.web and options.unseen:
-        raise UsageError(
-            "--web is for eyes, and what else was asked for runs unseen.", help="Ask for one at a time."
-        )
+        raise UsageError("--web opens a page; the other options run without one.", help="Choose one.")
     for option, value in (("--duration", options.duration), ("--every", options.every), ("--at", options.at)):
         low = 0.0 if option == "--at" else 1e-4
         if value is not None and not low <= value <= _LONGEST:
@@ -135,7 +133,7 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
             guess = math.nan
         if math.isfinite(guess):
             return guess
-        console.line("That is no number.")
+        console.line("Not a number.")
 
 
 # -- seen ------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""``course bug``: what somebody needs who looks for a fault, in a file, without anything personal in it."""
+"""``course bug``: a file for a developer who looks for a fault, without personal data."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def bug(
 ) -> int:
     """Write what a fault report needs into a file.
 
-    Versions, what this machine can protect, and the last traceback of the course itself. Names of the user
-    and the machine and the paths to home are taken out. Nothing is sent anywhere.
+    The file has versions, the protection levels of this machine, and the last traceback of the course itself.
+    Names of the user and the machine and paths to the home folder are removed. Nothing is sent anywhere.
     """
     console = current()
     target = files.target(out or Path("course-bug.txt"), "-o", ("txt", "md"))

@@ -38,7 +38,7 @@ class Init(Envelope, tag="course.init/1", frozen=True, kw_only=True):
 
 
 class Bug(Envelope, tag="course.bug/1", frozen=True, kw_only=True):
-    """A report for whoever looks for a fault; ``traceback`` is False where no crash was found."""
+    """A report for a developer who looks for a fault; ``traceback`` is False where no crash was found."""
 
     file: WrittenFile
     traceback: bool

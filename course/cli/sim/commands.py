@@ -60,7 +60,7 @@ def list_simulations(
 ) -> int:
     """List the simulations.
 
-    Each comes with a question: answer it before you run the simulation, then see.
+    Each has a question. Answer it before you run the simulation.
     """
 
     console = current()
@@ -101,7 +101,7 @@ def run(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="Set a parameter; as often as needed.",
+            help="Set a parameter; repeatable.",
             autocompletion=simulation_settings,
         ),
     ] = None,
@@ -114,8 +114,8 @@ def run(
 ) -> int:
     """Run a simulation, or the four of the introduction.
 
-    Shows what was measured beside what theory says, with the error and the unit, and what to learn from it.
-    A file that is replaced is kept as a copy.
+    Shows the results beside theory, with the error and the unit, and what they mean. If a file is replaced, a
+    copy of it is kept.
     """
     console, pairs = current(), settings or []
     if everything:

@@ -108,8 +108,8 @@ def update(
 ) -> int:
     """Bring newer course content in.
 
-    For what you started: a file you never edited is replaced (a copy is kept); beside one that you edited
-    the newer one is put as NAME.new, and yours stays.
+    For exercises you started: a file that you never edited is replaced (a copy is kept). A file that you
+    edited stays, and the newer one is put beside it as NAME.new.
     """
 
     console, here = current(), Here.load()
@@ -135,7 +135,7 @@ def update(
 def _agreed(console: Console, shown: str) -> bool:
     if not console.interactive:
         raise UsageError(
-            f"This would replace {shown}, and nobody is here to be asked.",
+            f"This would replace {shown}, and there is no terminal to ask on.",
             help="Add --yes; a copy of the file is kept.",
             code="needs_yes",
         )

@@ -63,8 +63,8 @@ def check(
 ) -> int:
     """Run the public checks.
 
-    As often as you like. Exit code 0 if every check passes, 1 if one does not, 3 if there was nothing that
-    could be checked. Reads your notebook where you worked in that instead of the .py.
+    Run them as often as you like. Exit code 0 if every check passes, 1 if one does not, 3 if nothing could be
+    checked. If you worked in the notebook instead of the .py file, the notebook is checked.
     """
 
     form = known_format(form)

@@ -45,7 +45,7 @@ def hint(
 ) -> int:
     """Show the next hint.
 
-    One is due after a check that failed on changed code; comments and layout do not count as a change.
+    A new hint is due after a check that failed on changed code; comments and layout do not count as a change.
     Until then the last hint is shown again.
     """
 

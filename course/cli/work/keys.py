@@ -1,4 +1,4 @@
-"""Single keys while a command waits or works, on a terminal only; elsewhere nobody presses any."""
+"""Single keys while a command waits or works, on a terminal only."""
 
 from __future__ import annotations
 

@@ -42,8 +42,8 @@ def report(
 ) -> int:
     """Show what your code does, with figures.
 
-    Runs your functions on public data, as the checks do, and draws the result. What needs a function that is
-    not written yet says so; the rest is shown.
+    Runs your functions on public data, as the checks do, and draws the results. Parts whose functions are not
+    written yet say so.
     """
     from course.scoring.reporting import report_of
 

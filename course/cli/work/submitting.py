@@ -49,8 +49,9 @@ def submit(
 ) -> int:
     """Write the file to hand in.
 
-    Shows what goes in first. An exercise whose file is still the stub is left out; if its notebook was worked
-    in instead, that is handed in, without its outputs. If the output exists, a copy of it is kept.
+    First shows what will go in. An exercise whose file is still the stub is left out; if you worked in its
+    notebook instead, the notebook is handed in, without its outputs. If the file to write exists, a copy of
+    it is kept.
     """
 
     console, here = current(), Here.load()

@@ -174,7 +174,7 @@ def _reach(stack: contextlib.ExitStack, address: str) -> Any:
         ) from None
     except (ValueError, TypeError) as error:
         raise UsageError(
-            f"--scheduler {address} is no address: {error}.", help="It looks like tls://name:8786."
+            f"--scheduler {address} is not an address: {error}.", help="It looks like tls://name:8786."
         ) from None
     stack.enter_context(client)
     try:

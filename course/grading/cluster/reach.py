@@ -40,7 +40,7 @@ def check_scheduler(address: str) -> None:
 
     Raises:
         UsageError: it is no address.
-        MissingCapabilityError: nobody answers there, or certificates are missing or wrong.
+        MissingCapabilityError: no scheduler answers there, or certificates are missing or wrong.
     """
     url = _address(address)
     place = urlsplit(url if "://" in url else f"tcp://{url}")
@@ -51,7 +51,7 @@ def check_scheduler(address: str) -> None:
     if place.scheme not in {"tcp", "tls"}:
         return
     if not host or port is None:
-        raise UsageError(f"--scheduler {address} is no address.", help="It looks like tls://name:8786.")
+        raise UsageError(f"--scheduler {address} is not an address.", help="It looks like tls://name:8786.")
     settings = _settings()
     if place.scheme == "tls":
         _check_tls(url, host, port, _context(settings), settings)

@@ -135,7 +135,7 @@ def select(
 
 
 def check_zeros(selection: Selection, options: ExportOptions) -> None:
-    """Of scores that become somebody's grades none may be a zero that nobody has looked at.
+    """Refuse to export a zero that the instructor has not confirmed.
 
     Raises:
         MissingCapabilityError: something could not be graded, and neither a score by hand nor ``zeros`` says

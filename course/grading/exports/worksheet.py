@@ -74,7 +74,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     written = selection.written
     written.paths.append(path)
     written.rows = filled
-    written.notes.append(f"{len(rows) - filled} rows of the worksheet are as they were.")
+    written.notes.append(f"{len(rows) - filled} rows of the worksheet are unchanged.")
     if locked:
         written.notes.append(
             f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."

@@ -168,7 +168,7 @@ class Gradebook:
             )
 
     def students(self) -> dict[str, FromDownload]:
-        """Who students are to the system they were downloaded from; nobody for plain folders."""
+        """The students' identities in the system they were downloaded from; empty for plain folders."""
         with explained(self.path):
             rows = self._db.execute("SELECT student, identity FROM students").fetchall()
         return {student: msgspec.json.decode(text, type=FromDownload) for student, text in rows}

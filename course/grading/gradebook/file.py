@@ -90,7 +90,7 @@ CREATE TABLE results (
     UNIQUE (student, exercise, submission_sha256, grader_version, seed, run)
 );
 """
-#: Since format 4: the graders of each run as one zip; what was found that is nobody's submission yet; and
+#: Since format 4: the graders of each run as one zip; files that are not a submission yet; and
 #: who changed a grade, when, why, and what it was before.
 _SINCE_4 = """
 CREATE TABLE snapshots (sha256 TEXT PRIMARY KEY, packed BLOB NOT NULL, row_sha256 TEXT) WITHOUT ROWID;
@@ -182,7 +182,7 @@ def explained(path: Path) -> Iterator[None]:
     """SQLite's errors as sentences.
 
     Raises:
-        UsageError: somebody else is using the file.
+        UsageError: another process is using the file.
         MissingCapabilityError: it cannot be read or written where it is.
         IntegrityError: it is damaged.
     """
@@ -241,7 +241,7 @@ def create(path: Path) -> None:
 
 
 def _draft(path: Path) -> Path:
-    """A name nobody else is using; a leftover of a killed run is taken over only if its process is gone."""
+    """A name that no other process uses; a killed run's is taken over only if its process is gone."""
     for number in itertools.count():
         draft = path.with_name(f"{path.stem}.new-{os.getpid()}-{number}")
         if not draft.exists():
@@ -273,7 +273,7 @@ def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
 
     Raises:
         NotFoundError: there is none.
-        UsageError: somebody else is writing it.
+        UsageError: another process is writing it.
         MissingCapabilityError: it belongs to a newer version, or cannot be written here.
         IntegrityError: the file is damaged or no gradebook.
     """

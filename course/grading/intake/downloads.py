@@ -130,7 +130,7 @@ class ClassList:
 
     Attributes:
         students: ordered by name.
-        unrecognised: what belongs to nobody that could be told, one sentence each.
+        unrecognised: files with an unknown owner, one sentence each.
     """
 
     layout: str
@@ -142,7 +142,7 @@ def class_list(folder: Path, layout: str = "auto") -> ClassList:
     """The class in a folder.
 
     Raises:
-        NotFoundError: there is no such folder, or nobody in it.
+        NotFoundError: there is no such folder, or it has no students.
         UsageError: some names are a platform's and some are not; the message lists them.
         MissingCapabilityError: reading this download needs something that is not installed.
     """
@@ -216,7 +216,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
         path = folder / raw
         if not (path.is_dir() or path.is_symlink()):
             if _may_be_handed_in(raw):
-                found.unrecognised.append(f"{_text(raw)}: lies beside the students' folders, in nobody's")
+                found.unrecognised.append(f"{_text(raw)}: is in no student's folder")
             continue  # a class list, notes: no submission of anybody's
         name = _text(raw)
         while name in owned:
@@ -309,7 +309,7 @@ def _gradescope(folder: Path, names: list[str]) -> ClassList:
             continue
         submitters = _submitters(about)
         if not submitters:
-            found.unrecognised.append(f"{_text(name)}: {_METADATA} names nobody for it")
+            found.unrecognised.append(f"{_text(name)}: {_METADATA} names no student for it")
         for who in submitters:
             student = who.sid or who.email or who.name
             entry = Student(student, Place(folder / name), who, _created_at(about))

@@ -79,7 +79,7 @@ class Entry:
 
 
 def read_student(student: Student, exercises: Sequence[Exercise], *, required: bool) -> list[Entry]:
-    """The entries of one student, one per exercise; whatever happens in it ends nobody else's grading.
+    """The entries of one student, one per exercise; a failure here ends no other student's grading.
 
     Args:
         required: whether an exercise without a file is ungradable (it was asked for by name) or merely not
@@ -199,7 +199,7 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
     if found:
         message += f" There is {said_of(found)}."
     if typed:
-        message += f" What was typed into the platform is no file: {', '.join(map(one_line, typed))}."
+        message += f" The text typed into the platform is not a file: {', '.join(map(one_line, typed))}."
     return Problem(
         "no_file",
         message,
@@ -275,7 +275,7 @@ def _content(place: Place, path: Path, *, notebook: bool) -> bytes:
 
 
 def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
-    """A file that somebody named as a submission, whatever it is called.
+    """A file that an instructor named as a submission, whatever its name.
 
     Args:
         member: name in the archive at ``path``; empty for the file itself.

@@ -1,4 +1,4 @@
-"""What a student has that is nobody's submission yet: found, read for the functions it defines, and proposed.
+"""A student's files that are not a submission yet: found, read for their functions, and proposed.
 
 A file under another name, in another folder, or beside the one that was graded is never passed over in
 silence. Names of functions are read in the process that reads submissions, which can be ended; nothing is

@@ -45,7 +45,7 @@ class Effective:
         late: seconds after the deadline; None if in time, or if the time is not known.
         submitted_at: seconds since 1970, UTC, by the most trusted witness; None if there is none.
         witness: whose time that is.
-        flagged_late: the download says "late" and nobody says by how much.
+        flagged_late: the download says "late" but not by how much.
         override: what the instructor decided, if so.
     """
 
@@ -74,7 +74,7 @@ class Effective:
 
     @property
     def missing(self) -> bool:
-        """Whether somebody who is enrolled handed in nothing, and nobody decided about it."""
+        """Whether an enrolled student handed in nothing, and no decision was made about it."""
         return self.verdict.state == MISSING and self.override is None
 
     @property
@@ -141,7 +141,7 @@ class Results:
         return sorted({*self._known(), *self.absent()})
 
     def absent(self) -> list[str]:
-        """Who is enrolled and in no folder, by the roster's order; nobody without a roster."""
+        """The enrolled students without a folder, in the roster's order; empty without a roster."""
         if self.roster is None:
             return []
         known = self._known()
@@ -176,7 +176,7 @@ class Results:
 
     @cached_property
     def _enrolled(self) -> set[str]:
-        """Who has a row of the roster, absent or not; nobody without a roster.
+        """The students with a row of the roster, absent or not; empty without a roster.
 
         Found once: one student's results are asked for as often as there are students.
         """
@@ -186,7 +186,7 @@ class Results:
 
     @cached_property
     def _asked(self) -> frozenset[str]:
-        """What can be missing: what nobody at all handed in was not asked for."""
+        """What can be missing: an exercise that no student handed in was not set."""
         return frozenset(self.book.exercise_ids() if self._enrolled else ())
 
     def _without_grading(

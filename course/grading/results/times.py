@@ -48,7 +48,7 @@ def _seconds(path: Path, line: int, text: str) -> float:
     try:
         time = dt.datetime.fromisoformat(text.strip())
     except ValueError:
-        raise _wrong(path, f"line {line}: {text!r} is no time") from None
+        raise _wrong(path, f"line {line}: {text!r} is not a time") from None
     if time.tzinfo is None:
         raise _wrong(path, f"line {line}: {text!r} lacks its distance from UTC, as in +01:00")
     return time.timestamp()

@@ -1,4 +1,4 @@
-"""Files that an instructor says are somebody's submission: taken as they lie, graded at once, written down.
+"""Files that an instructor assigns to a student: read in place, graded at once, and recorded.
 
 Nothing is renamed. The graders are those of the run, so that the score is the one the student would have got
 under the right name; ``course grade run --resume`` leaves what was assigned as it is.
@@ -39,7 +39,7 @@ _MAX_REASON = 2000
 
 @dataclass(frozen=True)
 class Unsettled:
-    """What nobody could grade by its name, and what there is for it."""
+    """A submission that was not found by its name, and the files there are for it."""
 
     student: str
     exercise: str
@@ -48,7 +48,7 @@ class Unsettled:
 
 @dataclass(frozen=True)
 class Assignment:
-    """A file that is to be somebody's submission.
+    """A file to be assigned to a student.
 
     Attributes:
         name: what to call it, as it was handed in.

@@ -144,7 +144,7 @@ def previewed(out: Path) -> Iterator[Results]:
 
 
 def remember(book: Gradebook, roster: Roster) -> None:
-    """Keep who is enrolled; if somebody's score changes by it (extensions do that), that is written down."""
+    """Keep the roster; if a score changes because of it (through an extension), record the change."""
     text, before = roster.dump(), book.meta().get("roster")
     if text == before:
         return

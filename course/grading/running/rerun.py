@@ -275,7 +275,7 @@ class _Rerun:
 
 
 def _change(before: Effective, after: Effective) -> Change | None:
-    """What became different; None if nothing did that anybody would notice."""
+    """What changed; None if nothing visible did."""
     old = {check.id: check for check in before.verdict.checks}
     new = {check.id: check for check in after.verdict.checks}
     checks = []

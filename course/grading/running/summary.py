@@ -37,7 +37,7 @@ class Summary:
         already: results that an earlier run had.
         missing: who is enrolled and handed in nothing at all; empty without a roster.
         strangers: who handed in something and has no row of their own in the roster.
-        unrecognised: what in the class folder belongs to nobody, one sentence each.
+        unrecognised: files in the class folder with an unknown owner, one sentence each.
         unjudged: how often a check broke on what a submission returned: (exercise, check, where).
         graders: digest of the snapshot that judged.
         unsettled: how many have files that may be meant for what could not be graded.

@@ -35,7 +35,7 @@ __all__ = ["LONGEST", "RUN", "WINDOW", "Parser", "Prints", "fingerprints"]
 
 #: Nodes in a hashed run: about two statements. Shorter ones are common to all Python.
 RUN = 20
-#: A function of fewer nodes than this is too short to be anybody's.
+#: A function of fewer nodes than this is too short to show who wrote it.
 _SHORTEST = 12
 #: Hashes in a window; passages shorter than RUN + WINDOW - 1 nodes may go unnoticed.
 WINDOW = 8

@@ -1,4 +1,4 @@
-"""A newer notebook and somebody's work in the older one, put together.
+"""Merge a newer notebook with a student's work in the older one.
 
 Every generated cell knows its slot and the digest of what it held when it was generated. So a cell whose text
 no longer fits its digest was edited; one without a slot is somebody's own. Edited cells and own cells stay,
@@ -25,7 +25,7 @@ class CannotMergeError(Exception):
 
 
 def is_untouched(data: bytes) -> bool:
-    """Whether a notebook holds nothing that somebody wrote: it was generated, and at most run since."""
+    """Whether a notebook has no student's work: it was generated, and at most run since."""
     try:
         cells = [_Held(cell) for cell in _read(data)["cells"]]
     except CannotMergeError:
@@ -35,7 +35,7 @@ def is_untouched(data: bytes) -> bool:
 
 
 def merged(old: bytes, new: bytes) -> bytes:
-    """The newer notebook with what somebody did in the older one; ``old`` itself where nothing is newer.
+    """The newer notebook with the student's work from the older one; ``old`` itself if nothing is newer.
 
     Args:
         old: the file as it is, edited and run.

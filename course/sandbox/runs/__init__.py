@@ -1,1 +1,1 @@
-"""Runs to keep: unseen and measured, recorded and replayed, filmed, told in sentences."""
+"""Runs to keep: unseen and measured, recorded and replayed, filmed, described in sentences."""

@@ -80,7 +80,7 @@ def account(receipt: Receipt) -> list[str]:
     if share < 1e-9:
         lines.append("Nothing is unaccounted for.")
     else:
-        verb = "is missing, and was lost nowhere physical" if receipt.residual > 0 else "came from nowhere"
+        verb = "is missing without a physical cause" if receipt.residual > 0 else "has no physical source"
         lines.append(f"{_joule(abs(receipt.residual))} {verb}: that is the solver's ({100 * share:.2g} %).")
     return lines
 

@@ -161,7 +161,7 @@ def read(path: Path) -> Replay:
             decoded.append(decoder.decode(line))
         except msgspec.DecodeError as error:
             if number == 1:
-                raise UsageError(f"{path} is no recording: {error}.", code="bad_recording") from error
+                raise UsageError(f"{path} is not a recording: {error}.", code="bad_recording") from error
             raise IntegrityError(f"{path}:{number} is damaged: {error}.", code="damaged_recording") from error
     return _checked(path, decoded)
 
@@ -209,7 +209,7 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
     if not isinstance(head, Head) or head.format != FORMAT:
         form = head.format if isinstance(head, Head) else "nothing"
         raise UsageError(
-            f"{path} is no recording this program knows (it begins with {form[:40]}).",
+            f"{path} is not a recording that this program knows (it begins with {form[:40]}).",
             help="Record one with `course sandbox play SCENE --record FILE`.",
             code="bad_recording",
         )

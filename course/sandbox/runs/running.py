@@ -1,4 +1,4 @@
-"""A run without anybody watching: everything that happened, and what it answers."""
+"""A run without a view: everything that happened, and the answer to the scene's question."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def _tree(text: str) -> ast.expr:
             warnings.simplefilter("ignore")  # about odd escapes in what will be refused anyway
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _refused(text, "is no formula") from None
+        raise _refused(text, "is not a formula") from None
     if _depth(tree) > _MAX_DEPTH:
         raise _refused(text, "is nested too deeply")
     return tree
@@ -152,7 +152,7 @@ def _look_up(name: str, values: Mapping[str, float]) -> float:
         return float(values[name])
     if name in _CONSTANTS:
         return _CONSTANTS[name]
-    raise _refused(name, "is no name this scene knows", help=f"Known: {', '.join(sorted(values))}.")
+    raise _refused(name, "is not a name that this scene knows", help=f"Known: {', '.join(sorted(values))}.")
 
 
 def _refused(text: str, why: str, help: str = "Write plain arithmetic: sqrt(2 * g * drop).") -> UsageError:  # noqa: A002

@@ -40,7 +40,7 @@ FOLDER = Path(__file__).parents[1] / "scenes"
 
 
 class Chosen(msgspec.Struct, frozen=True, kw_only=True):
-    """A scene and what was asked to be different.
+    """A scene with changed parameters and settings.
 
     Attributes:
         scene: with its parameters put in.

@@ -169,7 +169,7 @@ class Floor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Parameter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A number of the scene's own that ``--set`` may change; where it goes is said in ``Scene.sets``."""
+    """A number of the scene's own that ``--set`` may change; ``Scene.sets`` says where it goes."""
 
     name: Name
     meaning: Text
@@ -265,7 +265,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         step: of the simulation, in s; a run never uses another within one scene.
         iterations: of the contact solver.
         slop: how deep bodies may overlap before they are pushed apart, in m.
-        duration: of a run without somebody watching, in s.
+        duration: of a run without a view, in s.
         reverse: bodies are added to the engine in the opposite order; physics does not care, solvers do.
         seed: of ``jitter``.
         sets: formulas in parameters, by where the number goes: ``body.field``, ``body.velocity.0`` (an item

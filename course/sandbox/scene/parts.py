@@ -81,7 +81,7 @@ def layout(scene: Scene) -> tuple[Part, ...]:
 
 
 def spawned(name: str, shape: str, size: float, place: Vector, velocity: Vector, material: Material) -> Part:
-    """A body that somebody puts into a running world.
+    """A body that a user adds to a running world.
 
     Args:
         shape: "circle" or "box".

@@ -81,7 +81,7 @@ def _verdict(
     asked: Prediction, guess: float | None, right: bool | None, theory: float, simulation: float, agree: bool
 ) -> str:
     if math.isnan(simulation):
-        return "What was asked for did not happen in this run."
+        return "What the question asks about did not happen in this run."
     if agree:
         text = "Theory and simulation agree."
     else:

@@ -1,7 +1,7 @@
 """Texts of a scene that hold numbers: ``{restitution}``, ``{speed * step:.2f}``.
 
 A number that a setting changes is never written out in a question or its explanation, or the text would be
-false as soon as somebody set it. The formulas are those of ``course.sandbox.scene.expression``, and no text
+false as soon as it is changed. The formulas are those of ``course.sandbox.scene.expression``, and no text
 is ever handed to ``str.format``, whose fields reach into objects.
 """
 

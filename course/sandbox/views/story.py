@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from course.sandbox.world.events import Event
     from course.sandbox.world.world import World
 
-__all__ = ["Experiment", "Teller"]
+__all__ = ["Experiment", "Narrator"]
 
 #: Sentences that a view opened later still gets.
 _KEPT = 60
@@ -33,8 +33,8 @@ _BURST, _RATE = 10.0, 4.0
 _MOST = 50_000
 
 
-class Teller:
-    """Turns events into lines of a list: what was said, and where it happened."""
+class Narrator:
+    """Turns events into lines of a list: what happened, and where."""
 
     def __init__(self) -> None:
         self._last: dict[tuple[str, str], float] = {}
@@ -46,7 +46,7 @@ class Teller:
         return list(self._told)
 
     def forget(self) -> None:
-        """The world was reset: what was told belongs to a run that is over."""
+        """The world was reset: the lines belong to a run that is over."""
         self._last.clear()
         self._told.clear()
         self._left = 0
@@ -101,8 +101,8 @@ def _line(event: Event) -> dict[str, Any]:
 class Experiment:
     """A guess before the run, and theory, guess and simulation side by side after it.
 
-    What is compared is the run that was watched, as long as nobody laid hands on it: a theory says
-    nothing about a ball that somebody threw. Settings may be changed before the first step; theory takes them
+    What is compared is the run that was watched, as long as the user moved no body: a theory says
+    nothing about a ball that the user threw. Settings may be changed before the first step; theory takes them
     into account.
 
     Args:
@@ -151,7 +151,7 @@ class Experiment:
             self._begin()
 
     def touch(self) -> None:
-        """Somebody laid hands on a body."""
+        """The user moved a body."""
         if self.stage in {"ask", "run"}:
             self.stage = "touched"
 

@@ -1,4 +1,4 @@
-"""What a world reports: contacts, bodies that stop or leave, and what somebody did to it."""
+"""What a world reports: contacts, bodies that stop or leave, and what the user did to it."""
 
 from __future__ import annotations
 

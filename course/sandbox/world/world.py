@@ -41,7 +41,7 @@ MAX_BODIES = 1000
 _TIDY = 64
 #: A gap in real time that a stalled view makes up for, at most, in s.
 _MAX_GAP = 0.25
-#: Events kept for whoever drains them; older ones are dropped and counted.
+#: Events kept until they are drained; older ones are dropped and counted.
 _MAX_EVENTS = 5000
 
 
@@ -83,7 +83,7 @@ class World:
     Attributes:
         ticks: steps since the world was made; a reset does not turn it back.
         paused, speed: for views: ``advance`` does nothing while paused, and runs ``speed`` times real time.
-        dropped: events nobody drained in time.
+        dropped: events that were not drained in time.
         on_input: called with the tick, the method and its arguments, before anything done by hand acts.
         on_tick: how many steps apart, and what is called then.
         on_block: called with every stretch of steps that was booked.
@@ -404,7 +404,7 @@ class World:
         return name
 
     def _place(self, x: float, y: float) -> tuple[float, float]:
-        """A place somebody points at, kept within a view's size around what is drawn."""
+        """A place the user points at, kept within a view's size around what is drawn."""
         left, bottom, right, top = self.scene.view
         width, height = right - left, top - bottom
         x = min(max(number(x, "x"), left - width), right + width)

@@ -108,23 +108,23 @@ def _crowd(pendulum: TwoLinkArm, first: float, second: float, h: float, n: int) 
 def _headline(p: Mapping[str, Any], large: float) -> str:
     if math.isnan(large):
         return f"{p['nudge']:.0e} rad apart at the start, still close after {p['duration']:g} s"
-    return f"{p['nudge']:.0e} rad apart at the start, strangers after {digits(large)} s"
+    return f"{p['nudge']:.0e} rad apart at the start, more than 1 rad after {digits(large)} s"
 
 
 def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
     if math.isnan(large):
         return (
-            f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or watch for "
-            "longer, and they will not."
+            f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
+            "longer, and they come further apart."
         )
     early = f"{digits(small)} s" if math.isfinite(small) else "the start"
     return (
         f"A difference of {p['nudge']:.0e} rad passes 0.001 rad after {early} and 1 rad after "
         f"{digits(large)} s. "
-        "From then on no comparison of two paths says anything about a simulator, for an error in the last "
-        f"digit grows like this too. Averages still compare: over {_CROWD} starts the energy of the upper "
-        f"bob differs by {percent(abs(coarse / fine - 1))} between a step of {4 * p['step']:g} s and half "
-        "of it."
+        "After that a comparison of two paths says nothing about a simulator, because an error in the last "
+        f"digit grows like this too. Averages can still be compared: over {_CROWD} starts the energy of the "
+        f"upper bob differs by {percent(abs(coarse / fine - 1))} between a step of {4 * p['step']:g} s and "
+        "half of it."
     )
 
 

@@ -108,17 +108,17 @@ def _apart(met: float, t: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
 
 def _headline(met: float, before: float, after: float) -> str:
     if math.isnan(met):
-        return "The two balls never touch, and go on as they were"
+        return "The two balls never touch, and their motion does not change"
     kept = "all" if abs(after - before) <= 1e-9 * before else percent(after / before)
-    return f"Contact at {met:.4g} s keeps the momentum and {kept} of the kinetic energy"
+    return f"Contact at {met:.4g} s conserves momentum and {kept} of the kinetic energy"
 
 
 def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
     if math.isnan(met):
-        return f"Within {p['duration']:g} s the two do not touch; momentum and energy stay as they were."
+        return f"Within {p['duration']:g} s the two do not touch; momentum and energy do not change."
     centres = p["distance"] / (p["speed1"] - p["speed2"])
     kept = "all of the kinetic energy" if abs(after - before) <= 1e-9 * before else (
-        f"{percent(after / before)} of the kinetic energy, the rest turning into heat"
+        f"{percent(after / before)} of the kinetic energy; the rest becomes heat"
     )  # fmt: skip
     passing = (
         f" Points without size would have passed through each other at {centres:.4g} s."
@@ -128,13 +128,13 @@ def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> s
     return (
         f"The surfaces touch at {met:.4g} s, when the centres are still {2 * p['radius']:g} m apart."
         f"{passing} "
-        f"The blow keeps the momentum, whatever the restitution, and {kept}."
+        f"The impact conserves momentum, whatever the restitution, and {kept}."
     )
 
 
 SIMULATION = Simulation(
     id="collision",
-    title="A collision: when do they touch, and what is kept?",
+    title="A collision: when do they touch, and what is conserved?",
     question="Two balls of radius 0.5 m, 10 m apart, approach at 2 m/s each. When do they touch, and where "
     "are they after 5 s?",
     teaches="model: contact",

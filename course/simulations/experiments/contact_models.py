@@ -45,10 +45,10 @@ def _run(p: Mapping[str, Any]) -> Result:
         settings=p,
         rows=rows,
         headline=f"With e = {e:g} a ball rises to {low:.3f} to {high:.3f} of its height, not to {e**2:.3f}",
-        finding=f"A floor that looks once a step of {h:g} s lets the ball rise to between {digits(low)} and "
-        f"{digits(high)} of its height, by where in the step it arrives; theory says {digits(e**2)}. "
-        f"Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic ball "
-        f"by {percent(gained)} a bounce on average; as split impulse it leaves the velocity alone.",
+        finding=f"With a floor that looks once a step of {h:g} s the ball rises to between {digits(low)} and "
+        f"{digits(high)} of its height, depending on when in the step it arrives; theory says "
+        f"{digits(e**2)}. Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic "
+        f"ball by {percent(gained)} a bounce on average; as split impulse it does not change the velocity.",
         columns=(
             Column.of("phase", "1", phases),
             *(Column.of(f"rebound_{name}", "1", values) for name, values in rebound.items()),

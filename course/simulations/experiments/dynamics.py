@@ -129,9 +129,7 @@ def _work_row(arm: TwoLinkArm, q: Array, v: Array, torques: Array, t: Array) -> 
 
 def _headline(p: Mapping[str, Any], missed: float) -> str:
     if p["payload"] > 0:
-        return (
-            f"A load of {p['payload']:g} kg that the model does not know: the hand misses by {missed:.2g} m"
-        )
+        return f"A load of {p['payload']:g} kg is not in the model: the hand misses by {missed:.2g} m"
     return "Torques from inverse dynamics carry the hand along the planned line"
 
 
@@ -145,12 +143,12 @@ def _finding(p: Mapping[str, Any], missed: float, torques: Array) -> str:
     )
     if p["payload"] > 0:
         return (
-            f"{plan}The real arm carries {p['payload']:g} kg that the plan does not know of, and its hand "
-            f"ends {missed:.2g} m from the goal. Torques are only as right as the model, and nothing here "
+            f"{plan}The real arm carries {p['payload']:g} kg that is not in the plan, and its hand "
+            f"ends {missed:.2g} m from the goal. Torques are only as good as the model, and nothing here "
             "pulls "
-            "the arm back: that is what feedback is for."
+            "the arm back. A controller would do that with feedback."
         )
-    return f"{plan}The hand ends {missed:.1e} m from its goal, for here plan and arm are one model."
+    return f"{plan}The hand ends {missed:.1e} m from its goal, because here plan and arm are the same model."
 
 
 SIMULATION = Simulation(
@@ -162,9 +160,9 @@ SIMULATION = Simulation(
     parameters=(
         Parameter("start_x", 1.2, "m", "where the hand starts", low=-2.0, high=2.0),
         Parameter("start_y", -0.8, "m", "where the hand starts", low=-2.0, high=2.0),
-        Parameter("end_x", 0.6, "m", "where it shall end", low=-2.0, high=2.0),
-        Parameter("end_y", 1.2, "m", "where it shall end", low=-2.0, high=2.0),
-        Parameter("payload", 0.0, "kg", "in the hand, unknown to the plan", low=0.0, high=10.0),
+        Parameter("end_x", 0.6, "m", "where the hand should end", low=-2.0, high=2.0),
+        Parameter("end_y", 1.2, "m", "where the hand should end", low=-2.0, high=2.0),
+        Parameter("payload", 0.0, "kg", "in the hand, not in the plan", low=0.0, high=10.0),
         duration(1.0, high=100.0),
         step(high=0.1),
     ),

@@ -67,9 +67,9 @@ def _run(p: Mapping[str, Any]) -> Result:
         headline=f"Friction 10 % off moves the stop by {percent(wrong)}; this step by {percent(numeric)}",
         finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]), 2)} m at a "
         f"friction of 0.6 and {digits(float(stopping[_at(0.1)]), 2)} m at 0.1. If the true friction is 10 % "
-        f"lower than the modelled one, the block ends {percent(wrong)} further off; the step of "
-        f"{p['step']:g} s is worth "
-        f"{percent(numeric)}. Measure the floor before refining the step.",
+        f"lower than the modelled one, the block ends {percent(wrong)} further away; the step of "
+        f"{p['step']:g} s makes an error of "
+        f"{percent(numeric)}. Measure the floor before you refine the step.",
         columns=(
             Column.of("coefficient", "1", _SWEEP),
             Column.of("stopping_distance", "m", stopping),

@@ -37,7 +37,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     )
     bias = 0.5 * g * h * p["duration"]
     when = (
-        f"The ball meets the ground after {digits(landed, 4)} s; theory says {digits(due, 4)} s."
+        f"The ball reaches the ground after {digits(landed, 4)} s; theory says {digits(due, 4)} s."
         if math.isfinite(landed)
         else f"The ball is still falling after {p['duration']:g} s; it would land after {due:.4g} s."
     )
@@ -47,9 +47,9 @@ def _run(p: Mapping[str, Any]) -> Result:
         rows=rows,
         headline=_headline(landed, bias, p["duration"]),
         finding=f"{when} Under constant gravity Verlet and Runge-Kutta are exact. Semi-implicit Euler moves "
-        f"with a velocity that is half a step too fast, so it is too low by g h t / 2, here {digits(bias)} "
+        f"with a velocity that is half a step ahead, so it is too low by g h t / 2, here {digits(bias)} "
         "m, "
-        "and explicit Euler as much too high: the sign tells which of the two lines an engine runs first.",
+        "and explicit Euler is too high by the same amount: the sign shows what an engine updates first.",
         columns=(
             Column.of("t", "s", record.t),
             Column.of("height", "m", record.position[:, 0, 2]),
@@ -97,8 +97,8 @@ def _errors(p: Mapping[str, Any]) -> list[Column]:
 SIMULATION = Simulation(
     id="free-fall",
     title="Free fall: when does it land?",
-    question="A ball falls 10 m. Which methods get the time right to the last digit, and which way do the "
-    "others miss?",
+    question="A ball falls 10 m. Which methods get the time right to the last digit, and in which direction "
+    "are the others wrong?",
     teaches="time step",
     parameters=(
         Parameter(

@@ -90,17 +90,17 @@ def _finding(p: Mapping[str, Any], rows: list[Row], worst: Mapping[str, float]) 
     if z >= 2.0:
         return (
             f"Step times frequency is {z:.3g}, beyond the limit of 2 for semi-implicit Euler and Verlet"
-            f"{' and 2.83 for Runge-Kutta' if z > 2 * math.sqrt(2) else ''}: no answer here means anything. "
+            f"{' and 2.83 for Runge-Kutta' if z > 2 * math.sqrt(2) else ''}: these results mean nothing. "
             f"Take a step below {2 / p['omega']:.3g} s."
         )
     return (
         f"At {p['duration']:g} s explicit Euler is off by {digits(off[0])} m and semi-implicit Euler by "
         f"{digits(off[1])} m: the same two lines in another order. Explicit Euler's energy grows with every "
-        f"step, to {digits(1 + worst['explicit_euler'])} times what it was; semi-implicit Euler and Verlet "
+        f"step, to {digits(1 + worst['explicit_euler'])} times the start; semi-implicit Euler and Verlet "
         "stay "
         f"within {percent(worst['semi_implicit_euler'])} and {percent(worst['velocity_verlet'])}, however "
         "long "
-        f"the run, and Runge-Kutta, at {percent(worst['rk4'])}, loses a little for ever."
+        f"the run, and Runge-Kutta, now at {percent(worst['rk4'])}, goes on losing a little."
     )
 
 
@@ -112,7 +112,7 @@ SIMULATION = Simulation(
     teaches="time step",
     parameters=(
         Parameter("omega", 2.0, "rad/s", "frequency of the spring, √(k/m)", low=0.01, high=1e4),
-        Parameter("amplitude", 1.0, "m", "where it is let go", low=1e-6, high=1e6),
+        Parameter("amplitude", 1.0, "m", "where the mass is released", low=1e-6, high=1e6),
         Parameter("speed", 0.0, "m/s", "velocity at the start", low=-1e6, high=1e6),
         duration(5.0),
         step(high=10.0),

@@ -129,18 +129,18 @@ def _finding(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     )
     if p["drag"] > 0 and far.theory:
         return (
-            f"{flight} The theory beside it knows no air and is {far.theory - far.simulated:.3g} m out at "
-            "the landing. No smaller step repairs that: the model is what is missing."
+            f"{flight} The theory beside it has no air and is {far.theory - far.simulated:.3g} m off at "
+            "the landing. No smaller step repairs that, because the air is missing in the model."
         )
     if p["method"] in ("explicit_euler", "semi_implicit_euler"):
-        return f"{flight} What is missing from theory is this method's error, and it shrinks with the step."
+        return f"{flight} The difference from theory is the error of this method; it shrinks with the step."
     return f"{flight} The samples are {p['step']:g} s apart; interpolation finds the moments between them."
 
 
 SIMULATION = Simulation(
     id="projectile",
     title="A throw: how high and how far?",
-    question="Thrown at 10 m/s forwards and 10 m/s upwards: how far away does it land? And if there is air?",
+    question="A ball is thrown at 10 m/s forwards and 10 m/s upwards. How far does it go? And with air?",
     teaches="model complexity",
     parameters=(
         Parameter("speed_x", 10.0, "m/s", "forward speed at the start", low=0.0, high=1000.0),

@@ -113,11 +113,11 @@ def _growth(p: Mapping[str, Any], inertia: Array, t: Array, w: Array) -> list[Ro
 
 def _headline(p: Mapping[str, Any], flips: int, gained: float) -> str:
     if abs(p["spin"]) * p["step"] > 0.5:
-        return "A step in which a body turns so far tells nothing about it"
-    turns = f"The body turns over {times(flips)}" if flips else "The body never turns over"
+        return "The body turns too far in one step for these methods to follow"
+    turns = f"The body flips over {times(flips)}" if flips else "The body never flips over"
     if gained > 10:
         return f"{turns}, and explicit Euler's energy explodes"
-    return f"{turns}, and explicit Euler invents {percent(gained)} of energy"
+    return f"{turns}, and explicit Euler adds {percent(gained)} of energy"
 
 
 def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
@@ -130,14 +130,14 @@ def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> s
     moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
     middle = sorted(moments)[1] == p["inertia2"] and len(set(moments)) == 3
     axis = (
-        f"Axis 2 is the middle one, and a spin about it does not last: the body turned over {times(flips)}."
+        f"Axis 2 is the middle one, and a spin about it does not last: the body flipped over {times(flips)}."
         if middle and flips
-        else "Axis 2 is the middle one; the wobble has not had time to turn the body over."
+        else "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
         if middle
-        else "Axis 2 is not the middle one, and a spin about it lasts."
+        else "Axis 2 is not the middle one, and a spin about it is stable."
     )
     return (
-        f"{axis} No torque acts, so the energy must stay: explicit Euler gains "
+        f"{axis} No torque acts, so the energy must not change: explicit Euler gains "
         f"{percent(float(drifts['explicit_euler'][-1]))} in {p['duration']:g} s and stretches the "
         f"quaternion, while split rotations stay within {percent(float(np.max(np.abs(drifts['split']))))} "
         "and keep the "
@@ -147,7 +147,7 @@ def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> s
 
 SIMULATION = Simulation(
     id="rotation",
-    title="Rotation: the wing nut that turns over",
+    title="Rotation: the wing nut that flips over",
     question="Nothing touches a body that spins about its middle axis. What does it do, and what does "
     "explicit Euler do to its energy in 20 s?",
     teaches="rigid bodies; time step",

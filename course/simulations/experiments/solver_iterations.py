@@ -42,11 +42,11 @@ def _run(p: Mapping[str, Any]) -> Result:
         rows=tuple(rows),
         headline=f"{tall} boxes need {needed[tall]} iterations to reach {percent(tolerance)}, "
         f"{short} need {needed[short]}",
-        finding=f"After {last} iterations from nothing the ground under {boxes} boxes feels {percent(done)} "
-        f"of their weight. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the "
-        "number grows like the square of the height, for the news of a weight spreads from contact to "
-        "contact. "
-        "Engines begin from the last step's answer instead, which is why a stack that stands still stays up.",
+        finding=f"After {last} iterations from zero the ground carries {percent(done)} of the weight of "
+        f"{boxes} boxes. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the "
+        "number grows with the square of the height, because each iteration passes a load on only to the "
+        "next contact. "
+        "Engines start from the answer of the last step instead, so a stack that stands still stays up.",
         columns=(
             Column.of("iteration", "1", np.arange(last + 1)),
             *(Column.of(f"load_{n}_boxes", "1", history) for n, history in histories.items()),
@@ -71,7 +71,7 @@ SIMULATION = Simulation(
     teaches="solver parameters",
     parameters=(
         Parameter("boxes", 20, "1", "height of the stack", low=2, high=60),
-        Parameter("tolerance", 0.01, "1", "how close is close enough, a share", low=1e-4, high=0.5),
+        Parameter("tolerance", 0.01, "1", "error that is allowed, a share", low=1e-4, high=0.5),
         Parameter("iterations", 800, "1", "how many to show", low=1, high=20_000),
     ),
     run=_run,

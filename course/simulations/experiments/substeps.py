@@ -23,7 +23,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     n = step_count(p["duration"], h)
     if n * work * p["links"] > 2_000_000:
         raise ValueError(
-            f"{n:,} frames of {work} sweeps over {p['links']} links take too long; shorten one of them."
+            f"{n:,} frames of {work} iterations over {p['links']} links take too long; reduce one of them."
         )
     splits = [(k, work // k) for k in range(1, work + 1) if work % k == 0]
     if len(splits) > 6:
@@ -41,10 +41,10 @@ def _run(p: Mapping[str, Any]) -> Result:
         settings=p,
         rows=rows,
         headline=f"Same work: small steps stretch the chain {better} less than iterations do",
-        finding=f"Every variant sweeps over the chain {work} times a frame. One step with {work} iterations "
+        finding=f"Every variant goes over the chain {work} times a frame. One step with {work} iterations "
         f"lets a link stretch by {digits(one, 2)} of its length, {work} steps with one iteration by "
         f"{digits(many, 2)}: "
-        "a small step makes a small mess, and the next one starts from where it was cleaned up.",
+        "a small step makes a small error, and the next step starts after it has been corrected.",
         columns=(
             Column.of("t", "s", h * np.arange(n + 1)),
             *(Column.of(f"stretch_{s}x{i}", "1", values) for (s, i), values in series.items()),
@@ -59,13 +59,13 @@ def _words(steps: int, iterations: int) -> str:
 SIMULATION = Simulation(
     id="substeps",
     title="Substeps: where to spend the work",
-    question="Sixteen sweeps a frame: one step with 16 iterations, or 16 steps with one each. Which chain "
-    "stretches less, and by how much?",
+    question="A solver makes 16 iterations a frame: in one step, or in 16 steps with one each. With which "
+    "does the chain stretch less, and by how much?",
     teaches="solver parameters; time step",
     parameters=(
         Parameter("links", 20, "1", "links of the chain", low=2, high=100),
         Parameter("length", 2.0, "m", "of the whole chain", low=0.01, high=100.0),
-        Parameter("work", 16, "1", "sweeps over the chain a frame", low=2, high=64),
+        Parameter("work", 16, "1", "iterations over the chain a frame", low=2, high=64),
         Parameter("frame", 1 / 60, "s", "time between frames", low=1e-3, high=0.1),
         Parameter(
             "duration", 2.0, "s", "how long to simulate; a whole number of frames", low=1e-3, high=60.0

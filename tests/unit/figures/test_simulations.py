@@ -73,7 +73,7 @@ def test_a_legend_beside_the_axes_stays_on_the_page(name: str) -> None:
 
 def test_the_title_is_the_finding_of_the_run_that_is_drawn() -> None:
     assert figure("collision", "restitution=0.5").get_suptitle() == (
-        "Contact at 2.25 s keeps the momentum and 25 % of the kinetic energy"
+        "Contact at 2.25 s conserves momentum and 25 % of the kinetic energy"
     )
 
 

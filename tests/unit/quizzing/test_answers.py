@@ -57,7 +57,7 @@ def test_json_of_the_same_shape_will_do(tmp_path: Path, bank: Bank) -> None:
         ("answers = 3", None, "answers_format", "no table of answers"),
         ("seed = 1", None, "answers_format", "no table of answers"),
         ('sums = "a"\n', None, "answers_format", "unknown key 'sums'"),
-        ('\nseed = "x"\n[answers]\n', 2, "answers_format", "no whole number"),
+        ('\nseed = "x"\n[answers]\n', 2, "answers_format", "not a whole number"),
         ("format_version = 2\n[answers]\n", 1, "answers_format", "format_version is 2"),
         ('seed = 7\n[answers]\nsums = "a"', 1, "answers_for_other_seed", "for seed 7"),
         ('[answers]\nsums = "a"\nsum = "b"\n', 3, "question_not_found", "no question 'sum'"),
@@ -65,7 +65,7 @@ def test_json_of_the_same_shape_will_do(tmp_path: Path, bank: Bank) -> None:
         ("[answers]\n", 1, "answers_missing", "2 answers are missing: sums, colours"),
         ('[answers]\nsums = "a"\ncolours = ""\n', 1, "answers_missing", "1 answer is missing: colours"),
         ('[answers]\nsums = "a"\ncolours = "e"\n', 3, "option_not_found", "colours has no option 'e'"),
-        ('[answers]\ncolours = "a"\nsums = true\n', 3, "answer_not_text", "the answer to sums is no text"),
+        ('[answers]\ncolours = "a"\nsums = true\n', 3, "answer_not_text", "the answer to sums is not text"),
         (
             '[answers]\nsums = "two-fruits"\ncolours = "a"',
             2,

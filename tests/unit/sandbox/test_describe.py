@@ -43,7 +43,7 @@ def test_the_account_names_what_the_solver_did() -> None:
     lost = account(Receipt(**{**base, "kinetic": 3.5}, residual=0.5, integrator=0.0))[-1]
     assert "missing" in lost
     made = account(Receipt(**{**base, "kinetic": 4.5}, residual=-0.5, integrator=0.0))[-1]
-    assert "from nowhere" in made
+    assert "has no physical source" in made
     assert "5 %" in made
 
 

@@ -12,7 +12,7 @@ from course.errors import MissingCapabilityError
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
-from course.sandbox.views.terminal.asking import Ask, Told
+from course.sandbox.views.terminal.asking import Ask, PageOverlay
 from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
@@ -250,12 +250,12 @@ def test_the_question_comes_first_and_the_comparison_after_and_both_can_be_left(
         await pilot.pause()
         assert app.world.t == pytest.approx(2.0, abs=1 / 240)
         assert app.world.paused
-        assert isinstance(app.screen, Told)
+        assert isinstance(app.screen, PageOverlay)
         page = app.screen.words
         for words in ("your guess", "theory", "simulation", "Your guess is right", "And now:"):
             assert words in page
         await pilot.press("r")
-        assert not isinstance(app.screen, Told)
+        assert not isinstance(app.screen, PageOverlay)
         app.frames(3)
         assert 0 < app.world.t < 1
         assert not app.world.paused
@@ -269,7 +269,7 @@ def test_a_run_without_a_guess_is_compared_with_theory_and_kept_nowhere():
         await pilot.press("escape")
         app.frames(90)
         await pilot.pause()
-        assert isinstance(app.screen, Told)
+        assert isinstance(app.screen, PageOverlay)
         await pilot.press("escape")
         await pilot.press("space")
         app.frames(30)
@@ -284,10 +284,10 @@ def test_a_run_that_a_hand_was_in_is_compared_with_nothing_and_goes_on():
         app.frames(90)
         await pilot.pause()
         assert app.world.t > 2.5
-        assert not isinstance(app.screen, Told)
+        assert not isinstance(app.screen, PageOverlay)
         await pilot.press("p")
         app.frames(1)
-        assert "A hand was in it" in app.keys.text
+        assert "You moved a body" in app.keys.text
 
     play("head-on", script)
 
@@ -302,7 +302,7 @@ def test_a_run_that_is_over_in_a_blink_starts_in_slow_motion():
 def test_help_names_every_key_and_time_stands_still_meanwhile():
     async def script(app: Played, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
-        assert isinstance(app.screen, Told)
+        assert isinstance(app.screen, PageOverlay)
         page = app.screen.words
         keys = {key.strip() for binding in app.BINDINGS for key in binding.key.split(",")}
         named = {"full_stop": ".", "minus": "-", "plus": "+", "tab": "Tab", "enter": "Enter"}
@@ -327,7 +327,7 @@ def test_the_list_of_events_tells_what_happened():
     async def script(app: Played, pilot: Pilot[None]) -> None:
         app.frames(30)
         await pilot.press("l")
-        assert isinstance(app.screen, Told)
+        assert isinstance(app.screen, PageOverlay)
         page = app.screen.words
         assert "the left puck meets the right puck at 3.00 m/s" in page
 

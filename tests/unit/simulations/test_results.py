@@ -184,7 +184,7 @@ def test_a_spin_about_a_stable_axis_is_not_said_to_turn_over() -> None:
     out = result("rotation", "inertia1=2", "inertia2=3", "inertia3=2.5")
     assert out.row("times it turned over").simulated == 0
     assert "not the middle one" in out.finding
-    assert "never turns over" in out.headline
+    assert "never flips over" in out.headline
 
 
 def test_a_step_too_long_for_the_spin_is_called_one() -> None:

@@ -1,6 +1,6 @@
 """One student's page, to be handed out: what was found, what it looks like, what to do, and the points.
 
-It is made of what ``handout`` lets students see and knows of nobody else.
+It has only what ``handout`` lets this student see, and nothing about other students.
 """
 
 from __future__ import annotations

@@ -120,7 +120,7 @@ class ExerciseTally:
             return
         self.results += 1
         self.passed += effective.passed
-        # Nobody handed in what only an instructor's decision is about.
+        # An instructor's decision alone is not a submission.
         self.handed_in += effective.result.number > 0 and (
             verdict.error is None or verdict.error.code != "no_file"
         )
@@ -208,7 +208,7 @@ class Tally:
     Attributes:
         troubled: without a grade, for whatever reason, an instructor's score or none.
         reasons: number of those by exercise, state and code.
-        untimed: number of results of which nobody trusted says when they were handed in.
+        untimed: number of results without a trusted submission time.
         flagged: number that the download calls late, without saying by how much.
     """
 

@@ -46,7 +46,7 @@ def macro(template: str, name: str, *arguments: Any, **more: Any) -> Markup:
 
 
 def shortened(value: str, longest: int) -> str:
-    """The text, cut where it is longer than anybody reads."""
+    """The text, shortened if it is too long to read."""
     return value if len(value) <= longest else value[:longest].rstrip() + "…"
 
 

@@ -12,8 +12,8 @@ from textual.geometry import Size
 from course.errors import UsageError
 from course.full_screen import FullScreenApp
 from course.sandbox.scene.settings import SETTINGS
-from course.sandbox.views.story import Experiment, Teller
-from course.sandbox.views.terminal.asking import Ask, Told, comparison, help_pages
+from course.sandbox.views.story import Experiment, Narrator
+from course.sandbox.views.terminal.asking import Ask, PageOverlay, comparison, help_pages
 from course.sandbox.views.terminal.hand import Pointer
 from course.sandbox.views.terminal.lines import Canvas, Lines
 from course.sandbox.views.terminal.pace import Pacer, speed_in_words
@@ -116,7 +116,7 @@ class SandboxApp(FullScreenApp):
         self.calm = self.animation_level != "full"
         self._fps = fps
         self._last = clock()
-        self._teller = Teller()
+        self._narrator = Narrator()
         self._lines: list[str] = []
         self._read_at = -1.0
         self._drawn_at = -1.0
@@ -194,7 +194,7 @@ class SandboxApp(FullScreenApp):
         if self.experiment.passed():
             self.world.paused = self._stopped = True
             self.compare()
-        told = self._teller.tell(events, now)
+        told = self._narrator.tell(events, now)
         self._lines = [*self._lines, *(clean(line["text"]) for line in told)][-400:]
         if not self.calm:
             self.stage.flash(events, now)
@@ -282,7 +282,7 @@ class SandboxApp(FullScreenApp):
 
         page = comparison(result, self.chosen.scene.after)
         hint = "Enter: go on from here   r: once more"
-        self.push_screen(Told("Predicted, run, compared", page, keys=("r",), hint=hint), read)
+        self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r",), hint=hint), read)
 
     def action_question(self) -> None:
         """The question again, or what came of it."""
@@ -292,23 +292,23 @@ class SandboxApp(FullScreenApp):
         elif stage == "done":
             self.compare()
         elif asked is None:
-            self.say("This scene asks for no number.")
+            self.say("This scene does not ask for a number.")
         elif stage == "touched":
-            self.say("A hand was in it, so this run is compared with nothing. r: once more from the start.")
+            self.say("You moved a body, so there is nothing to compare with. r: run it again from the start.")
         else:
             guess = "no guess" if self.experiment.guess is None else f"your guess {self.experiment.guess:g}"
             page: Page = [(clean(self.experiment.question), ""), "", f"{guess}, {clean(asked.unit)}", ""]
-            self.push_screen(Told("The question", page))
+            self.push_screen(PageOverlay("The question", page))
 
     def action_help(self) -> None:
         """All keys."""
         wheels = "left" in self.world.settings
-        self.push_screen(Told("Keys, and this scene", help_pages(self.chosen.scene, wheels=wheels)))
+        self.push_screen(PageOverlay("Keys, and this scene", help_pages(self.chosen.scene, wheels=wheels)))
 
     def action_events(self) -> None:
         """The list of events."""
         page = self._lines or ["Nothing happened yet."]
-        self.push_screen(Told("What happened", page, at_end=True))
+        self.push_screen(PageOverlay("What happened", page, at_end=True))
 
     # -- keys ------------------------------------------------------------------------------------
 
@@ -330,7 +330,7 @@ class SandboxApp(FullScreenApp):
         self.world.reset()
         self.experiment.again()
         self.stage.forget()
-        self._teller.forget()
+        self._narrator.forget()
         self._lines = []
         if self._stopped:
             self.world.paused = self._stopped = False

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
     from course.sandbox.scene.model import Scene
 
-__all__ = ["Ask", "Page", "Told", "comparison", "guess_of", "help_pages"]
+__all__ = ["Ask", "Page", "PageOverlay", "comparison", "guess_of", "help_pages"]
 
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
 
 
 def guess_of(text: str) -> float | None:
-    """The number that somebody typed, comma or point; None if it is none."""
+    """The number in a typed text, with comma or point; None if it is not a number."""
     try:
         value = float(text.strip().replace(",", "."))
     except ValueError:
@@ -61,18 +61,18 @@ class Ask(Overlay[float]):
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Take a number; an empty line is no guess."""
+        """Take a number; an empty line means no guess."""
         if not event.value.strip():
             self.close(None)
             return
         guess = guess_of(event.value)
         if guess is None:
-            self.query_one("#wrong", Static).update("That is no number: try something like 2.5 or -1e3.")
+            self.query_one("#wrong", Static).update("Not a number: try something like 2.5 or -1e3.")
             return
         self.close(guess)
 
 
-class Told(Tell):
+class PageOverlay(Tell):
     """A page to read."""
 
     BINDINGS: ClassVar[list[Any]] = [Binding("l", "leave", show=False)]

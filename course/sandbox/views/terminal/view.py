@@ -54,7 +54,7 @@ def _need_terminal() -> None:
         return
     raise MissingCapabilityError(
         "This terminal cannot place its cursor." if dumb else "The view in a terminal needs a terminal.",
-        help="Use --describe to be told what happens, --headless for numbers, or --gif FILE for a film.",
+        help="Use --describe for sentences, --headless for numbers, or --gif FILE for a film.",
         code="no_terminal",
     )
 

@@ -114,7 +114,7 @@ class Guess(_Request, tag="guess"):
 
 
 class Watch(_Request, tag="watch"):
-    """Whether the page can be seen. The world waits while nobody looks."""
+    """Whether the page is visible. The world waits while it is hidden."""
 
     on: bool
 

@@ -1,6 +1,6 @@
 """One world and everybody who looks at it through a page.
 
-The state lives here, so a page can be reloaded at any time. Time passes only while somebody looks.
+The state lives here, so a page can be reloaded at any time. Time passes only while the page is visible.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import msgspec
 
 from course.errors import CourseError, UsageError
 from course.sandbox.scene.settings import SETTINGS
-from course.sandbox.views.story import Experiment, Teller
+from course.sandbox.views.story import Experiment, Narrator
 from course.sandbox.views.web import messages
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Page:
         now: in s, on the session's clock.
 
     Attributes:
-        watching: somebody sees it.
+        watching: the page is visible.
         lost: it is not talked to any more.
     """
 
@@ -124,7 +124,7 @@ class Session:
         self.pages: list[Page] = []
         self.experiment = Experiment(world, chosen, guess, keep)
         self._clock = clock
-        self._teller = Teller()
+        self._narrator = Narrator()
         self._holder: Page | None = None
         self._wake = asyncio.Event()
         self._seen: tuple[Any, ...] = ()
@@ -217,7 +217,7 @@ class Session:
                 self._holder = None
                 world.reset()
                 self.experiment.again()
-                self._teller.forget()
+                self._narrator.forget()
                 self._tell({"type": "events", "events": [], "anew": True})
             case messages.Guess(value):
                 self.experiment.answer(value)
@@ -270,7 +270,7 @@ class Session:
             # The comparison stands, it only could not be kept.
             self.world.paused = True
             self._tell({"type": "error", "message": error.message})
-        lines = self._teller.tell(events, self._clock())
+        lines = self._narrator.tell(events, self._clock())
         if lines:
             self._tell({"type": "events", "events": lines})
         if self.world.version != self._version:
@@ -351,7 +351,7 @@ class Session:
             "above": scene.floor is not None or not any(scene.gravity),
             "knobs": [msgspec.to_builtins(setting) for setting in offered.values()],
             "unit": asked.unit if asked else "",
-            "events": self._teller.told(),
+            "events": self._narrator.told(),
             "status": self._status(),
         }
 

@@ -6,27 +6,27 @@ import itertools
 
 import pytest
 
-from course.cli.frame.options import hoist
+from course.cli.frame.options import global_options
 
 
 @pytest.mark.parametrize("position", range(4))
 def test_a_global_option_may_stand_anywhere(position):
     words = ["check", "integrators", "--all"]
     words.insert(position, "--json")
-    line = hoist(words)
+    line = global_options(words)
     assert line.settings.json
     assert line.rest == ("check", "integrators", "--all")
 
 
 def test_every_order_of_all_of_them_means_the_same():
     for order in itertools.permutations(["--json", "--plain", "-q", "check"]):
-        line = hoist(order)
+        line = global_options(order)
         assert (line.settings.json, line.settings.plain, line.settings.quiet) == (True, True, True)
         assert line.rest == ("check",)
 
 
 def test_a_double_dash_ends_the_search():
-    line = hoist(["check", "--", "--json", "-C"])
+    line = global_options(["check", "--", "--json", "-C"])
     assert not line.settings.json
     assert line.rest == ("check", "--", "--json", "-C")
     assert not line.problem
@@ -34,12 +34,12 @@ def test_a_double_dash_ends_the_search():
 
 @pytest.mark.parametrize("words", [["-C", "a/b", "check"], ["check", "-Ca/b"], ["-Ca", "check", "-C", "b"]])
 def test_the_folder_may_be_attached_and_two_add_up(words):
-    line = hoist(words)
+    line = global_options(words)
     assert line.settings.directory in {"a/b", "a\\b"}
     assert line.rest == ("check",)
 
 
 def test_a_folder_that_is_missing_is_a_problem_and_not_a_crash():
-    line = hoist(["--json", "check", "-C"])
+    line = global_options(["--json", "check", "-C"])
     assert "-C" in line.problem
     assert line.settings.json

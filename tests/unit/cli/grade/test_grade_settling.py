@@ -97,7 +97,7 @@ def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course,
     words = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
     told = json.loads(course(*words, "--json").out.splitlines()[-1])
     assert (told["edited"], told["already_graded"], told["would_change"]) == (["doubling"], 3, [])
-    assert "Nobody's score was changed by that." in course(*words).out
+    assert "No score was changed by that." in course(*words).out
     runs = course("grade", "log", "out", "--json").json["runs"]
     assert [run["kind"] for run in runs] == ["run"]
     assert course("grade", "rerun", "out", "--against", "1", "--dry-run").code == 0

@@ -48,7 +48,7 @@ __all__ = ["Simulator", "step_count"]
 # A step goes back to this many instants at which surfaces meet; what meets after that overlaps a little.
 _INSTANTS = 8
 _BLOWS = 64  # that pass from pair to pair at one instant, as along a row of balls
-_REST = 1.5  # speeds below this many g h are what gravity adds in one step, no blow: they do not bounce
+_REST = 1.5  # speeds below this many g h are what gravity adds in one step, no impact: they do not bounce
 _STILL = 0.01  # a speed below this share of g h is rest: the forces of the next step end it
 _NEAR = 1e-3  # a gap below this share of g h² is none
 _ROUND_OFF = 1e-12  # m and m/s: what is left of nothing without gravity

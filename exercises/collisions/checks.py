@@ -77,13 +77,13 @@ def test_impulse_walls(submission, draw):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(4)
 def test_resolve_oblique(submission, draw):
-    """A blow at an angle changes what is along the normal and nothing across it"""
+    """An impact at an angle changes what is along the normal and nothing across it"""
     bundles.expect_public(
         submission,
         bundles.RESOLVE,
         "resolve_oblique",
         draw,
-        "The velocities after a blow at an angle are wrong.",
+        "The velocities after an impact at an angle are wrong.",
         "With s = (va - vb) . n, the impulse is J n with J = (1 + e) s/(1/ma + 1/mb).",
     )
 
@@ -118,7 +118,7 @@ def test_friction_regimes(submission, draw):
         bundles.FRICTION,
         "friction_regimes",
         draw,
-        "The velocities after a blow with friction are wrong.",
+        "The velocities after an impact with friction are wrong.",
         "Across the normal acts min(mu J, |vt|/(1/ma + 1/mb)), against the slip vt of b seen from a.",
     )
 
@@ -126,13 +126,13 @@ def test_friction_regimes(submission, draw):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(2)
 def test_friction_absent(submission, draw):
-    """Without a coefficient, without slip or without a blow there is no friction"""
+    """Without a coefficient, without slip or without an impact there is no friction"""
     bundles.expect_public(
         submission,
         bundles.FRICTION,
         "friction_absent",
         draw,
-        "Where nothing rubs (no coefficient, no slip, no blow), or next to it, the velocities are wrong.",
+        "Where nothing rubs (no coefficient, no slip, no impact), or next to it, the velocities are wrong.",
         "With no slip there is no direction to oppose: divide by |vt| only if it is not zero.",
     )
 
@@ -222,7 +222,7 @@ def test_head_on_mended(submission, draw):
             t_end,
             h,
             "The two balls do not move as they should.",
-            "Straight lines until the surfaces touch, the blow at that very instant, straight lines after.",
+            "Straight lines until the surfaces touch, the impact at that very instant, straight lines after.",
         )
 
 

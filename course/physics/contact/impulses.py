@@ -5,7 +5,7 @@ normal and ``speed`` the normal velocity afterwards,
 
     push >= 0,    speed >= target,    push (speed - target) = 0
 
-where ``target`` is what restitution asks of a pair that collides, and 0 for one that rests: a blow and a
+where ``target`` is what restitution asks of a pair that collides, and 0 for one that rests: an impact and a
 support are the same constraint. Friction stops sliding if an impulse of at most ``friction * push`` can, and
 otherwise opposes it with just that (Coulomb's cone, a round one). Contacts that share a body depend on one
 another, so all of them have to be solved together.

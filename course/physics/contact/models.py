@@ -59,7 +59,7 @@ class Constraint:
     """The velocity after the step may not be below a target: complementarity, with the engines' additions.
 
     Attributes:
-        restitution: of blows faster than ``threshold`` (m/s); slower ones do not bounce.
+        restitution: of impacts faster than ``threshold`` (m/s); slower ones do not bounce.
         erp: error reduction, the share of the overlap that a step is to remove; its velocity is added to the
             target (Baumgarte).
         split: remove it by moving the ball, and keep the velocity out of it (split impulse).

@@ -90,7 +90,7 @@ def test_plane_below(submission, rng):
     )
 
 
-# -- a blow on a line -----------------------------------------------------------------------------------
+# -- an impact on a line -----------------------------------------------------------------------------------
 
 
 @pytest.mark.task(bundles.IMPULSE)
@@ -130,13 +130,13 @@ def test_impulse_wall(submission, rng):
     )
 
 
-# -- a blow in space ------------------------------------------------------------------------------------
+# -- an impact in space ------------------------------------------------------------------------------------
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_momentum(submission, rng):
-    """A blow keeps the total momentum"""
+    """An impact keeps the total momentum"""
     laws.expect_momentum(submission, bundles.RESOLVE, [draws.blow(rng, d) for d in (2, 2, 3, 3, 3)])
 
 
@@ -151,14 +151,14 @@ def test_resolve_parting(submission, rng):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_energy(submission, rng):
-    """A blow costs just the energy that e says, and none for e = 1"""
+    """An impact costs just the energy that e says, and none for e = 1"""
     laws.expect_energy(submission, [draws.blow(rng, 3, e) for e in (1.0, 1.0, 0.0, None, None)])
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_symmetries(submission, rng):
-    """A blow is the same seen from a moving train, turned, mirrored, and with a and b exchanged"""
+    """An impact is the same seen from a moving train, turned, mirrored, and with a and b exchanged"""
     laws.expect_symmetries(submission, bundles.RESOLVE, rng)
 
 
@@ -172,7 +172,7 @@ def test_resolve_wall(submission, rng):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_inputs(submission, rng):
-    """A blow leaves its arguments as they were"""
+    """An impact leaves its arguments as they were"""
     laws.expect_clean(submission, bundles.RESOLVE, rng)
 
 
@@ -182,7 +182,7 @@ def test_resolve_inputs(submission, rng):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(3)
 def test_friction_cone(submission, rng):
-    """Friction is limited by mu times the blow in every direction, and by what stops the slip"""
+    """Friction is limited by mu times the normal impulse in every direction, and by what stops the slip"""
     bundles.expect_formula(
         submission,
         bundles.FRICTION,
@@ -191,7 +191,7 @@ def test_friction_cone(submission, rng):
             draws.rough(rng),
             (*draws.slow(rng, 3), 0.3),
         ],
-        "The velocities after a blow with friction are wrong.",
+        "The velocities after an impact with friction are wrong.",
         "Find the tangential part of the relative velocity as a vector; its length decides which "
         "limit holds.",
     )
@@ -207,7 +207,7 @@ def test_friction_energy(submission, rng):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(2)
 def test_friction_symmetries(submission, rng):
-    """A blow with friction is the same from a moving train, turned, mirrored, and with a and b exchanged"""
+    """An impact with friction is the same from a moving train, turned, mirrored, with a and b exchanged"""
     laws.expect_symmetries(submission, bundles.FRICTION, rng)
 
 
@@ -221,7 +221,7 @@ def test_friction_wall(submission, rng):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(1)
 def test_friction_inputs(submission, rng):
-    """A blow with friction leaves its arguments as they were"""
+    """An impact with friction leaves its arguments as they were"""
     laws.expect_clean(submission, bundles.FRICTION, rng)
 
 
@@ -302,7 +302,7 @@ def test_head_on_drawn(submission, rng):
             n * h,
             h,
             "Two balls on a line do not move as they should.",
-            "Straight lines, one blow at the instant when the surfaces touch, straight lines.",
+            "Straight lines, one impact at the instant when the surfaces touch, straight lines.",
         )
 
 

@@ -1,4 +1,4 @@
-"""Laws that the hidden graders of ``collisions`` hold a blow to: what is kept, and what may not matter."""
+"""Laws that the hidden graders of ``collisions`` hold an impact to: what is kept, and what may not matter."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _speeds(args):
 
 @np.errstate(all="ignore")
 def _expect_response(args, found, finding):
-    """Bodies that approached no longer do: a blow was struck at all."""
+    """Bodies that approached no longer do: an impact was struck at all."""
     n = args[4]
     closing = float((found[0] - found[1]) @ n)
     kit.expect_bounded(
@@ -35,7 +35,7 @@ def _expect_response(args, found, finding):
         source=bundles.ROUNDING,
         quantity="speed of approach afterwards",
         units="m/s",
-        **(finding | {"message": "Bodies that run into each other still approach after the blow."}),
+        **(finding | {"message": "Bodies that run into each other still approach after the impact."}),
     )
 
 
@@ -51,7 +51,7 @@ def expect_momentum(submission, task, calls):
         finding = _finding(
             task,
             args,
-            "A blow changes the total momentum, and no outside force acts.",
+            "An impact changes the total momentum, and no outside force acts.",
             "What b gains, a loses.",
             diagnose,
         )
@@ -85,7 +85,7 @@ def expect_parting(submission, calls):
             args,
             "Bodies do not part as they should: at e times the speed of approach along the normal, and with "
             "the same slip across it.",
-            "The blow is J n: it has no part across the normal.",
+            "The impact is J n: it has no part across the normal.",
             diagnose,
         )
         slip = (vb - va) - ((vb - va) @ n) * n
@@ -112,7 +112,7 @@ def expect_energy(submission, calls):
         finding = _finding(
             task,
             args,
-            "The kinetic energy after a blow is not what the restitution says.",
+            "The kinetic energy after an impact is not what the restitution says.",
             "Of the energy of approach along the normal a share of e squared is left; the rest is "
             "not touched.",
             diagnose,
@@ -139,8 +139,8 @@ def expect_braking(submission, calls):
         finding = _finding(
             task,
             args,
-            "A blow with friction breaks a law: it changes the momentum, adds energy, or does not brake the "
-            "slip as friction does.",
+            "An impact with friction breaks a law: it changes the momentum, adds energy, or does not brake "
+            "the slip as friction does.",
             "Friction acts on both bodies, against the slip, and stops at the latest when the slip "
             "has stopped.",
             diagnose,
@@ -175,7 +175,7 @@ def expect_braking(submission, calls):
 
 @np.errstate(all="ignore")
 def expect_line_symmetries(submission, rng):
-    """One blow on a line five times: as it is, from trains, mirrored, exchanged."""
+    """One impact on a line five times: as it is, from trains, mirrored, exchanged."""
     task = bundles.IMPULSE
     ma, mb, va, vb, e = draws.line(rng)
     train = float(rng.uniform(20.0, 40.0))
@@ -189,10 +189,10 @@ def expect_line_symmetries(submission, rng):
     ]
     names = (
         "",
-        "From a moving train the impulse of a blow is another one.",
-        "From a moving train the impulse of a blow is another one.",
-        "In a mirror the impulse of a blow is another one.",
-        "With the two masses exchanged the impulse of a blow is another one.",
+        "From a moving train the impulse of an impact is another one.",
+        "From a moving train the impulse of an impact is another one.",
+        "In a mirror the impulse of an impact is another one.",
+        "With the two masses exchanged the impulse of an impact is another one.",
     )
     values, parts = bundles.answers(submission, task, calls)
     truth = bundles.right(task, calls)
@@ -206,7 +206,7 @@ def expect_line_symmetries(submission, rng):
             quantity="impulse",
             units="N s",
             input=bundles.shown(task, args),
-            message=message or "The impulse of a blow on a line is wrong.",
+            message=message or "The impulse of an impact on a line is wrong.",
             help="Only the difference of the velocities may enter, and both masses in the same way.",
             diagnose=lambda: (
                 probes.of_calls(task, calls, values, truth) or bundles.named("DEPENDS_ON_THE_FRAME")
@@ -216,7 +216,7 @@ def expect_line_symmetries(submission, rng):
 
 @np.errstate(all="ignore")
 def expect_symmetries(submission, task, rng):
-    """One blow five times: as it is, from a train, turned, mirrored, exchanged."""
+    """One impact five times: as it is, from a train, turned, mirrored, exchanged."""
     args = draws.rub(rng, 3, 0.6) if task == bundles.FRICTION else draws.blow(rng, 3)
     ma, mb, va, vb, n, *rest = args
     train = rng.uniform(10.0, 20.0, 3)
@@ -233,11 +233,11 @@ def expect_symmetries(submission, task, rng):
     a, b = bundles.right(task, [args])[0]
     wanted = [(a, b), (a + train, b + train), (turn @ a, turn @ b), (mirror @ a, mirror @ b), (b, a)]
     words = (
-        ("The velocities after a blow are wrong.", None),
-        ("From a moving train a blow is another one.", "DEPENDS_ON_THE_FRAME"),
-        ("Turned as a whole, a blow is another one.", "DEPENDS_ON_DIRECTION"),
-        ("In a mirror, a blow is another one.", "DEPENDS_ON_DIRECTION"),
-        ("With a and b exchanged, a blow is another one.", "DEPENDS_ON_DIRECTION"),
+        ("The velocities after an impact are wrong.", None),
+        ("From a moving train an impact is another one.", "DEPENDS_ON_THE_FRAME"),
+        ("Turned as a whole, an impact is another one.", "DEPENDS_ON_DIRECTION"),
+        ("In a mirror, an impact is another one.", "DEPENDS_ON_DIRECTION"),
+        ("With a and b exchanged, an impact is another one.", "DEPENDS_ON_DIRECTION"),
     )
     parts, diagnose = _blows(submission, task, calls)
     for given, found, true, (message, code) in zip(calls, parts, wanted, words, strict=True):
@@ -282,8 +282,8 @@ def expect_clean(submission, task, rng):
     truth = bundles.right(task, [args])
     diagnose = lambda: probes.of_calls(task, [args], [tuple(found)], truth)  # noqa: E731 - one look
     finding = given | {
-        "message": "The velocities after a blow are wrong.",
-        "help": "Take one such blow by hand, as the README's example does, and compare number by number.",
+        "message": "The velocities after an impact are wrong.",
+        "help": "Take one such impact by hand, as the README's example does, and compare number by number.",
         "diagnose": diagnose,
     }
     bundles.expect_velocities(found, truth[0], finding, _speeds(args))

@@ -5,6 +5,7 @@ package that is installed is still the one under test. And Ctrl-C reaches the pr
 pytest itself was started in the background, where a shell has it ignored.
 """
 
+import os
 import signal
 import sys
 from pathlib import Path
@@ -12,3 +13,10 @@ from pathlib import Path
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+
+def pytest_xdist_auto_num_workers() -> int:
+    """Two more than there are processors: a third of the time, a worker waits for a process that it started."""
+    return (
+        len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1)) + 2
+    )

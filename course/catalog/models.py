@@ -114,6 +114,9 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def lesson_id(self) -> LessonId:
         return LessonId(self.lesson)
 
+    def __hash__(self) -> int:
+        return hash((self.id, self.folder))  # ``slow`` is a dict
+
     @property
     def is_warm_up(self) -> bool:
         return self.kind == "warm-up"

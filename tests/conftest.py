@@ -16,7 +16,5 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Two more than there are processors: a third of the time, a worker waits for a process that it started."""
-    return (
-        len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1)) + 2
-    )
+    """Two more than processors: for a third of its time a worker waits for a process that it started."""
+    return (os.cpu_count() or 1) + 2

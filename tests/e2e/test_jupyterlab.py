@@ -220,7 +220,7 @@ def test_an_exercise_is_edited_until_its_check_passes(open_notebook: Any) -> Non
     shot(page, "exercise-finding", ".course-checks")
     assert "semi-implicit" in _check(page)
     _write(page, RIGHT)
-    _wait_for_check(page, "The one public check of explicit_euler_step passes")
+    _wait_for_check(page, "All 2 public checks of explicit_euler_step pass")
     shot(page, "exercise-pass", ".course-checks")
 
 

@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.authoring.exercises.diagnoses import audit_diagnoses
+from course.authoring.exercises.diagnosis.diagnoses import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
 from course.authoring.exercises.grading import GradeSources, declared_checks, grade_sources
 from course.authoring.exercises.kill_table import audit_page

@@ -20,8 +20,8 @@ import msgspec
 from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
 from course.printable import one_line
+from course.scoring.judging.session import Submission
 from course.scoring.places import Places
-from course.scoring.session import Submission
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

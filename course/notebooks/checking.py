@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.notebooks import Source
-    from course.scoring.submission import Submission
+    from course.scoring.judging.submission import Submission
     from course.scoring.verdict import Verdict
 
 __all__ = ["check", "checked", "must_have"]
@@ -55,8 +55,8 @@ def checked(
     Args:
         prints: show what was printed while it was loaded, too; a cell that was run has shown it.
     """
-    from course.scoring.session import GradingSession
-    from course.scoring.terms import Terms
+    from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.terms import Terms
 
     begin = time.perf_counter()
     with GradingSession(exercise, catalog, scope="public", terms=Terms(home=True)) as session:
@@ -113,7 +113,7 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    from course.scoring.submission import Submission
+    from course.scoring.judging.submission import Submission
 
     if len(text) > _MOST:
         raise UngradableError(

@@ -74,7 +74,7 @@ def report(history: Sequence[str], exercise_id: str) -> ReportPage:
     from course.catalog.load import Catalog
     from course.notebooks.page import ReportPage
     from course.notebooks.typed import module_of
-    from course.scoring.reporting import report_of
+    from course.scoring.judging.reporting import report_of
 
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
@@ -110,8 +110,8 @@ def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTab
     """
     from course.catalog.load import Catalog
     from course.notebooks.page import ReportPage
-    from course.scoring.reporting import has_report, report_of
-    from course.scoring.submission import Submission
+    from course.scoring.judging.reporting import has_report, report_of
+    from course.scoring.judging.submission import Submission
 
     table = checking.check(exercise_id, task, text)
     exercise = Catalog().exercise(exercise_id)

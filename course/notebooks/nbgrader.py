@@ -69,7 +69,7 @@ def points(exercise_id: str, task: str) -> float:
 def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
     """Public points of each task."""
     from course.scoring.checks.collected import CollectedChecks
-    from course.scoring.session import check_files
+    from course.scoring.judging.session import check_files
 
     collected = CollectedChecks(check_files(exercise, catalog, "public"))
     try:

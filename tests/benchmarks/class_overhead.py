@@ -31,8 +31,8 @@ from course.grading.intake.triage import survey  # noqa: E402
 from course.grading.results.effective import Results  # noqa: E402
 from course.grading.results.roster import Person, Roster  # noqa: E402
 from course.grading.running.snapshot import Snapshot, frozen  # noqa: E402
-from course.scoring.session import GradingSession, Submission  # noqa: E402
-from course.scoring.terms import Terms  # noqa: E402
+from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
+from course.scoring.judging.terms import Terms  # noqa: E402
 from tests.unit.grading.made import key  # noqa: E402
 
 EXERCISE = "integrators"

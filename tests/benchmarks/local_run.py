@@ -27,9 +27,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 from local_submission import LocalSubmission  # noqa: E402
 
 from course.grading import kit  # noqa: E402
-from course.scoring.explaining import Explainer  # noqa: E402
 from course.scoring.failures import finding_of  # noqa: E402
-from course.scoring.outcomes import found  # noqa: E402
+from course.scoring.judging.explaining import Explainer  # noqa: E402
+from course.scoring.judging.outcomes import found  # noqa: E402
 from course.scoring.verdict import CheckResult, Status, Visibility  # noqa: E402
 
 

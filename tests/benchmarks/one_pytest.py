@@ -19,7 +19,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 from local_submission import LocalSubmission  # noqa: E402
 
 from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.session import check_files  # noqa: E402
+from course.scoring.judging.session import check_files  # noqa: E402
 
 CATALOG = Catalog()
 SOURCE = Path(os.environ["COURSE_BENCH_SOURCE"])

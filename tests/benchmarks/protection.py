@@ -35,8 +35,8 @@ from course.authoring.exercises.variants import (  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
+from course.scoring.judging.session import GradingSession, Submission, kept_on  # noqa: E402
 from course.scoring.kit import expectations  # noqa: E402
-from course.scoring.session import GradingSession, Submission, kept_on  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")
 

@@ -26,8 +26,8 @@ from course.catalog.load import Catalog
 from course.catalog.locate import Content
 from course.isolation import launch
 from course.isolation.deadline import WALL
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Verdict, for_student
 from tests.benchmarks.protection import descendants_cpu
 from tests.contracts.levels import require_level

@@ -12,9 +12,9 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.grading import kit
-from course.scoring.reporting import report_of
-from course.scoring.session import GradingSession
-from course.scoring.submission import Submission
+from course.scoring.judging.reporting import report_of
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Status
 
 if TYPE_CHECKING:

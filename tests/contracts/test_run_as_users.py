@@ -31,7 +31,7 @@ os.environ["COURSE_CONTENT"] = content
 from course.catalog.load import Catalog
 from course.errors import CourseError
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from pathlib import Path
 
 def graded_at(level):

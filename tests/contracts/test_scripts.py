@@ -9,7 +9,7 @@ from course import errors
 from course.cli.frame import app
 from course.cli.frame.schemas import reply_types
 from course.cli.setup.surroundings import KINDS
-from course.cli.work.annotations import FORMATS
+from course.cli.work.verdict.annotations import FORMATS
 
 TEXT = (Path(__file__).parents[2] / "docs" / "scripts.md").read_text("utf-8")
 

@@ -16,8 +16,8 @@ import pytest
 
 from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -46,7 +46,11 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("module", "planted", "contract"),
     [
-        ("catalog/locate.py", "import course.cli.frame.console", "Floors: imports go down only BROKEN"),
+        (
+            "catalog/locate.py",
+            "import course.cli.frame.terminal.console",
+            "Floors: imports go down only BROKEN",
+        ),
         ("physics/systems.py", "import course.scoring.verdict", "Floors: imports go down only BROKEN"),
         ("catalog/pack.py", "import course.isolation.inside.wire", "Floors: imports go down only BROKEN"),
         ("authoring/report.py", "import typer", "Only the command line knows typer BROKEN"),

@@ -23,7 +23,7 @@ from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.gradebook.book import Gradebook
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from course.scoring.version import grader_version
 from tests.e2e.processes import below, left_running
 from tests.unit.grading.made import read_class

@@ -17,7 +17,7 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.notebooks.building.stub import pieces
-from course.scoring.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession, Submission
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -76,7 +76,7 @@ def worked():
     """A warm session over the worked example, as a function of the module's text; and the right text."""
     from course.catalog.load import Catalog
     from course.cli.setup.demo import worked_example
-    from course.scoring.session import GradingSession, Submission
+    from course.scoring.judging.session import GradingSession, Submission
 
     catalog = Catalog()
     example = worked_example(catalog)
@@ -213,7 +213,7 @@ def test_the_demonstration_names_a_mistake_mends_it_and_leaves_nothing(course, t
     said = [
         "v_next = v - h * rate**2 * x",
         "diagnosis: EULER_IS_SEMI_IMPLICIT",
-        "Checks run: 2; passed: 0.",
+        "0 of 2 checks pass.",
         "- x_next = x + h * v_next",
         "+ x_next = x + h * v",
         "All 2 public checks pass",

@@ -15,8 +15,8 @@ from course.grading.intake.students import Entry
 from course.grading.running.batch import grade_all
 from course.scoring.checks.collected import CollectedChecks
 from course.scoring.explain.calls import reached_from
-from course.scoring.session import GradingSession, Submission, check_files
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission, check_files
+from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

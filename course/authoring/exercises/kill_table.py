@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from course.authoring.exercises.confusion import fate_of, read_confusion, tally
+from course.authoring.exercises.diagnosis.confusion import fate_of, read_confusion, tally
 from course.authoring.exercises.variants import accepted_files
 from course.progress.workspace import write_atomically
 

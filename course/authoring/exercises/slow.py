@@ -13,8 +13,8 @@ from course.authoring.exercises.variants import accepted_files, compose, solutio
 from course.catalog.models import QUICK
 from course.catalog.reading import read_text
 from course.progress.workspace import write_atomically
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -26,9 +26,9 @@ from course.cli.author.replies import (
 )
 from course.cli.frame import files
 from course.cli.frame.completion import exercise_ids, lesson_ids
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.meter import meter
+from course.cli.frame.terminal.console import Console, current
+from course.cli.frame.terminal.meter import meter
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
@@ -323,7 +323,7 @@ def build(
     With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
     beside the solution for docs/graders.md.
     """
-    from course.authoring.exercises import build as desk
+    from course.authoring.exercises.diagnosis import build as desk
     from course.authoring.exercises.kill_table import write_page
     from course.authoring.exercises.points import write_points
     from course.authoring.exercises.slow import write_slow
@@ -336,7 +336,7 @@ def build(
     made = [step(catalog, exercise) for exercise in chosen for step in (write_points, write_slow, desk.build)]
     written = [shown(path, catalog) for path in made if path]
     if confusion:
-        from course.authoring.exercises.confusion import confusion_of, write_confusion
+        from course.authoring.exercises.diagnosis.confusion import confusion_of, write_confusion
         from course.scoring.explain.table import read_table
 
         read_table.cache_clear()  # it was just written anew

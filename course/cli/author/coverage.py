@@ -8,9 +8,9 @@ import typer
 
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
 from course.cli.author.replies import AuthorCoverage, AuthorProblem, CoverageRow
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.registry import COMMANDS
+from course.cli.frame.terminal.console import Console, current
 from course.simulations.registry import SIMULATIONS
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.author.replies import AuthorPictures
-from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.terminal.console import current
 from course.errors import InternalError
 from course.progress.workspace import write_atomically
 

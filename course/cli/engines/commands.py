@@ -12,16 +12,16 @@ from course.cli.engines.files import rows
 from course.cli.engines.replies import Engine, EngineList, EngineMachine, Engines, EngineScenario
 from course.cli.frame import files
 from course.cli.frame.completion import engine_ids, scenario_ids
-from course.cli.frame.console import current
-from course.cli.frame.meter import meter
+from course.cli.frame.terminal.console import current
+from course.cli.frame.terminal.meter import meter
 from course.engines.registry import ENGINES
 from course.errors import MissingCapabilityError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from course.cli.frame.console import Console
     from course.cli.frame.replies import WrittenFile
+    from course.cli.frame.terminal.console import Console
     from course.engines.results import Comparison, EngineState
 
 __all__ = ["app", "compare", "list_engines"]

@@ -12,7 +12,7 @@ from course.engines.scenarios.scenario import BOXES, SCENARIOS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.engines.results import Comparison, Row, Setting
     from course.engines.scenarios.scenario import Scenario
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, global_options
 from course.cli.frame.registry import HOME, LazyGroup, build, find
+from course.cli.frame.terminal.console import Console, current, install
 from course.errors import CourseError, NotFoundError, UsageError
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.cli.frame.console import Settings
+from course.cli.frame.terminal.console import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import msgspec
 import typer
 
-from course.cli.frame.console import current
 from course.cli.frame.replies import Bare, Envelope, ErrorReply, Schema, Schemas
+from course.cli.frame.terminal.console import current
 from course.errors import NotFoundError
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from course.printable import one_line
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.grading.running.rerun import Change
 
 __all__ = ["points", "show_change"]

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.completion import exercise_ids, student_ids
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.changes import points as _points
 from course.cli.grade.changes import show_change
 from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, levels

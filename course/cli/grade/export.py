@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.options import Exercises, Missing, one_of
 from course.errors import CourseError, UsageError
 from course.grading.exports.autograder import write_autograder

@@ -11,8 +11,8 @@ import typer
 
 from course import extras
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.changes import show_change
 from course.cli.grade.options import (
     Jobs,
@@ -23,14 +23,14 @@ from course.cli.grade.options import (
     Scheduler,
     levels,
 )
-from course.cli.work.verdicts import show_everything
+from course.cli.work.verdict.screen import show_everything
 from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.printable import one_line
+from course.scoring.judging.terms import Terms
 from course.scoring.numbers import LARGEST_SEED, format_points
-from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

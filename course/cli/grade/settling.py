@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.completion import exercise_ids, student_ids
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.options import Isolation, Jobs, Out, levels
 from course.errors import UsageError
 from course.grading.gradebook.backup import back_up

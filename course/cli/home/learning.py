@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.progress.store import Event
     from course.reading.parts import Script
     from course.reading.predictions import Said

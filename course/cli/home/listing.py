@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.cli.frame.console import current
 from course.cli.frame.here import find_workspace, load_catalog
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import current
 from course.cli.home.overview import WORDS, exercise_state, score_of
 from course.cli.home.replies import Exercises, ExerciseState
 

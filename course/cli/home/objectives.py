@@ -10,8 +10,8 @@ from course.progress.quiz import quiz_history
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from course.cli.frame.console import Console
     from course.cli.frame.here import Here
+    from course.cli.frame.terminal.console import Console
 
 __all__ = ["objective_states", "show_objectives"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import next_in_course
 from course.cli.home.learning import Learning, day, show_learning
 from course.cli.home.objectives import objective_states, show_objectives

@@ -6,11 +6,11 @@ import time
 from pathlib import Path  # noqa: TC003 - functions here take paths, and annotations are read
 from typing import TYPE_CHECKING
 
-from course.cli.frame.console import Console  # noqa: TC001 - functions here take it, and annotations are read
 from course.cli.frame.here import cwd, find_workspace, load_catalog
+from course.cli.frame.terminal.console import Console  # noqa: TC001 - functions here take it, and annotations are read
 from course.cli.notebook.replies import NotebookCheck
 from course.cli.work import checking
-from course.cli.work.verdicts import show_verdict
+from course.cli.work.verdict.screen import show_verdict
 from course.errors import NotFoundError, UngradableError
 from course.handed_in.cells import code_cells, read_notebook
 

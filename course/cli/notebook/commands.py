@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.completion import choice_of, exercise_ids, notebook_ids
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.notebook.checking import check_file
 from course.cli.notebook.files import place, put
 from course.cli.notebook.replies import Notebook

@@ -10,8 +10,8 @@ import typer
 
 from course.browser import invite
 from course.cli.frame.completion import notebook_ids
-from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.terminal.console import current
 from course.cli.notebook.files import place, put
 from course.cli.notebook.replies import NotebookOpen
 from course.extras import require

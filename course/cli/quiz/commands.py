@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from course.cli.frame.console import Console, current
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.quiz import screen
 from course.cli.quiz.desk import Desk, agrees, answer, open_or_new, printed_seed, start
 from course.cli.quiz.replies import Quiz, QuizHistoryReply, QuizReview

@@ -16,7 +16,7 @@ from course.quizzing.review import schedule
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.progress.quiz import Attempt, QuizHistory
     from course.quizzing.review import Due
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from datetime import date
 
-    from course.cli.frame.console import Console
     from course.cli.frame.here import Here
+    from course.cli.frame.terminal.console import Console
     from course.progress.quiz import Attempt, QuizHistory
     from course.quizzing.attempt import Marked, Result
     from course.quizzing.bank import Choice, Posed

@@ -13,9 +13,9 @@ import typer
 
 from course.browser import keep_closed
 from course.cli.frame.arguments import LessonName  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import find_workspace, load_catalog
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import MAX_WIDTH, Console, current
 from course.cli.home.advice import next_in_course
 from course.cli.reading.replies import LessonReply, Lessons
 from course.errors import CourseError, NotFoundError

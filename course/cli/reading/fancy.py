@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from course.catalog import blocks as b
-from course.cli.frame.pictures import picture, protocol_of
+from course.cli.frame.terminal.pictures import picture, protocol_of
 from course.cli.reading.words import LABELS, link_words, value_text
 
 if TYPE_CHECKING:

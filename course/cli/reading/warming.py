@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.arguments import WarmUpName  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.home.overview import warm_up_state, warm_up_states
 from course.cli.reading.replies import WarmUps
 from course.cli.work.checking import check as check_work

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.completion import choice_of, scene_ids, scene_settings
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd
+from course.cli.frame.terminal.console import Console, current
 from course.cli.sandbox import files as sandbox_files
 from course.cli.sandbox import play as sandbox_play
 from course.cli.sandbox.replies import (

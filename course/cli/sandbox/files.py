@@ -17,7 +17,7 @@ from course.sandbox.scene.loading import choose
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.sandbox.runs.running import Run
     from course.sandbox.scene.loading import Chosen
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.cli.sandbox.replies import SandboxFile
     from course.sandbox.runs.recording import Recording
     from course.sandbox.runs.running import Run

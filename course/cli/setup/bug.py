@@ -20,8 +20,8 @@ import typer
 
 from course import __version__
 from course.cli.frame import files
-from course.cli.frame.console import current
 from course.cli.frame.here import cwd
+from course.cli.frame.terminal.console import current
 from course.cli.setup.doctor import packages, protection, terminal
 from course.cli.setup.replies import Bug
 

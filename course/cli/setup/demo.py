@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from course.catalog.load import read_toml
 from course.catalog.models import Exercise
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.setup.replies import Demo
 from course.cli.work.checking import reply_to
-from course.cli.work.verdicts import show_verdict
+from course.cli.work.verdict.screen import show_verdict
 from course.errors import InternalError
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.figures.drawing.described import Plot
-    from course.scoring.session import GradingSession
+    from course.scoring.judging.session import GradingSession
     from course.scoring.verdict import Verdict
 
 __all__ = ["MISTAKEN", "WORKED", "demo", "worked_example"]
@@ -142,7 +142,7 @@ def _motion(console: Console, session: GradingSession, source: str) -> _Motion:
     import numpy as np
 
     from course.cli.work.checking import grade_once, unlike_verdict
-    from course.scoring.session import Submission
+    from course.scoring.judging.session import Submission
 
     submission = Submission({session.exercise.module: source.encode()})
     with console.working("Checking"):
@@ -184,7 +184,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     """Both motions, where the terminal can show a picture."""
     if not console.draws:
         return
-    from course.cli.frame.half_blocks import half_blocks
+    from course.cli.frame.terminal.half_blocks import half_blocks
     from course.figures.terminal import terminal_plot
 
     wide = console.width >= _WIDE

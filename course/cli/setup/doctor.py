@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import find_workspace, load_catalog
+from course.cli.frame.terminal.console import Console, current
 from course.cli.setup.replies import Doctor, Fix, Package
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.catalog.models import CourseRef
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.replies import NextStep, WrittenFile
+from course.cli.frame.terminal.console import Console, current
 from course.cli.setup.replies import Init
 from course.cli.setup.surroundings import chosen_kinds, complete_kinds, usable, write_surroundings
 from course.errors import CourseError, NotFoundError, UsageError

@@ -10,7 +10,7 @@ import typer
 
 from course.cli.frame import files
 from course.cli.frame.completion import simulation_ids, simulation_settings
-from course.cli.frame.console import Console, current
+from course.cli.frame.terminal.console import Console, current
 from course.cli.sim.files import builder, figure, table
 from course.cli.sim.replies import Sim, SimAll, SimEntry, SimList, SimParameter, SimRow, SimSetting
 from course.errors import UsageError

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.arguments import ExerciseName, OneExercise  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Backup, NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.work.checking import say_which
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Update

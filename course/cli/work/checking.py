@@ -9,16 +9,16 @@ import typer
 
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.completion import check_ids, choice_of
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import next_step
-from course.cli.work.annotations import FORMATS, annotate, annotate_error, known_format
 from course.cli.work.chosen import asked_for, chosen_work, worked_on
 from course.cli.work.curves import show_curve
-from course.cli.work.prints import show_loading
 from course.cli.work.replies import Check, CheckAll
-from course.cli.work.verdicts import show_verdict
+from course.cli.work.verdict.annotations import FORMATS, annotate, annotate_error, known_format
+from course.cli.work.verdict.prints import show_loading
+from course.cli.work.verdict.screen import show_verdict
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.progress.history import check_data
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import CourseRef, Exercise
     from course.cli.work.chosen import Work
-    from course.scoring.session import GradingSession, Submission
+    from course.scoring.judging.session import GradingSession, Submission
     from course.scoring.verdict import Verdict
 
 __all__ = [
@@ -85,8 +85,8 @@ def check(
 
 def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
     """A grading session over the public checks of an exercise; a context manager."""
-    from course.scoring.session import GradingSession
-    from course.scoring.terms import Terms
+    from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.terms import Terms
 
     return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.cli.frame.here import Here
     from course.handed_in.notebook import NotebookSource
-    from course.scoring.session import Submission
+    from course.scoring.judging.session import Submission
 
 __all__ = ["Work", "asked_for", "chosen_work", "work_of", "worked_on"]
 
@@ -63,7 +63,7 @@ class Work:
         """What is graded of it."""
         if self.notebook is not None:
             return self.notebook.submission(self.exercise)
-        from course.scoring.session import Submission
+        from course.scoring.judging.session import Submission
 
         return Submission({self.exercise.module: self.source})
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise
-    from course.cli.frame.console import Console
-    from course.scoring.session import GradingSession
+    from course.cli.frame.terminal.console import Console
+    from course.scoring.judging.session import GradingSession
     from course.scoring.verdict import Verdict
 
 __all__ = ["show_curve"]

@@ -14,9 +14,9 @@ import typer
 
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.completion import task_ids
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Hint, Solution

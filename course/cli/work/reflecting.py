@@ -13,9 +13,9 @@ import typer
 
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
 from course.cli.frame.completion import grade_lists
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import MAX_FILE_BYTES, Here, cwd
 from course.cli.frame.replies import NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.work.replies import Reflect, ReflectPoint
 from course.errors import NotFoundError, UsageError
 

@@ -11,8 +11,8 @@ import typer
 
 from course.cli.frame import files
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import after_report
 from course.cli.work.checking import say_which
 from course.cli.work.chosen import asked_for, chosen_work
@@ -45,7 +45,7 @@ def report(
     Runs your functions on public data, as the checks do, and draws the results. Parts whose functions are not
     written yet say so.
     """
-    from course.scoring.reporting import report_of
+    from course.scoring.judging.reporting import report_of
 
     console, here = current(), Here.load()
     work = chosen_work(here, *asked_for(here, exercise))

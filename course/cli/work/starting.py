@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.cli.frame.arguments import OneExercise  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import FileReply, NextStep
+from course.cli.frame.terminal.console import Console, current
 from course.cli.work.replies import Start
 
 if TYPE_CHECKING:

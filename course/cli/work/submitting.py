@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.frame.terminal.console import Console, current
 from course.cli.work.chosen import work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError

@@ -17,18 +17,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply
+from course.cli.frame.terminal.console import PATIENCE, Console, current
 from course.cli.home.advice import hint_is_due, next_step
 from course.cli.work import checking
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.curves import show_curve
 from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
-from course.cli.work.prints import show_loading
 from course.cli.work.replies import Watch, WatchRun
-from course.cli.work.verdicts import is_unwritten, show_verdict
+from course.cli.work.verdict.prints import show_loading
+from course.cli.work.verdict.screen import is_unwritten, show_verdict
 from course.errors import CourseError, UngradableError
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.cli.work.keys import Keys
     from course.cli.work.replies import Check
-    from course.scoring.session import GradingSession
+    from course.scoring.judging.session import GradingSession
     from course.scoring.verdict import Verdict
 
 __all__ = ["Watcher", "saves", "watch"]

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from course.grading.cluster.coordinator import Outcome
     from course.grading.intake.students import Entry
     from course.grading.running.batch import Graded
-    from course.scoring.terms import Terms
+    from course.scoring.judging.terms import Terms
 
 __all__ = ["Cluster", "DaskWorkers", "local_cluster", "remote_cluster", "start_cluster"]
 

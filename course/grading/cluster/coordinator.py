@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.errors import CourseError
     from course.grading.intake.students import Entry
-    from course.scoring.terms import Terms
+    from course.scoring.judging.terms import Terms
 
 __all__ = ["Lost", "Outcome", "Workers", "grade_on"]
 

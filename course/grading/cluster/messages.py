@@ -12,7 +12,7 @@ from typing import TypeVar
 import msgspec
 
 from course.grading.running.grader import Answer, Job
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 
 __all__ = ["FORMAT", "Answers", "Batch", "decode_answers", "decode_batch", "encode"]
 

@@ -27,7 +27,7 @@ from course.grading.pipes import read_frame, write_frame
 from course.grading.running.batch import MAX_TRIES, answer_to, hang_s, start_grader
 from course.grading.running.grader import Answer, Config
 from course.grading.running.snapshot import Snapshot, frozen, in_use
-from course.scoring.submission import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ from course.grading.intake.downloads import Place, Student
 from course.grading.intake.students import read_student
 from course.grading.results.effective import Effective
 from course.handed_in.notebook import opened
-from course.scoring.session import GradingSession
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Problem, Verdict
 from course.scoring.version import grader_version
 

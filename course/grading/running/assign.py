@@ -21,7 +21,7 @@ from course.grading.intake.triage import Found
 from course.grading.results.effective import Results
 from course.grading.running.batch import grade_all
 from course.grading.running.snapshot import Snapshot, frozen, kept
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from course.grading.intake.students import Entry
-    from course.scoring.terms import Terms
+    from course.scoring.judging.terms import Terms
 
 __all__ = [
     "MAX_TRIES",

@@ -16,12 +16,12 @@ from course.errors import CourseError, MissingCapabilityError
 from course.grading.pipes import read_frame, write_frame
 from course.handed_in.notebook import opened
 from course.isolation.launch import keep_private
-from course.scoring.submission import Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.submission import Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Problem, Verdict
 
 if TYPE_CHECKING:
-    from course.scoring.session import GradingSession
+    from course.scoring.judging.session import GradingSession
 
 __all__ = ["Answer", "Config", "Job", "main"]
 
@@ -143,7 +143,7 @@ class _Grader:
         return mine
 
     def _session(self, exercise: str) -> GradingSession:
-        from course.scoring.session import GradingSession
+        from course.scoring.judging.session import GradingSession
 
         if exercise not in self._sessions:
             self._sessions[exercise] = GradingSession(

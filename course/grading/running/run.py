@@ -26,7 +26,7 @@ from course.grading.running.snapshot import Snapshot, among_graders, frozen, kep
 from course.grading.running.summary import Summary
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from course.scoring.version import grader_version
 
 if TYPE_CHECKING:

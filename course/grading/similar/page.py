@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.grading.exports.html_report.templates import render
+from course.grading.exports.html_report.rendering import render
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from course.handed_in.notebook import SETUP, SOLUTION
 from course.notebooks.building.cells import Cell, code, document, markdown, opening
 from course.notebooks.building.stub import pieces
-from course.scoring.reporting import has_report
+from course.scoring.judging.reporting import has_report
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog

@@ -30,8 +30,8 @@ from protection import descendants_cpu  # noqa: E402
 from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
 from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.session import GradingSession, Submission  # noqa: E402
-from course.scoring.terms import Terms  # noqa: E402
+from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
+from course.scoring.judging.terms import Terms  # noqa: E402
 from course.scoring.verdict import Status  # noqa: E402
 
 if TYPE_CHECKING:

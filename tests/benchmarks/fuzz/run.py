@@ -45,8 +45,8 @@ from course.isolation.failures import StudentFailure  # noqa: E402
 from course.isolation.session import Connection, LoadRefusedError  # noqa: E402
 from course.sandbox.scene.loading import choose  # noqa: E402
 from course.sandbox.world.world import World  # noqa: E402
-from course.scoring.session import GradingSession, Submission  # noqa: E402
-from course.scoring.terms import Terms  # noqa: E402
+from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
+from course.scoring.judging.terms import Terms  # noqa: E402
 from tests.contracts import test_spoilt_functions as spoiling  # noqa: E402
 from tests.unit.isolation.test_connection import LOADED, READY, Liar  # noqa: E402
 

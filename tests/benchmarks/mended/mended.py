@@ -38,8 +38,8 @@ from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.handout import checks_for_student  # noqa: E402
 from course.grading.intake.students import Entry  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
-from course.scoring.submission import Submission  # noqa: E402
-from course.scoring.terms import Terms  # noqa: E402
+from course.scoring.judging.submission import Submission  # noqa: E402
+from course.scoring.judging.terms import Terms  # noqa: E402
 
 if TYPE_CHECKING:
     from course.scoring.verdict import Verdict

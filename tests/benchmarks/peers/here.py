@@ -20,7 +20,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[3]), str(Path(__file__).res
 from local_submission import LocalSubmission  # noqa: E402
 
 from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.session import check_files  # noqa: E402
+from course.scoring.judging.session import check_files  # noqa: E402
 
 SEED = 0
 

@@ -9,7 +9,7 @@ import msgspec
 from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path
 from course.catalog.load import Catalog
-from course.scoring.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession, Submission
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.build import build
+from course.authoring.exercises.diagnosis.build import build
 from course.authoring.scaffold import Function, new_warm_up
 from course.catalog.load import Catalog
 from course.errors import ContentError, UsageError

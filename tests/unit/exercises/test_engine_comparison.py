@@ -13,7 +13,7 @@ import pytest
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.catalog.load import Catalog
 from course.grading import kit
-from course.scoring.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession, Submission
 
 ROOT = Path(__file__).resolve().parents[3]
 HIDDEN = str(ROOT / "tests/graders/engine-comparison/checks.py")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.catalog.load import Catalog
-from course.scoring.session import GradingSession
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

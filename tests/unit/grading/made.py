@@ -8,7 +8,7 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import read_student
-from course.scoring.session import Submission
+from course.scoring.judging.session import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 if TYPE_CHECKING:

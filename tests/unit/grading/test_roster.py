@@ -18,7 +18,7 @@ from course.grading.results.override import override
 from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 

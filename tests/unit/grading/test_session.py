@@ -12,8 +12,8 @@ import pytest
 
 from course.errors import ContentError, MissingCapabilityError
 from course.grading import kit
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.values import plain
 from course.scoring.verdict import Status, finite, for_student
 from course.scoring.version import grader_version

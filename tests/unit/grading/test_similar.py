@@ -20,7 +20,7 @@ from course.grading.results.effective import Results
 from course.grading.similar.compare import compare
 from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, fingerprints
 from course.grading.similar.page import _blocks, page
-from course.scoring.session import Submission
+from course.scoring.judging.session import Submission
 from tests.growth import LIMIT, growth
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book

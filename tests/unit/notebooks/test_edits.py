@@ -10,7 +10,7 @@ import pytest
 
 from course.handed_in.notebook import RECORD, NotebookSource, notebook_source, opened
 from course.physics import systems
-from course.scoring.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession, Submission
 from tests.unit.notebooks.edits import edited
 
 if TYPE_CHECKING:

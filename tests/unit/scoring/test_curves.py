@@ -12,8 +12,8 @@ from course.catalog.load import Catalog
 from course.figures.drawing.plots import render
 from course.physics.systems import Oscillator
 from course.scoring.curves import compared, marched, plot_of
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

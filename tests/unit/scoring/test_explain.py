@@ -16,7 +16,7 @@ from course.scoring.explain.fingerprint import SAME, fingerprint, read
 from course.scoring.explain.story import Failure, common, tell
 from course.scoring.explain.table import Row, Table, is_right, matching, read_table, write_table
 from course.scoring.explain.words import Diagnosis, Entry, Words, read_words
-from course.scoring.explaining import asked, tasks_asked
+from course.scoring.judging.explaining import asked, tasks_asked
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,8 +15,8 @@ from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 from tests.contracts.levels import require_level
 
 if TYPE_CHECKING:

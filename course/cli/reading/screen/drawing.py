@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from course.browser import opened
-from course.cli.frame.half_blocks import half_blocks
+from course.cli.frame.terminal.half_blocks import half_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 from rich.text import Text
 
-from course.cli.frame.console import STATUS_STYLE
-from course.cli.work.annotations import line_of, unread_line
+from course.cli.frame.terminal.console import STATUS_STYLE
+from course.cli.work.verdict.annotations import line_of, unread_line
 from course.scoring.numbers import numbers_of
 from course.scoring.verdict import CheckResult
 

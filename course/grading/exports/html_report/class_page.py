@@ -6,7 +6,7 @@ from statistics import mean, median
 from typing import TYPE_CHECKING
 
 from course.grading.exports.html_report.charts import duration_bins
-from course.grading.exports.html_report.templates import render
+from course.grading.exports.html_report.rendering import render
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:

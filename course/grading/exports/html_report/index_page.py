@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.grading.exports.html_report.templates import render
+from course.grading.exports.html_report.rendering import render
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from course.grading.exports.cells import number
 from course.grading.exports.handout import checks_for_student, problem_for_student
-from course.grading.exports.html_report.templates import render, shortened
+from course.grading.exports.html_report.rendering import render, shortened
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.printable import one_line
 from course.scoring.numbers import numbers_of

@@ -11,9 +11,9 @@ from urllib.parse import quote
 from course.grading.exports.cells import csv_bytes, write_bytes
 from course.grading.exports.html_report.class_page import class_page
 from course.grading.exports.html_report.index_page import index_page, index_row
+from course.grading.exports.html_report.rendering import MARKER
 from course.grading.exports.html_report.student_page import student_page
 from course.grading.exports.html_report.tally import Tally
-from course.grading.exports.html_report.templates import MARKER
 from course.grading.exports.selection import ExportOptions, Written, select
 
 if TYPE_CHECKING:

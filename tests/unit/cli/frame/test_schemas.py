@@ -18,7 +18,7 @@ from course.cli.frame.replies import Bare, Envelope, ErrorBody, ErrorReply, Next
 from course.cli.frame.schemas import reply_types, schema_of
 from course.cli.work import checking
 from course.cli.work.replies import Hint
-from course.scoring.session import GradingSession
+from course.scoring.judging.session import GradingSession
 
 CLI = Path(package.__file__).parent / "cli"
 MINI_COURSE = Path(__file__).parents[3] / "fixtures" / "mini_course"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from course.catalog.load import Catalog
-from course.cli.frame.console import Console
+from course.cli.frame.terminal.console import Console
 from course.progress.quiz import DONE, START
 from course.progress.store import Store
 from course.reading.pages import Place

@@ -173,8 +173,8 @@ def test_a_report_on_a_notebook_names_its_cells(course, notebook):
 def test_a_watch_of_a_notebook_grades_each_save(course, notebook):
     import io
 
-    from course.cli.frame.console import Console, Settings
     from course.cli.frame.here import Here
+    from course.cli.frame.terminal.console import Console, Settings
     from course.cli.work import checking
     from course.cli.work.watching import Watcher
 

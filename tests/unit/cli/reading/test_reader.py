@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import re
 import time
 from typing import TYPE_CHECKING, Any
@@ -12,11 +11,12 @@ import pytest
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
-from course.cli.frame.half_blocks import half_blocks
+from course.cli.frame.terminal.half_blocks import half_blocks
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.telling import fitting
 from course.progress.store import Store
 from course.reading.record import Writer
+from tests.unit.cli.reading.driving import drive, screen, settled
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -46,30 +46,15 @@ def reading(
     events = (lambda name: store.events(subject=name)) if store else (lambda _: ())
     app = ReaderApp(catalog, lesson, section, events=events, write=write)
 
-    async def drive() -> None:
-        async with app.run_test(size=size) as pilot:
-            await settled(app, pilot)
-            await journey(app, pilot)
-            app.keep_place()
+    async def left(app: ReaderApp, pilot: Any) -> None:
+        await journey(app, pilot)
+        app.keep_place()
 
     try:
-        asyncio.run(drive())
+        drive(app, left, size)
     finally:
         write.close()
     return app
-
-
-async def settled(app: ReaderApp, pilot: Any) -> None:
-    for _ in range(200):
-        await pilot.pause(0.02)
-        if app.page.book is not None and app.page.book.whole:
-            return
-    pytest.fail("the lesson was never laid out")
-
-
-def screen(app: ReaderApp) -> str:
-    height = app.size.height
-    return "\n".join("".join(s.text for s in app.page.render_line(y)).rstrip() for y in range(height))
 
 
 async def ran(app: ReaderApp, pilot: Any) -> None:

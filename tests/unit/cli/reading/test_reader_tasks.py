@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -14,6 +13,7 @@ from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.practice import Practice
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
+from tests.unit.cli.reading.driving import drive, screen
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -39,33 +39,18 @@ def doing(
     practice = Practice(catalog, workspace)
     app = ReaderApp(catalog, LESSON, practice=practice)
 
-    async def drive() -> None:
-        async with app.run_test(size=(80, 24)) as pilot:
-            await settled(app, pilot)
-            blocks = app.progress.script.blocks
-            index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
-            app._chosen(f"block:{index}")
-            await pilot.pause()
-            await journey(app, pilot)
+    async def there(app: ReaderApp, pilot: Any) -> None:
+        blocks = app.progress.script.blocks
+        index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
+        app._chosen(f"block:{index}")
+        await pilot.pause()
+        await journey(app, pilot)
 
     try:
-        asyncio.run(drive())
+        drive(app, there)
     finally:
         practice.close()
     return app
-
-
-async def settled(app: ReaderApp, pilot: Any) -> None:
-    for _ in range(200):
-        await pilot.pause(0.02)
-        if app.page.book is not None and app.page.book.whole:
-            return
-    pytest.fail("the lesson was never laid out")
-
-
-def screen(app: ReaderApp) -> str:
-    height = app.size.height
-    return "\n".join("".join(s.text for s in app.page.render_line(y)).rstrip() for y in range(height))
 
 
 async def answered(app: ReaderApp, pilot: Any) -> None:

@@ -12,7 +12,7 @@ import pytest
 from rich.console import Console
 
 from course.catalog.models import Lesson
-from course.cli.frame.pictures import InlinePicture, protocol_of
+from course.cli.frame.terminal.pictures import InlinePicture, protocol_of
 from course.cli.reading.lesson import Reader, lesson_pages
 from course.cli.reading.plain import sentences
 from course.cli.reading.words import value_spoken, value_text

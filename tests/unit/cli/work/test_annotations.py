@@ -13,7 +13,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.cli.work.annotations import github
+from course.cli.work.verdict.annotations import github
 
 #: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
 DATA = (("%0D", "\r"), ("%0A", "\n"), ("%25", "%"))
@@ -150,7 +150,7 @@ def test_an_unknown_format_is_refused(course, write):
 def test_a_line_in_a_notebook_is_that_of_its_text():
     from types import SimpleNamespace
 
-    from course.cli.work.annotations import _line_of
+    from course.cli.work.verdict.annotations import _line_of
 
     text = '{"cells": [\n  {"source": [\n    "def double(x):\\n",\n    "    return x\\n"\n]}]}'
     work = SimpleNamespace(notebook=object(), data=text.encode())
@@ -161,7 +161,7 @@ def test_a_line_in_a_notebook_is_that_of_its_text():
 def test_a_line_that_raised_goes_before_the_one_that_defines():
     from types import SimpleNamespace
 
-    from course.cli.work.annotations import _line_of
+    from course.cli.work.verdict.annotations import _line_of
 
     work = SimpleNamespace(notebook=None, data=b"def double(x):\n    return x / 0\n")
     trace = "doubling.py:2 in double\n    return x / 0"
@@ -259,8 +259,8 @@ def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
     """A folder called as a command was one in every list of a run, and so was what an exception said."""
     import io
 
-    from course.cli.frame.console import Console
-    from course.cli.work.annotations import _shown
+    from course.cli.frame.terminal.console import Console
+    from course.cli.work.verdict.annotations import _shown
 
     monkeypatch.setenv("GITHUB_ACTIONS", "true")
     out, err = io.StringIO(), io.StringIO()

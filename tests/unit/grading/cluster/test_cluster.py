@@ -26,8 +26,8 @@ from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
 from course.grading.running.grader import Answer, Job
 from course.grading.running.snapshot import Snapshot, in_use
-from course.scoring.session import Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Problem, Verdict
 from course.scoring.version import grader_version
 from tests.unit.grading.made import stillborn
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
     from course.grading.cluster.coordinator import Outcome
-    from course.scoring.session import GradingSession
+    from course.scoring.judging.session import GradingSession
 
 ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"

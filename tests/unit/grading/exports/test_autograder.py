@@ -21,13 +21,13 @@ from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError
 from course.grading.exports.autograder import write_autograder
 from course.grading.exports.container import grade, main
-from course.scoring.session import GradingSession
+from course.scoring.judging.session import GradingSession
 from tests.unit.grading.conftest import MINI
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from course.scoring.terms import Terms
+    from course.scoring.judging.terms import Terms
 
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 #: A hidden input of the miniature course, and what is expected of it.

@@ -18,8 +18,8 @@ from course.errors import MissingCapabilityError
 from course.grading.exports.cells import number, safe_cell
 from course.grading.exports.formats import export
 from course.grading.exports.html_report.class_page import class_page
+from course.grading.exports.html_report.rendering import macro, script
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
-from course.grading.exports.html_report.templates import macro, script
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results

@@ -15,7 +15,7 @@ from course.grading.exports.html_report.charts import (
     percent,
     score_bins,
 )
-from course.grading.exports.html_report.templates import macro
+from course.grading.exports.html_report.rendering import macro
 from course.grading.exports.html_report.words import when
 from course.grading.results.late import in_days
 from tests.unit.grading.pages import Page

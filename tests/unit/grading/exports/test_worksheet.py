@@ -16,7 +16,7 @@ from course.grading.results.override import override
 from course.grading.results.roster import read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from tests.unit.grading.made import read_by_php
 from tests.unit.grading.running.test_run import right
 

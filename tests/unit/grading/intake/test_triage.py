@@ -21,7 +21,7 @@ from course.grading.results.override import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_run import right
 

@@ -25,7 +25,7 @@ from course.grading.running.assign import assign, proposals, unsettled
 from course.grading.running.batch import grade_all
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_roster import rows
 

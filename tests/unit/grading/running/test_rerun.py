@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.grading.intake.students import Entry
-    from course.scoring.terms import Terms
+    from course.scoring.judging.terms import Terms
 
 NOW = {"ada": RIGHT, "bob": HALF, "cy": RIGHT, "dan": RIGHT}
 
@@ -171,7 +171,7 @@ def test_nothing_decides_a_score_but_what_the_version_of_the_graders_covers() ->
     seen = subprocess.run(
         [
             sys.executable, "-c",
-            "import sys, course.scoring.session, course.scoring.kit;"
+            "import sys, course.scoring.judging.session, course.scoring.kit;"
             "print(*{name.split('.')[1] for name in sys.modules if name.startswith('course.')})",
         ],
         capture_output=True, text=True, check=True,

@@ -26,7 +26,7 @@ from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
 from course.grading.running.grader import Answer
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.terms import Terms
+from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Verdict
 from tests.unit.grading.made import read_class, stillborn
 

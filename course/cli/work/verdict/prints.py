@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from course.cli.frame.console import Console
+    from course.cli.frame.terminal.console import Console
     from course.scoring.verdict import Verdict
 
 __all__ = ["show_lines", "show_loading", "show_unshown"]

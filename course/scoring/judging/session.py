@@ -24,13 +24,13 @@ from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.checks.companions import companion
 from course.scoring.curves import Curve, marched
-from course.scoring.explaining import Explainer
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
-from course.scoring.outcomes import found, load_problem, no_functions, result, skipped, unjudged
+from course.scoring.judging.explaining import Explainer
+from course.scoring.judging.outcomes import found, load_problem, no_functions, result, skipped, unjudged
+from course.scoring.judging.submission import Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.places import Places
 from course.scoring.remote import RemoteSubmission
-from course.scoring.submission import Submission
-from course.scoring.terms import Terms
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, bounded
 
 if TYPE_CHECKING:

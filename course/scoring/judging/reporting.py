@@ -9,9 +9,9 @@ from course.errors import NotFoundError, UngradableError
 from course.isolation.failures import StudentFailure
 from course.scoring.checks.companions import companion
 from course.scoring.failures import CheckFailed
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.report import Report, finding_for
-from course.scoring.session import GradingSession, Submission
-from course.scoring.terms import Terms
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from course.cli.frame.console import STATUS_STYLE, Console
-from course.cli.work.prints import show_lines, show_unshown
+from course.cli.frame.terminal.console import STATUS_STYLE, Console
+from course.cli.work.verdict.prints import show_lines, show_unshown
 from course.scoring.numbers import format_points, numbers_of
 
 if TYPE_CHECKING:
@@ -100,8 +100,8 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
 
 
 def _part(verdict: Verdict) -> list[str]:
-    passing = sum(check.status == "pass" for check in verdict.checks)
-    return [f"Checks run: {len(verdict.checks)}; passed: {passing}."]
+    passing, total = sum(check.status == "pass" for check in verdict.checks), len(verdict.checks)
+    return [f"{passing} of {total} {'check passes' if passing == total == 1 else 'checks pass'}."]
 
 
 class _Page:

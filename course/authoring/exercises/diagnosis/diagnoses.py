@@ -6,9 +6,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from course.authoring.exercises.build import digest
-from course.authoring.exercises.confusion import FILE as CONFUSION
-from course.authoring.exercises.confusion import made_from, read_confusion
+from course.authoring.exercises.diagnosis.build import digest
+from course.authoring.exercises.diagnosis.confusion import FILE as CONFUSION
+from course.authoring.exercises.diagnosis.confusion import made_from, read_confusion
 from course.authoring.exercises.source import parse
 from course.authoring.exercises.variants import exercise_graders, solutions_folder
 from course.catalog.reading import read_text

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Literal
 from rich.console import Group
 from rich.segment import ControlType, Segment
 
-from course.cli.frame.half_blocks import half_blocks
+from course.cli.frame.terminal.half_blocks import half_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

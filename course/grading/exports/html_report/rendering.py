@@ -22,7 +22,7 @@ __all__ = ["MARKER", "macro", "render", "script", "shortened"]
 
 #: Begins every page; what does not begin so is not ours to replace.
 MARKER: Final = "<!DOCTYPE html>\n<!-- course grade -->\n"
-_HERE = Path(__file__).parent
+_TEMPLATES = Path(__file__).with_name("templates")
 #: Nothing that means something to HTML is left when this is looked for.
 _CODE = re.compile(r"`([^`\n]{1,200})`")
 #: Characters of a name that are shown: a folder may be called anything.
@@ -53,7 +53,7 @@ def shortened(value: str, longest: int) -> str:
 @cache
 def script() -> str:
     """What sorts and filters tables, where scripts run; everything is there without it."""
-    return (_HERE / "tables.js").read_text("utf-8")
+    return (_TEMPLATES / "tables.js").read_text("utf-8")
 
 
 # -- inside ----------------------------------------------------------------------------------------------
@@ -62,7 +62,7 @@ def script() -> str:
 @cache
 def _environment() -> jinja2.Environment:
     made = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([_HERE, _HERE.parents[1] / "similar"]),
+        loader=jinja2.FileSystemLoader([_TEMPLATES, _TEMPLATES.parents[2] / "similar"]),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         finalize=_shown,
@@ -114,7 +114,7 @@ def _prose(value: str, longest: int = 2000) -> Markup:
 
 @cache
 def _style(more: str = "") -> Markup:
-    lines = [*(_HERE / "page.css").read_text("utf-8").splitlines(), *more.splitlines()]
+    lines = [*(_TEMPLATES / "page.css").read_text("utf-8").splitlines(), *more.splitlines()]
     return Markup("\n".join(line.strip() for line in lines if line.strip()))
 
 

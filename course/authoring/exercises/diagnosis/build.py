@@ -21,7 +21,7 @@ from course.grading import kit
 from course.scoring.checks.companions import words
 from course.scoring.explain.table import FILE, Row, Table, is_right, write_table
 from course.scoring.explain.words import FILE as WORDS
-from course.scoring.explaining import answers, asked, tasks_asked
+from course.scoring.judging.explaining import answers, asked, tasks_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -21,7 +21,7 @@ import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO, cast
 
-from course.cli.frame.stream import Stream
+from course.cli.frame.terminal.stream import Stream
 from course.errors import InternalError
 from course.printable import steady, unheeded
 
@@ -269,7 +269,7 @@ class Console:
         """
         if not self.fancy or self.quiet:
             return
-        from course.cli.frame.pictures import picture
+        from course.cli.frame.terminal.pictures import picture
 
         shown = picture(self.rich(), self._environ, make, self.width)
         if shown is not None:

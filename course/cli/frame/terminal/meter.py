@@ -6,7 +6,7 @@ import contextlib
 import time
 from typing import TYPE_CHECKING
 
-from course.cli.frame.console import PATIENCE, Console
+from course.cli.frame.terminal.console import PATIENCE, Console
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from course.authoring.exercises.build import digest, hypotheses_of
+from course.authoring.exercises.diagnosis.build import digest, hypotheses_of
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import exercise_graders, solution_path, solutions_folder
 from course.scoring.checks.companions import words
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import read_table
-from course.scoring.session import GradingSession, Scope, Submission
-from course.scoring.terms import Terms
+from course.scoring.judging.session import GradingSession, Scope, Submission
+from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Status
 
 if TYPE_CHECKING:

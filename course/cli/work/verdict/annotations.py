@@ -15,8 +15,8 @@ from course.scoring.numbers import numbers_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from course.cli.frame.console import Console
     from course.cli.frame.here import Here
+    from course.cli.frame.terminal.console import Console
     from course.cli.work.chosen import Work
     from course.errors import CourseError
     from course.scoring.verdict import CheckResult, Verdict

@@ -1,0 +1,1 @@
+"""The screen: what is printed and paged, pictures, meters, and a reader that goes away."""

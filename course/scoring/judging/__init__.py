@@ -1,0 +1,1 @@
+"""A submission judged: what a run decides once, the session, and the words of the verdict."""

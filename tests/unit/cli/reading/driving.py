@@ -1,0 +1,41 @@
+"""The reader driven without a terminal: opened, read off its screen, and left."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    from course.cli.reading.screen.app import ReaderApp
+
+__all__ = ["drive", "screen", "settled"]
+
+
+def drive(
+    app: ReaderApp, journey: Callable[[ReaderApp, Any], Awaitable[None]], size: tuple[int, int] = (80, 24)
+) -> None:
+    """Open the reader, wait for its lesson, do what ``journey`` does, leave."""
+
+    async def driven() -> None:
+        async with app.run_test(size=size) as pilot:
+            await settled(app, pilot)
+            await journey(app, pilot)
+
+    asyncio.run(driven())
+
+
+async def settled(app: ReaderApp, pilot: Any) -> None:
+    for _ in range(200):
+        await pilot.pause(0.02)
+        if app.page.book is not None and app.page.book.whole:
+            return
+    pytest.fail("the lesson was never laid out")
+
+
+def screen(app: ReaderApp) -> str:
+    height = app.size.height
+    return "\n".join("".join(s.text for s in app.page.render_line(y)).rstrip() for y in range(height))

@@ -92,11 +92,11 @@ def _unmoved(task, calls, values):
     """Whether bodies that run into each other keep their velocities, in two cases at least."""
     if task != "impulse_1d" and not task.startswith("resolve"):
         return None
-    struck = [(call, value) for call, value in zip(calls, values, strict=True) if _closing(task, call) > 0]
+    colliding = [(call, value) for call, value in zip(calls, values, strict=True) if _closing(task, call) > 0]
     if task == "impulse_1d":
-        kept = [value == 0 for _, value in struck]
+        kept = [value == 0 for _, value in colliding]
     else:
-        kept = [_same((call[2], call[3]), value) for call, value in struck]
+        kept = [_same((call[2], call[3]), value) for call, value in colliding]
     return "NO_RESPONSE" if len(kept) > 1 and all(kept) else None
 
 
@@ -106,14 +106,14 @@ def _by_law(task, calls, values, truth):
         return _coarse(calls, values, truth)
     if task.startswith("detect"):
         return None
-    struck = [pair for pair in zip(calls, values, strict=True) if _closing(task, pair[0]) > 0]
+    colliding = [pair for pair in zip(calls, values, strict=True) if _closing(task, pair[0]) > 0]
     if task != "impulse_1d":
-        finite = [(c, v) for c, v in struck if math.inf not in c[:2]]
+        finite = [(c, v) for c, v in colliding if math.inf not in c[:2]]
         if any(energy(*c[:2], *v) > energy(*c[:4]) * (1 + 1e-9) for c, v in finite):
             return "ENERGY_CREATED"
         if any(_momentum_lost(c, v) for c, v in finite):
             return "MOMENTUM_LOST"
-    excess = np.array([_excess(task, c, v) for c, v in struck])
+    excess = np.array([_excess(task, c, v) for c, v in colliding])
     if np.all(excess > 1e-8):
         return "BLOW_TOO_STRONG"
     return "BLOW_TOO_WEAK" if np.all(excess < -1e-8) else None
@@ -232,10 +232,10 @@ def of_head_on(scene, truth, t, x, v, h):
 
 
 def _of_wait(scene, truth, t, x, h):
-    """Whether all is right but that the bodies stand still after the blow until the next sample."""
+    """Whether all is right but that the bodies stand still after the impact until the next sample."""
     lost = math.ceil(truth.contact / h - 1e-9) * h - truth.contact
     for wait in (lost, lost + h):  # a whole step where the contact falls on a sample
-        # Where the blow itself falls on a sample, the two sides of it are a matter of taste.
+        # Where the impact itself falls on a sample, the two sides of it are a matter of taste.
         away = np.abs(t - truth.contact) > 1e-9
         path = scene.at(t, truth.contact, truth.after, wait)[0]
         if wait > 1e-9 and np.allclose(x[away], path[away], rtol=1e-9, atol=1e-8):
@@ -245,8 +245,8 @@ def _of_wait(scene, truth, t, x, h):
 
 def _of_speeds(scene, v):
     """The velocities at the end are wrong ones: which?"""
-    blows = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
-    if len(blows) > 1 and v[blows[1], 0] <= v[blows[1], 1]:  # the second one while they move apart
+    impacts = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
+    if len(impacts) > 1 and v[impacts[1], 0] <= v[impacts[1], 1]:  # the second one while they move apart
         return "IMPULSE_ON_SEPARATING"
     if math.inf in scene.m:
         return None
@@ -267,9 +267,9 @@ def _of_speeds(scene, v):
 
 
 def _of_timing(truth, v, h):
-    """The velocities are right in the end: does the blow come at a sample?"""
-    struck = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
-    late = len(struck) and (struck[0] + 1) * h >= truth.contact - 1e-9
+    """The velocities are right in the end: does the impact come at a sample?"""
+    colliding = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
+    late = len(colliding) and (colliding[0] + 1) * h >= truth.contact - 1e-9
     return "IMPACT_AT_SAMPLE" if late else None
 
 
@@ -296,7 +296,7 @@ def of_drop(scene, truth, t, z, v, h):
     code = (
         _drop_rebound(scene, truth, t, z, v)
         or _drop_end(scene, truth, t, z, v)
-        or _drop_blow(scene, truth, t, z, v)
+        or _drop_impact(scene, truth, t, z, v)
     )
     return named(code) if code else None
 
@@ -333,7 +333,7 @@ def _drop_end(scene, truth, t, z, v):
     return "RESTING_JITTER" if np.any(~rests[late]) or np.any(v[late] != 0.0) else None
 
 
-def _drop_blow(scene, truth, t, z, v):
+def _drop_impact(scene, truth, t, z, v):
     """What happens around the first contact, if the flight before it is right."""
     if not truth.times:
         return None

@@ -1,4 +1,4 @@
-"""Collisions of bodies that do not spin: do they touch, when, and what does the blow do to them?"""
+"""Collisions of bodies that do not spin: do they touch, when, and what does the impact do to them?"""
 
 import math
 
@@ -29,19 +29,19 @@ def impulse_1d(ma, mb, va, vb, restitution):
 
 def resolve(ma, mb, va, vb, normal, restitution):
     va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
-    blow = _impulse(ma, mb, (va - vb) @ n, restitution) * n
-    return va - blow / ma, vb + blow / mb
+    impulse = _impulse(ma, mb, (va - vb) @ n, restitution) * n
+    return va - impulse / ma, vb + impulse / mb
 
 
 def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
     va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
     closing = (va - vb) @ n
-    press = _impulse(ma, mb, closing, restitution)
+    along = _impulse(ma, mb, closing, restitution)
     slip = vb - va + closing * n  # of b, seen from a, across the normal
     speed = np.linalg.norm(slip)
-    rub = min(mu * press, speed / (1 / ma + 1 / mb))
-    blow = press * n - (rub / speed * slip if rub > 0 else 0.0)
-    return va - blow / ma, vb + blow / mb
+    across = min(mu * along, speed / (1 / ma + 1 / mb))
+    impulse = along * n - (across / speed * slip if across > 0 else 0.0)
+    return va - impulse / ma, vb + impulse / mb
 
 
 def time_of_impact(xa, va, ra, xb, vb, rb, dt):
@@ -69,8 +69,8 @@ def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
         wait = gap / closing if 0 < closing and gap <= closing * h else h
         xa, xb = xa + va * wait, xb + vb * wait
         if wait < h:
-            blow = _impulse(m[0], m[1], closing, restitution)
-            va, vb = va - blow / m[0], vb + blow / m[1]
+            impulse = _impulse(m[0], m[1], closing, restitution)
+            va, vb = va - impulse / m[0], vb + impulse / m[1]
         x[i + 1] = xa + va * (h - wait), xb + vb * (h - wait)
         v[i + 1] = va, vb
     return t, x, v

@@ -65,7 +65,7 @@ def plane(rng, d, height):
     return point + height * r * n + slide, r, point, n
 
 
-# -- blows ----------------------------------------------------------------------------------------------
+# -- impacts --------------------------------------------------------------------------------------------
 
 
 def line(rng):
@@ -74,7 +74,7 @@ def line(rng):
     return *masses(rng), float(va), float(va - rng.uniform(0.5, 6.0)), float(rng.uniform(0.15, 0.85))
 
 
-def blow(rng, d, e=None):
+def impact(rng, d, e=None):
     """Two bodies that approach along n and slide past each other across it."""
     ma, mb = masses(rng)
     n = unit(rng, d)
@@ -84,9 +84,9 @@ def blow(rng, d, e=None):
     return ma, mb, va, vb, n, float(rng.uniform(0.15, 0.85)) if e is None else e
 
 
-def rub(rng, d, share):
-    """Like ``blow``, with friction ``share`` times what would stop the slip."""
-    ma, mb, va, vb, n, e = blow(rng, d)
+def friction(rng, d, share):
+    """Like ``impact``, with friction ``share`` times what would stop the slip."""
+    ma, mb, va, vb, n, e = impact(rng, d)
     closing = float((va - vb) @ n)
     slip = vb - va + closing * n
     mu = share * float(np.sqrt(slip @ slip)) / ((1 + e) * closing)
@@ -270,7 +270,7 @@ def gap(rng):
 
 def slow(rng, d):
     """Two bodies that approach at a few mm/s: below every limit at which engines drop the rebound."""
-    ma, mb, va, _, n, e = blow(rng, d)
+    ma, mb, va, _, n, e = impact(rng, d)
     speed = 10 ** rng.uniform(-2.7, -2.2)
     return ma, mb, va, va - speed * n, n, e
 
@@ -288,13 +288,13 @@ def parting(args):
 
 
 def wall(args, side):
-    """The same blow with one mass infinite."""
+    """The same impact with one mass infinite."""
     return (math.inf, *args[1:]) if side else (args[0], math.inf, *args[2:])
 
 
 def rough(rng):
-    """A blow on a surface so rough (mu above one) that it still slides."""
-    ma, mb, va, vb, n, e = blow(rng, 3, 0.3)
+    """An impact on a surface so rough (mu above one) that it still slides."""
+    ma, mb, va, vb, n, e = impact(rng, 3, 0.3)
     closing, mu = float((va - vb) @ n), float(rng.uniform(1.5, 3.0))
     slip = float(rng.uniform(1.5, 3.0)) * mu * (1 + e) * closing * across(rng, n)
     return ma, mb, va, va - closing * n + slip, n, e, mu
@@ -315,13 +315,13 @@ def _never(rng):
     ]
 
 
-def _no_rub(rng):
-    smooth = (*blow(rng, 3), 0.0)
+def _no_friction(rng):
+    smooth = (*impact(rng, 3), 0.0)
     # Along an axis and in whole numbers the slip is exactly zero.
     axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
     n, va = side * np.eye(3)[axis], rng.integers(-4, 5, 3).astype(float)
     straight = (*masses(rng), va, va - float(rng.integers(1, 6)) * n, n, float(rng.uniform(0.2, 0.8)), 0.4)
-    return [smooth, straight, parting(rub(rng, 3, 0.6)), rub(rng, 3, 0.6)]
+    return [smooth, straight, parting(friction(rng, 3, 0.6)), friction(rng, 3, 0.6)]
 
 
 def _mended(rng):
@@ -363,15 +363,15 @@ PUBLIC = {
     "impulse_value": lambda rng: [*(line(rng) for _ in range(4)), slow_line(rng)],
     "impulse_separating": lambda rng: [*(parting(line(rng)) for _ in range(3)), line(rng)],
     "impulse_walls": lambda rng: [wall(line(rng), side) for side in (0, 1)],
-    "resolve_oblique": lambda rng: [*(blow(rng, d) for d in (3, 3, 2)), slow(rng, 2)],
-    "resolve_separating": lambda rng: [parting(blow(rng, 3)), parting(blow(rng, 2)), blow(rng, 3)],
-    "resolve_walls": lambda rng: [wall(blow(rng, d), side) for d, side in ((2, 0), (3, 1))],
+    "resolve_oblique": lambda rng: [*(impact(rng, d) for d in (3, 3, 2)), slow(rng, 2)],
+    "resolve_separating": lambda rng: [parting(impact(rng, 3)), parting(impact(rng, 2)), impact(rng, 3)],
+    "resolve_walls": lambda rng: [wall(impact(rng, d), side) for d, side in ((2, 0), (3, 1))],
     "friction_regimes": lambda rng: [
-        *(rub(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
+        *(friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
         rough(rng),
     ],
-    "friction_absent": _no_rub,
-    "friction_walls": lambda rng: [wall(rub(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))],
+    "friction_absent": _no_friction,
+    "friction_walls": lambda rng: [wall(friction(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))],
     "moment_of_contact": lambda rng: [
         passing(rng, 3, 0.05),
         shot(rng, 300.0),

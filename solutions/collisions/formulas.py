@@ -48,7 +48,7 @@ def _plane(gap=None, depth=lambda r, s: r - s, normal=lambda n: n, touching=lamb
     return detect
 
 
-# -- blows ----------------------------------------------------------------------------------------------
+# -- impacts --------------------------------------------------------------------------------------------
 
 #: How the speed of parting is written into the impulse, rightly and wrongly.
 FACTORS = (
@@ -114,32 +114,32 @@ def _line(
     return impulse
 
 
-def _no_rub(press, slip, speed, give, mu):
+def _no_friction(press, slip, speed, give, mu):
     return 0.0 * slip
 
 
 def _coulomb(press, slip, speed, give, mu):
-    """The impulse across the normal: what stops the slip, or mu times the blow if that is less."""
+    """The impulse across the normal: what stops the slip, or mu times the impact if that is less."""
     return -min(mu * press, speed / give) / (speed or 1.0) * slip
 
 
-def _blow(
+def _impact(
     factor=lambda e: 1 + e,
     give=_give,
     acts=lambda c: c > 0,
     shares=(-1.0, 1.0),
     along=lambda n, u: n,
     slip_of=lambda va, vb, slip, n: slip,
-    rub=_no_rub,
-    rub_shares=None,
+    friction=_no_friction,
+    friction_shares=None,
     kick=lambda j, m, other: j / m,
     closing_of=lambda va, vb, n: float((va - vb) @ n),
     slow=None,
     kept=lambda w, n: w,
 ):
-    """A blow. ``shares``: of the impulse on a and b; ``along(n, u)``: its direction, u = vb - va;
+    """An impact. ``shares``: of the impulse on a and b; ``along(n, u)``: its direction, u = vb - va;
 
-    ``rub(press, slip, speed, give, mu)``: the impulse across, for a slip of b seen from a.
+    ``friction(press, slip, speed, give, mu)``: the impulse across, for a slip of b seen from a.
     """
 
     def resolve(ma, mb, va, vb, n, e, mu=0.0):
@@ -151,9 +151,9 @@ def _blow(
             e = 0.0
         press = factor(e) * closing / give(ma, mb)
         slip = slip_of(va, vb, vb - va + closing * n, n)
-        across = rub(press, slip, _size(slip), give(ma, mb), mu)
+        across = friction(press, slip, _size(slip), give(ma, mb), mu)
         main = press * along(n, vb - va)
-        across_a, across_b = (s * across for s in (rub_shares or shares))
+        across_a, across_b = (s * across for s in (friction_shares or shares))
         a, b = (share * main + side for share, side in zip(shares, (across_a, across_b), strict=True))
         return kept(va, n) + kick(a, ma, mb), kept(vb, n) + kick(b, mb, ma)
 
@@ -221,22 +221,22 @@ def _sign(x):
 
 
 def _friction_without_rebound(ma, mb, va, vb, n, e, mu):
-    """The limit of friction is taken from the blow that only stops the approach."""
+    """The limit of friction is taken from the impact that only stops the approach."""
 
-    def rub(press, slip, speed, give, mu):
+    def friction(press, slip, speed, give, mu):
         return -min(mu * press / (1 + e), speed / give) / (speed or 1.0) * slip
 
-    return _blow(rub=rub)(ma, mb, va, vb, n, e, mu)
+    return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
 
 
 def _held_by(masses):
     """What stops the slip is taken as slip times ``masses(ma, mb)``."""
 
     def resolve(ma, mb, *rest):
-        def rub(press, slip, speed, give, mu):
+        def friction(press, slip, speed, give, mu):
             return -min(mu * press, speed * masses(ma, mb)) * _unit(slip)
 
-        return _blow(rub=rub)(ma, mb, *rest)
+        return _impact(friction=friction)(ma, mb, *rest)
 
     return resolve
 
@@ -245,10 +245,10 @@ def _rubs_by_speed(share):
     """Coulomb's limit is mu times the speed of approach, times ``share(e)``."""
 
     def resolve(ma, mb, va, vb, n, e, mu):
-        def rub(press, slip, speed, give, mu):
+        def friction(press, slip, speed, give, mu):
             return -min(mu * share(e) * press * give / (1 + e), speed / give) * _unit(slip)
 
-        return _blow(rub=rub)(ma, mb, va, vb, n, e, mu)
+        return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
 
     return resolve
 
@@ -352,8 +352,8 @@ RIGHT = {
     "detect_sphere_sphere": _spheres(),
     "detect_sphere_plane": _plane(),
     "impulse_1d": _line(),
-    "resolve": _blow(),
-    "resolve_with_friction": _blow(rub=_coulomb),
+    "resolve": _impact(),
+    "resolve_with_friction": _impact(friction=_coulomb),
     "time_of_impact": _moment(),
 }
 
@@ -367,7 +367,7 @@ _TOUCHING = (
     ("ALWAYS_TOUCHES", lambda deep: True),
     ("NEVER_TOUCHES", lambda deep: False),
 )
-_BLOWS = {
+_IMPACTS = {
     "acts": (
         ("IMPULSE_ON_SEPARATING", lambda c: True),
         ("NORMAL_REVERSED", lambda c: c < 0),
@@ -417,9 +417,9 @@ _BLOWS = {
         ("ALONG_NOT_KEPT", lambda w, n: w - (w @ n) * n),
     ),
 }
-_RUBS = {
-    "rub": (
-        ("FRICTION_IGNORED", _no_rub),
+_FRICTIONS = {
+    "friction": (
+        ("FRICTION_IGNORED", _no_friction),
         ("FRICTION_NOT_CLAMPED", lambda p, s, v, g, mu: -mu * p * _unit(s)),
         ("FRICTION_ALWAYS_STICKS", lambda p, s, v, g, mu: -s / g),
         ("FRICTION_ALWAYS_STICKS", lambda p, s, v, g, mu: -s / g if mu > 0 else 0.0 * s),
@@ -443,7 +443,7 @@ _RUBS = {
         ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
     ),
-    "rub_shares": tuple(
+    "friction_shares": tuple(
         ("FRICTION_THIRD_LAW_MISSING", shares)
         for shares in ((-1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 0.5), (-0.5, 1.0))
     ),
@@ -574,11 +574,11 @@ TERMS = {
                 ("IMPULSE_DOUBLED", 2.0),
             ),
             "power": (("SPEED_SQUARED", 2), ("SPEED_SQUARED", 0.5), ("SPEED_IGNORED", 0)),
-            "slow": _BLOWS["slow"],
+            "slow": _IMPACTS["slow"],
         },
     ),
-    "resolve": (_blow, {}, _BLOWS),
-    "resolve_with_friction": (_blow, {"rub": _coulomb}, _RUBS | _BLOWS),
+    "resolve": (_impact, {}, _IMPACTS),
+    "resolve_with_friction": (_impact, {"friction": _coulomb}, _FRICTIONS | _IMPACTS),
     "time_of_impact": (
         _moment,
         {},
@@ -656,17 +656,17 @@ OTHERS = {
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
     ],
     "resolve": [
-        (("ONLY_HEAD_ON",), _from_both_sides(_blow())),
-        (("NORMAL_REVERSED",), _reversed(_blow())),
+        (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
+        (("NORMAL_REVERSED",), _reversed(_impact())),
         (("EACH_BODY_ALONE",), _each_alone),
-        (("RETURNS_SWAPPED",), _swapped(_blow())),
-        (("MASSES_SWAPPED",), _exchanged(_blow())),
+        (("RETURNS_SWAPPED",), _swapped(_impact())),
+        (("MASSES_SWAPPED",), _exchanged(_impact())),
         (("ELASTIC_EXCHANGE",), _exchange),
         (("PERFECTLY_STICKY",), _stick),
     ],
     "resolve_with_friction": [
-        (("NORMAL_REVERSED",), _reversed(_blow(rub=_coulomb))),
-        (("ONLY_HEAD_ON",), _from_both_sides(_blow(rub=_coulomb))),
+        (("NORMAL_REVERSED",), _reversed(_impact(friction=_coulomb))),
+        (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
@@ -676,8 +676,8 @@ OTHERS = {
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: mb)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: (ma + mb) / 2)),
         (("EACH_BODY_ALONE",), _each_alone),
-        (("RETURNS_SWAPPED",), _swapped(_blow(rub=_coulomb))),
-        (("MASSES_SWAPPED",), _exchanged(_blow(rub=_coulomb))),
+        (("RETURNS_SWAPPED",), _swapped(_impact(friction=_coulomb))),
+        (("MASSES_SWAPPED",), _exchanged(_impact(friction=_coulomb))),
         (("ELASTIC_EXCHANGE",), _exchange),
         (("PERFECTLY_STICKY",), _stick),
     ],

@@ -59,12 +59,12 @@ def _head_on(
     clock=lambda i, h: i * h,
     slow=None,
 ):
-    """``late``: the blow comes at the sample after; ``rest``: what is flown of the rest of the step;
+    """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
     ``overlaps``: it acts only if the balls overlap at the end of the step; ``first``: keeps row 0.
     """
 
-    def struck(m, va, vb, e):
+    def collide(m, va, vb, e):
         if slow is not None and va - vb < slow:
             e = 0.0
         j = factor(e) * (va - vb) / give(*m)
@@ -81,11 +81,11 @@ def _head_on(
                 meets = meets and abs(gap - closing * h + reach(radius)) <= reach(radius)
             if meets and late:
                 xa, xb = xa + va * h, xb + vb * h
-                va, vb = struck(m, va, vb, e)
+                va, vb = collide(m, va, vb, e)
             elif meets:
                 wait = max(gap, 0.0) / closing
                 xa, xb = xa + va * wait, xb + vb * wait
-                va, vb = struck(m, va, vb, e)
+                va, vb = collide(m, va, vb, e)
                 xa, xb = xa + va * (h - wait) * rest, xb + vb * (h - wait) * rest
             else:
                 xa, xb = xa + va * h, xb + vb * h

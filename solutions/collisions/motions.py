@@ -15,7 +15,7 @@ def closing(scene):
 
 
 def meeting(scene):
-    """When the balls of a ``HeadOn`` touch, and their velocities after the blow."""
+    """When the balls of a ``HeadOn`` touch, and their velocities after the impact."""
     gap = scene.x0[1] - scene.x0[0] - 2 * scene.radius
     speed = closing(scene)
     if speed <= 0:

@@ -1,4 +1,4 @@
-"""Every task is an object that can be called, and hands out numpy's own scalars."""
+"""Every task is an object that can be called, and returns numpy's own scalars."""
 
 
 class _Task:

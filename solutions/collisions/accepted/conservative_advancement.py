@@ -1,4 +1,4 @@
-"""Time of impact by stepping ahead as far as is safe, again and again; the last digits by halving."""
+"""Time of impact by moving ahead as far as is safe, again and again; the last digits by bisection."""
 
 
 def time_of_impact(xa, va, ra, xb, vb, rb, dt):

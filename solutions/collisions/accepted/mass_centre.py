@@ -1,4 +1,4 @@
-"""Blows seen from the centre of mass, where each velocity along the normal is simply reversed."""
+"""Impacts seen from the centre of mass, where each velocity along the normal is simply reversed."""
 
 
 def _shares(ma, mb):

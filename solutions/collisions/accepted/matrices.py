@@ -1,4 +1,4 @@
-"""Blows as linear maps: I - (1+e) n n^T on the relative velocity, and a projector for the slip."""
+"""Impacts as linear maps: I - (1+e) n n^T on the relative velocity, and a projector for the slip."""
 
 
 def resolve(ma, mb, va, vb, normal, restitution):

@@ -1,4 +1,4 @@
-"""Time of impact from numpy's roots of the quadratic, keeping the real ones that lie in the step."""
+"""Time of impact from numpy's roots of the quadratic, keeping the real ones within the step."""
 
 
 def time_of_impact(xa, va, ra, xb, vb, rb, dt):

@@ -1,4 +1,4 @@
-"""The drop: the speed before a contact decides whether the ball rests, and contacts are found by halving."""
+"""The drop: the speed before a contact decides whether the ball rests; contacts are found by bisection."""
 
 
 def simulate_drop(z0, v0, radius, restitution, g, t_end, h):

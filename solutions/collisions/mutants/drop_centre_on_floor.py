@@ -1,4 +1,4 @@
-"""The centre falls down to the floor."""
+"""The centre falls to the floor."""
 
 _right = simulate_drop
 

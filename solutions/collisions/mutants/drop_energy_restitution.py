@@ -1,4 +1,4 @@
-"""The ball comes back to e times its height."""
+"""The ball rises again to e times its height."""
 
 _right = simulate_drop
 

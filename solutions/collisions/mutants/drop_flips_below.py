@@ -1,4 +1,4 @@
-"""Exact in the air; at the first sample below the floor the ball is lifted up to it, and turned round."""
+"""Exact in the air; a ball below the floor is lifted up to it, and its velocity is reversed."""
 
 
 def simulate_drop(z0, v0, radius, restitution, g, t_end, h):

@@ -1,4 +1,4 @@
-"""Contacts are handled one a step, for ever; the ball hops ever smaller and is never put down."""
+"""One contact in each step, for ever: the bounces get smaller, and the ball is never put to rest."""
 
 
 def simulate_drop(z0, v0, radius, restitution, g, t_end, h):

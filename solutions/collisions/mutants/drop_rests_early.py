@@ -1,4 +1,4 @@
-"""The ball is put down at its second contact."""
+"""The ball is put to rest at its second contact."""
 
 _right = simulate_drop
 

@@ -1,4 +1,4 @@
-"""Slow contacts are ignored, and gravity goes on."""
+"""Slow contacts are ignored, and gravity keeps acting."""
 
 _right = simulate_drop
 

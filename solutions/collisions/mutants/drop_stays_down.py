@@ -1,4 +1,4 @@
-"""Whatever touches the floor at first lies on it."""
+"""A ball that touches the floor at the start is taken to lie on it."""
 
 _right_drop = simulate_drop
 

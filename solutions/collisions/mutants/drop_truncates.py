@@ -1,4 +1,4 @@
-"""int() makes a whole number of something that is one already."""
+"""int() instead of round()."""
 
 _right_drop = simulate_drop
 

@@ -6,8 +6,8 @@ def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
     if closing <= 0:
         return va, vb
     give = 1 / ma + 1 / mb
-    press = (1 + restitution) * closing / give
+    along = (1 + restitution) * closing / give
     slip = vb - va + closing * normal
     speed = np.linalg.norm(slip)
-    blow = press * normal - (slip / give if mu else 0.0)
-    return va - blow / ma, vb + blow / mb
+    impulse = along * normal - (slip / give if mu else 0.0)
+    return va - impulse / ma, vb + impulse / mb

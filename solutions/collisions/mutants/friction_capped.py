@@ -1,4 +1,4 @@
-"""A coefficient above one is taken for a slip of the pen."""
+"""A coefficient above one is taken for a typing error."""
 
 _right_friction = resolve_with_friction
 

@@ -1,4 +1,4 @@
-"""The slip is taken from a's velocity alone, as if b stood still."""
+"""The slip is computed from a's velocity alone, as if b stood still."""
 
 
 def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
@@ -6,9 +6,9 @@ def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
     if closing <= 0:
         return va, vb
     give = 1 / ma + 1 / mb
-    press = (1 + restitution) * closing / give
+    along = (1 + restitution) * closing / give
     slip = (va @ normal) * normal - va
     speed = np.linalg.norm(slip)
-    rub = min(mu * press, speed / give) * slip / speed if speed else 0.0 * slip
-    blow = press * normal - rub
-    return va - blow / ma, vb + blow / mb
+    across = min(mu * along, speed / give) * slip / speed if speed else 0.0 * slip
+    impulse = along * normal - across
+    return va - impulse / ma, vb + impulse / mb

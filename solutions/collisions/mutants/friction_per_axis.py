@@ -1,4 +1,4 @@
-"""Each coordinate of the tangential impulse is limited by itself."""
+"""Each coordinate of the tangential impulse is limited separately."""
 
 
 def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
@@ -6,8 +6,8 @@ def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
     if closing <= 0:
         return va, vb
     give = 1 / ma + 1 / mb
-    press = (1 + restitution) * closing / give
+    along = (1 + restitution) * closing / give
     slip = vb - va + closing * normal
     speed = np.linalg.norm(slip)
-    blow = press * normal - np.clip(slip / give, -mu * press, mu * press)
-    return va - blow / ma, vb + blow / mb
+    impulse = along * normal - np.clip(slip / give, -mu * along, mu * along)
+    return va - impulse / ma, vb + impulse / mb

@@ -1,4 +1,4 @@
-"""The blow comes at the first sample at which the balls overlap, as in most engines."""
+"""The impact comes at the first sample at which the balls overlap, as in most engines."""
 
 
 def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):

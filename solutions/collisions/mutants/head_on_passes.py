@@ -1,4 +1,4 @@
-"""The chapter's program with its samples put right, and still without a collision."""
+"""The chapter's program with its samples corrected, and still without a collision."""
 
 
 def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):

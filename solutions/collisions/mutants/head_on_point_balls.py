@@ -1,4 +1,4 @@
-"""The balls meet with their centres."""
+"""The balls meet when their centres do."""
 
 _right = simulate_head_on
 

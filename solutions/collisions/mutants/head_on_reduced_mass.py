@@ -1,4 +1,4 @@
-"""ma mb / (ma + mb) holds for a wall as well."""
+"""The reduced mass as a product over a sum, which an infinite mass turns into nan."""
 
 
 def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
@@ -11,8 +11,8 @@ def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
         wait = gap / closing if 0 < closing and gap <= closing * h else h
         xa, xb = xa + va * wait, xb + vb * wait
         if wait < h:
-            blow = (1 + restitution) * closing * m[0] * m[1] / (m[0] + m[1])
-            va, vb = va - blow / m[0], vb + blow / m[1]
+            impulse = (1 + restitution) * closing * m[0] * m[1] / (m[0] + m[1])
+            va, vb = va - impulse / m[0], vb + impulse / m[1]
         x[i + 1] = xa + va * (h - wait), xb + vb * (h - wait)
         v[i + 1] = va, vb
     return t, x, v

@@ -1,4 +1,4 @@
-"""Bodies that move apart are pulled back."""
+"""Bodies that move apart are pulled back together."""
 
 
 def impulse_1d(ma, mb, va, vb, restitution):

@@ -1,4 +1,4 @@
-"""The bodies part at e squared times the speed of approach."""
+"""The bodies separate at e squared times the speed of approach."""
 
 
 def impulse_1d(ma, mb, va, vb, restitution):

@@ -1,4 +1,4 @@
-"""Only the end of the step is looked at."""
+"""Only the end of the step is checked."""
 
 _right = time_of_impact
 

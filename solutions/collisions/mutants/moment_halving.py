@@ -1,4 +1,4 @@
-"""The time is halved towards the contact, and the halving stops early."""
+"""The time of contact is found by halving, and the halving stops early."""
 
 _right = time_of_impact
 

@@ -1,4 +1,4 @@
-"""The later root: when the bodies, having passed through each other, come apart."""
+"""The later root: the time at which the bodies, having passed through each other, come apart."""
 
 
 def time_of_impact(xa, va, ra, xb, vb, rb, dt):

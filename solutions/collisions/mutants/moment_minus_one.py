@@ -1,4 +1,4 @@
-"""A miss is announced by -1."""
+"""A miss is reported as -1."""
 
 _right_moment = time_of_impact
 

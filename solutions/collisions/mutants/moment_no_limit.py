@@ -1,4 +1,4 @@
-"""Contacts after the step are announced as well."""
+"""Contacts after the step are reported as well."""
 
 _right = time_of_impact
 

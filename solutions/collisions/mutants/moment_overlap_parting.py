@@ -1,4 +1,4 @@
-"""Bodies that overlap and part are reported as hitting."""
+"""Bodies that overlap and move apart are reported as colliding."""
 
 _right = time_of_impact
 

@@ -1,4 +1,4 @@
-"""Each radius is squared on its own."""
+"""Each radius is squared separately."""
 
 
 def time_of_impact(xa, va, ra, xb, vb, rb, dt):

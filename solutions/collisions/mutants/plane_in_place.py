@@ -1,4 +1,4 @@
-"""The place relative to the plane is computed in the caller's array."""
+"""The position relative to the plane is computed in the caller's array."""
 
 
 def detect_sphere_plane(x, r, point, normal):

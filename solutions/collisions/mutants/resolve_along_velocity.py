@@ -1,4 +1,4 @@
-"""The blow acts against the relative velocity instead of along the normal."""
+"""The impulse acts against the relative velocity instead of along the normal."""
 
 
 def resolve(ma, mb, va, vb, normal, restitution):
@@ -6,5 +6,5 @@ def resolve(ma, mb, va, vb, normal, restitution):
     closing = u @ normal
     if closing <= 0:
         return va, vb
-    blow = (1 + restitution) * closing / (1 / ma + 1 / mb) * u / np.linalg.norm(u)
-    return va - blow / ma, vb + blow / mb
+    impulse = (1 + restitution) * closing / (1 / ma + 1 / mb) * u / np.linalg.norm(u)
+    return va - impulse / ma, vb + impulse / mb

@@ -1,4 +1,4 @@
-"""Each body is thrown back by its own velocity, as from a wall at rest."""
+"""Each body rebounds with its own velocity, as if it had hit a wall at rest."""
 
 
 def resolve(ma, mb, va, vb, normal, restitution):

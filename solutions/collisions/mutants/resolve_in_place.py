@@ -2,7 +2,7 @@
 
 
 def resolve(ma, mb, va, vb, normal, restitution):
-    blow = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
-    va -= blow / ma
-    vb += blow / mb
+    impulse = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
+    va -= impulse / ma
+    vb += impulse / mb
     return va, vb

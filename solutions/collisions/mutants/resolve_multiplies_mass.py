@@ -2,5 +2,5 @@
 
 
 def resolve(ma, mb, va, vb, normal, restitution):
-    blow = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
-    return va - blow * ma, vb + blow * mb
+    impulse = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
+    return va - impulse * ma, vb + impulse * mb

@@ -1,4 +1,4 @@
-"""Only b feels the blow."""
+"""Only b feels the impact."""
 
 _right = resolve
 

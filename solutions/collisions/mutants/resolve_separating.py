@@ -2,5 +2,5 @@
 
 
 def resolve(ma, mb, va, vb, normal, restitution):
-    blow = (1 + restitution) * ((va - vb) @ normal) / (1 / ma + 1 / mb) * normal
-    return va - blow / ma, vb + blow / mb
+    impulse = (1 + restitution) * ((va - vb) @ normal) / (1 / ma + 1 / mb) * normal
+    return va - impulse / ma, vb + impulse / mb

@@ -1,4 +1,4 @@
-"""A centimetre counts as a touch."""
+"""A gap of a centimetre counts as touching."""
 
 _right_spheres = detect_sphere_sphere
 

@@ -1,4 +1,4 @@
-"""Arcs by the chord; turns below five thousandths of a radian roll the whole arc along its middle heading."""
+"""Arcs by the chord; turns below 0.005 rad use the whole arc along its middle heading."""
 
 
 def diff_drive_step(pose, v_left, v_right, track, dt):

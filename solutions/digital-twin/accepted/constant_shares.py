@@ -1,4 +1,4 @@
-"""Sync with constant shares of the surprise, as in the lesson; late measurements are left out."""
+"""Sync with constant shares of the surprise, as in the lesson; late measurements are ignored."""
 
 
 def sync(twin, z, t_measured):

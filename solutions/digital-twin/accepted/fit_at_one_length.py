@@ -1,4 +1,4 @@
-"""N from neighbouring samples, K from blocks of the one length at which both noises are alike."""
+"""N from neighbouring samples, K from blocks of the one length at which both kinds of noise are equal."""
 
 
 def fit_noise(still, dt):

@@ -1,4 +1,4 @@
-"""The hints word for word: twenty block lengths spaced logarithmically, each equation divided by its size."""
+"""As the hints say: twenty block lengths in a logarithmic series, each equation divided by its size."""
 
 
 def fit_noise(still, dt):

@@ -1,4 +1,4 @@
-"""A Kalman filter in plain numbers that leaves late measurements out and keeps only its covariance."""
+"""A Kalman filter in plain numbers that ignores late measurements and keeps only its covariance."""
 
 
 def sync(twin, z, t_measured):

@@ -1,4 +1,4 @@
-"""The lag as what is left of the way, play by if and else, arcs by their radius, a signal by weights."""
+"""The lag as the remaining difference, play by if and else, arcs by their radius, a signal by weights."""
 
 
 def motor_step(w, u, dt, tau, u_max, deadband):

@@ -1,4 +1,4 @@
-"""The encoder rounds to the nearest count, by way of turns."""
+"""The encoder rounds to the nearest count, computed from turns."""
 
 
 def encoder(theta, counts_per_rev):

@@ -1,4 +1,4 @@
-"""A drive that also closes what is missing of the speed; at the target it is the balance alone."""
+"""A drive that also corrects the speed; at the target speed only the balance is left."""
 
 
 def command(twin, target_speed):

@@ -1,4 +1,4 @@
-"""A drive that brings the cart to its speed at 3 per second; at the target it is the balance alone."""
+"""A drive that corrects the speed at 3 per second; at the target speed only the balance is left."""
 
 
 def command(twin, target_speed):

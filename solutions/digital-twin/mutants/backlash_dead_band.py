@@ -1,4 +1,4 @@
-"""Small inputs are swallowed wherever they come from."""
+"""Small inputs are ignored, whatever happened before."""
 
 
 def backlash(x, gap, state):

@@ -1,4 +1,4 @@
-"""The input is handed on as state."""
+"""The input is returned as the state."""
 
 
 def backlash(x, gap, state):

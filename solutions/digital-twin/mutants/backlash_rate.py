@@ -1,4 +1,4 @@
-"""The output covers half of what is missing at each call."""
+"""The output covers half of the difference at each call."""
 
 
 def backlash(x, gap, state):

@@ -1,4 +1,4 @@
-"""The friction of the first call, kept for good."""
+"""The friction of the first call is kept for good."""
 
 _FIRST = {}
 

@@ -1,4 +1,4 @@
-"""The size of the target speed counts, not its sign."""
+"""The absolute value of the target speed is used, without its sign."""
 
 
 def command(twin, target_speed):

@@ -1,4 +1,4 @@
-"""The drive holds the speed that the robot has."""
+"""The drive holds the speed that the robot has now."""
 
 
 def command(twin, target_speed):

@@ -1,4 +1,4 @@
-"""The signal comes before it is sent."""
+"""The signal arrives before it is sent."""
 
 
 def delay_line(x, dt, latency):

@@ -1,4 +1,4 @@
-"""Without latency the caller's own array comes back."""
+"""Without latency the caller's own array is returned."""
 
 _whole = delay_line
 

@@ -1,4 +1,4 @@
-"""Turns below 0.01 rad/s are taken as straight."""
+"""Turns below 0.01 rad/s are treated as straight."""
 
 _whole = diff_drive_step
 

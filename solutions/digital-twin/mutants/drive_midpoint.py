@@ -1,4 +1,4 @@
-"""The whole arc's length is gone along the middle heading."""
+"""The whole length of the arc is driven along the heading in the middle."""
 
 
 def diff_drive_step(pose, v_left, v_right, track, dt):

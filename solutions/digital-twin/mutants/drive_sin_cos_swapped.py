@@ -1,4 +1,4 @@
-"""x goes with the sine."""
+"""x grows with the sine of the heading."""
 
 
 def diff_drive_step(pose, v_left, v_right, track, dt):

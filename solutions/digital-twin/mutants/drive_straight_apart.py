@@ -1,4 +1,4 @@
-"""Without a turn, the time is forgotten."""
+"""In the case without a turn, dt is left out."""
 
 _whole = diff_drive_step
 

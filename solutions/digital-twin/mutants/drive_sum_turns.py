@@ -1,4 +1,4 @@
-"""The sum of the speeds turns it."""
+"""The sum of the speeds turns the robot."""
 
 
 def diff_drive_step(pose, v_left, v_right, track, dt):

@@ -1,4 +1,4 @@
-"""A faster right wheel turns it to the right."""
+"""A faster right wheel turns the robot to the right."""
 
 _whole = diff_drive_step
 

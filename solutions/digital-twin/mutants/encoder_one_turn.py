@@ -1,4 +1,4 @@
-"""The count starts over at each turn."""
+"""The count starts from zero again at each turn."""
 
 
 def encoder(theta, counts_per_rev):

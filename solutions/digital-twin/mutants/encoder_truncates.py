@@ -1,4 +1,4 @@
-"""Counts are cut off toward zero."""
+"""Counts are truncated toward zero."""
 
 
 def encoder(theta, counts_per_rev):

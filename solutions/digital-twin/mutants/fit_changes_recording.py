@@ -1,4 +1,4 @@
-"""The mean is taken off the recording in place."""
+"""The mean is subtracted from the recording in place."""
 
 _kept = fit_noise
 

@@ -1,4 +1,4 @@
-"""The density is taken from the std of the whole recording, drift and all."""
+"""The density is computed from the std of the whole recording, including its drift."""
 
 _whole = fit_noise
 

@@ -1,4 +1,4 @@
-"""The Allan variance without its half."""
+"""The Allan variance without its factor one half."""
 
 _halved = fit_noise
 

@@ -1,4 +1,4 @@
-"""The density lacks its root of dt."""
+"""The density lacks its factor sqrt(dt)."""
 
 _whole = fit_noise
 

@@ -1,4 +1,4 @@
-"""The walk is taken from neighbouring samples."""
+"""The walk is estimated from neighbouring samples."""
 
 _whole = fit_noise
 

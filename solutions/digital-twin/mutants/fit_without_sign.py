@@ -1,4 +1,4 @@
-"""A bias is a size."""
+"""The absolute value of the bias is returned."""
 
 _signed = fit_noise
 

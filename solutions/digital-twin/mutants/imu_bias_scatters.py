@@ -1,4 +1,4 @@
-"""The bias is drawn afresh around bias0 at each sample."""
+"""The bias is drawn around bias0 anew for each sample."""
 
 
 def imu(true, dt, noise_density, bias_random_walk, bias0, rng):

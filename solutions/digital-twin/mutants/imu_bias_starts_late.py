@@ -1,4 +1,4 @@
-"""The first bias has taken a step already."""
+"""The first bias already contains a step."""
 
 
 def imu(true, dt, noise_density, bias_random_walk, bias0, rng):

@@ -1,4 +1,4 @@
-"""The bias goes on where the call before ended: a gyroscope does not start anew."""
+"""The bias starts where the previous call ended: a gyroscope does not start anew."""
 
 _from_state = imu
 _LAST = []

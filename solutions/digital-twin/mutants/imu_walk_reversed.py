@@ -1,4 +1,4 @@
-"""The walk is laid out from its end."""
+"""The walk is built from its end."""
 
 
 def imu(true, dt, noise_density, bias_random_walk, bias0, rng):

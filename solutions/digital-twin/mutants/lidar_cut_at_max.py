@@ -1,4 +1,4 @@
-"""No reading is above r_max, noise or not."""
+"""No reading is above r_max, with noise or without."""
 
 _uncut = lidar
 

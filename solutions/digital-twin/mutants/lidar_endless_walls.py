@@ -1,4 +1,4 @@
-"""Walls go on for ever."""
+"""Walls have no ends."""
 
 
 def lidar(pose, segments, angles, r_max, sigma, rng):

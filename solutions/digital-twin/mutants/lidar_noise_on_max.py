@@ -1,4 +1,4 @@
-"""Readings without a hit carry noise, too."""
+"""Readings without a hit contain noise too."""
 
 
 def lidar(pose, segments, angles, r_max, sigma, rng):

@@ -1,4 +1,4 @@
-"""A generator of its own with a fixed seed, so that scans repeat."""
+"""It makes a generator of its own with a fixed seed, so that scans repeat."""
 
 _with = lidar
 

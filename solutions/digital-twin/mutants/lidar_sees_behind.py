@@ -1,4 +1,4 @@
-"""Walls behind the robot are hit backwards."""
+"""Beams also hit walls behind the robot."""
 
 
 def lidar(pose, segments, angles, r_max, sigma, rng):

@@ -1,4 +1,4 @@
-"""All beams of a scan are off by the same amount."""
+"""All beams of a scan have the same error."""
 
 
 def lidar(pose, segments, angles, r_max, sigma, rng):

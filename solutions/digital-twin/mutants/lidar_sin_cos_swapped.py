@@ -1,4 +1,4 @@
-"""x goes with the sine."""
+"""x is the sine of the angle."""
 
 
 def lidar(pose, segments, angles, r_max, sigma, rng):

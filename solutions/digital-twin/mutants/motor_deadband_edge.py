@@ -1,4 +1,4 @@
-"""A command at the edge of the dead band moves the motor."""
+"""A command equal to the dead band moves the motor."""
 
 
 def motor_step(w, u, dt, tau, u_max, deadband):

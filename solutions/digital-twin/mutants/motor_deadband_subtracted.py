@@ -1,4 +1,4 @@
-"""The dead band is taken off every command."""
+"""The dead band is subtracted from every command."""
 
 _whole = motor_step
 

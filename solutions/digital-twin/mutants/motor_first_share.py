@@ -1,4 +1,4 @@
-"""The share of the lag is computed once, for the first step."""
+"""The fraction of the way is computed once, for the first step."""
 
 _SHARE = {}
 

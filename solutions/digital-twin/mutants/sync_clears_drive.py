@@ -1,4 +1,4 @@
-"""The drive is used up: it is set to zero in the twin that was passed in."""
+"""The drive is set to zero in the twin that was passed in."""
 
 _given = sync
 

@@ -1,4 +1,4 @@
-"""The friction learns with one sign, whichever way the cart rolls."""
+"""The friction is corrected with one sign, whichever way the cart rolls."""
 
 
 def sync(twin, z, t_measured):

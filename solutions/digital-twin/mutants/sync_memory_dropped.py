@@ -1,4 +1,4 @@
-"""The covariance is thrown away, so each measurement is the first."""
+"""The covariance is thrown away, so each measurement is treated as the first."""
 
 _whole = sync
 

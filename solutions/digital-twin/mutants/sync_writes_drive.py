@@ -1,4 +1,4 @@
-"""The drive that is handed on is the one that would balance the friction just found."""
+"""The returned drive is the one that would balance the friction just found."""
 
 _given = sync
 

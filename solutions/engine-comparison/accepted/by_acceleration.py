@@ -1,4 +1,4 @@
-"""Unusual: friction without bisection; above the limit the excess force shows as acceleration."""
+"""Unusual: friction without bisection; above the limit, the acceleration shows the excess force."""
 
 
 def _anisotropy(engine, info):

@@ -1,4 +1,4 @@
-"""Unusual: other right values: the other licence of ODE, PyBullet's step, C for MuJoCo, tuples for lists."""
+"""Unusual: right values of another kind: ODE's other licence, PyBullet's step, C for MuJoCo, tuples."""
 
 
 def engine_facts():

@@ -1,4 +1,4 @@
-"""Unusual: the body starts right before the wall and comes from the right; speeds, not velocities."""
+"""Unusual: the body starts close to the wall and comes from the right; speeds, not velocities."""
 
 
 def _slow_hit(engine, info):

@@ -1,4 +1,4 @@
-"""Unusual: engines are walked through in order of cost, and the first that fits is taken."""
+"""Unusual: engines are checked in order of cost, and the first that fits is taken."""
 
 
 def choose_engine(reports, requirements):

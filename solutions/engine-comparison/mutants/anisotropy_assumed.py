@@ -1,4 +1,4 @@
-"""Wrong: friction by the book instead of by experiment."""
+"""Wrong: friction from the textbook instead of from an experiment."""
 
 
 def _anisotropy(engine, info):

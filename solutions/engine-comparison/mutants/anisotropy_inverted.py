@@ -1,4 +1,4 @@
-"""Wrong: straight over diagonal."""
+"""Wrong: along x over diagonal."""
 
 _ratio = _anisotropy
 

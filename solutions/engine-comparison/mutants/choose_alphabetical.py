@@ -1,4 +1,4 @@
-"""Wrong: of those that fit, the first by alphabet."""
+"""Wrong: of those that fit, the first in the alphabet."""
 
 _cheapest = choose_engine
 

@@ -1,4 +1,4 @@
-"""Wrong: a name is preferred to a number."""
+"""Wrong: a name counts more than a number."""
 
 _cheapest = choose_engine
 

@@ -1,4 +1,4 @@
-"""Wrong: the dearest of those that fit."""
+"""Wrong: the most expensive of those that fit."""
 
 _cheapest = choose_engine
 

@@ -1,4 +1,4 @@
-"""Wrong: only engines with a name one has heard of are looked at."""
+"""Wrong: only engines with a well-known name are considered."""
 
 _KNOWN = ("anvil", "balsa", "cork", "ode", "bullet", "physx", "mujoco")
 _cheapest = choose_engine

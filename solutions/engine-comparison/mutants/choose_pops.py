@@ -1,4 +1,4 @@
-"""Wrong: the reports of the caller are thinned out."""
+"""Wrong: reports are removed from the caller's dict."""
 
 _cheapest = choose_engine
 

@@ -1,4 +1,4 @@
-"""Wrong: requirements are ticked off by taking them from the list."""
+"""Wrong: requirements are removed from the caller's list when they have been checked."""
 
 _cheapest = choose_engine
 

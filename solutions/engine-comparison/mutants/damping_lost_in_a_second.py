@@ -1,4 +1,4 @@
-"""Wrong: the share of the speed that is lost in one second is the rate."""
+"""Wrong: the fraction of the speed that is lost in one second is given as the rate."""
 
 
 def _linear_damping(engine, dt):

@@ -1,4 +1,4 @@
-"""Wrong: differences below a tolerance are forgiven."""
+"""Wrong: differences below a tolerance are ignored."""
 
 
 def _deterministic(engine, dt):

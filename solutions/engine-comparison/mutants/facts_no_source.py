@@ -1,3 +1,3 @@
-"""Wrong: a source that nobody can open."""
+"""Wrong: a source that cannot be opened."""
 
 _FACTS["bullet"]["licence"] = ("Zlib", "its README")

@@ -1,4 +1,4 @@
-"""Wrong: a key that nobody asked for."""
+"""Wrong: a key that was not asked for."""
 
 _characterise = characterise
 

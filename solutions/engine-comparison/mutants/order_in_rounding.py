@@ -1,4 +1,4 @@
-"""Wrong: steps so small that only rounding is left of the differences."""
+"""Wrong: steps so small that the differences are nothing but rounding."""
 
 
 def _order(engine, omega):

@@ -1,4 +1,4 @@
-"""Wrong: a logarithm is a logarithm."""
+"""Wrong: the natural logarithm."""
 
 
 def _order(engine, omega):

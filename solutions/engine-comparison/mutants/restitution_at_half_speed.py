@@ -1,4 +1,4 @@
-"""Wrong: a hit at 1 m/s, which some engines do not bounce."""
+"""Wrong: a hit at 1 m/s, at which some engines do not rebound."""
 
 _hit = _slow_hit
 

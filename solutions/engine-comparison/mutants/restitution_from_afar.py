@@ -1,4 +1,4 @@
-"""Wrong: the loss on the way counts as the wall's."""
+"""Wrong: the loss on the way counts as a loss at the wall."""
 
 _hit = _slow_hit
 

@@ -1,4 +1,4 @@
-"""Wrong: the end of the search where nothing ever fails."""
+"""Wrong: the end of the search where no step is unstable."""
 
 _z = _max_stable_z
 

@@ -1,4 +1,4 @@
-"""Wrong: so few starts that the unlucky one is missed."""
+"""Wrong: so few starts that the worst one is missed."""
 
 
 def _tunnelling_speed(engine, info):

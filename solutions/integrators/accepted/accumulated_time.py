@@ -1,4 +1,4 @@
-"""Time is summed up step by step, over the right number of steps; it stays within 1e-9."""
+"""Time is a running sum over the right number of steps, and it stays within 1e-9."""
 
 
 def integrate(step, accel, q0, v0, t_end, h):

@@ -1,4 +1,4 @@
-"""Verlet as half a drift, a whole kick, half a drift: one evaluation, in mid-step."""
+"""Verlet as half a drift, a whole kick, half a drift: one evaluation, at mid-step."""
 
 
 def velocity_verlet_step(accel, t, q, v, h):

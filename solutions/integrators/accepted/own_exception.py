@@ -1,4 +1,4 @@
-"""A refusal with an exception of its own that is a ValueError all the same."""
+"""A refusal with its own kind of exception, which is also a ValueError."""
 
 
 class StepError(ValueError):

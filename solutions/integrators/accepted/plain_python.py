@@ -1,4 +1,4 @@
-"""No numpy at all: lists go out, tuples and lists come back."""
+"""No numpy at all: lists and tuples instead of arrays."""
 
 
 def _add(a, factor, b):

@@ -1,4 +1,4 @@
-"""Semi-implicit Euler the other way round: drift, then kick with the acceleration at the new place."""
+"""Semi-implicit Euler the other way round: drift, then kick with the acceleration at the new position."""
 
 
 def semi_implicit_euler_step(accel, t, q, v, h):

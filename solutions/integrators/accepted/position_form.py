@@ -1,4 +1,4 @@
-"""Verlet in the form of textbooks of mechanics: q + h v + h²/2 a, then the mean of both accelerations."""
+"""Verlet in the form of mechanics textbooks: q + h v + h²/2 a, then the mean of both accelerations."""
 
 
 def velocity_verlet_step(accel, t, q, v, h):

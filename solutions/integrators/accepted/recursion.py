@@ -1,4 +1,4 @@
-"""A loop without a loop: integrate calls itself."""
+"""integrate calls itself instead of using a loop."""
 
 
 def integrate(step, accel, q0, v0, t_end, h):

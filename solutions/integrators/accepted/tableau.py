@@ -1,4 +1,4 @@
-"""All four steps from one table-driven routine; nothing is written twice."""
+"""All four steps from one table-driven routine."""
 
 
 def _runge_kutta(a, b, c):

@@ -1,4 +1,4 @@
-"""Stability from trace and determinant (Jury's conditions), walking up by two per cent at a time."""
+"""Stability from trace and determinant (Jury's conditions), walking up in steps of two per cent."""
 
 
 def max_stable_step(step, omega):

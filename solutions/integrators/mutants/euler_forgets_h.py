@@ -1,4 +1,4 @@
-"""The slopes are added without multiplying them by h."""
+"""The slopes are added without being multiplied by h."""
 
 
 def explicit_euler_step(accel, t, q, v, h):

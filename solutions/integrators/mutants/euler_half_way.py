@@ -1,4 +1,4 @@
-"""The acceleration is taken half a step on."""
+"""The acceleration is evaluated half a step ahead."""
 
 
 def explicit_euler_step(accel, t, q, v, h):

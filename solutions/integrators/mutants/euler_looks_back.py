@@ -1,4 +1,4 @@
-"""The acceleration is taken half a step back."""
+"""The acceleration is evaluated half a step back."""
 
 
 def explicit_euler_step(accel, t, q, v, h):

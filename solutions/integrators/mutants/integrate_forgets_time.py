@@ -1,4 +1,4 @@
-"""Every step is told that it starts at time 0."""
+"""Every step gets 0 as its starting time."""
 
 _whole = integrate
 

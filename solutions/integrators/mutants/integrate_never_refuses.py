@@ -1,4 +1,4 @@
-"""Any duration is taken and rounded without a word."""
+"""Any duration is accepted and rounded without an error."""
 
 _whole = integrate
 

@@ -1,4 +1,4 @@
-"""Every step starts from the initial state again."""
+"""Every step starts from the initial state."""
 
 
 def integrate(step, accel, q0, v0, t_end, h):

@@ -1,4 +1,4 @@
-"""int() cuts 28.999999999999996 down to 28."""
+"""int() truncates 28.999999999999996 to 28."""
 
 
 def integrate(step, accel, q0, v0, t_end, h):

@@ -1,4 +1,4 @@
-"""The number of steps is cut off, and the initial state is not among the samples."""
+"""The number of steps is truncated, and the initial state is not among the samples."""
 
 
 def integrate(step, accel, q0, v0, t_end, h):

@@ -1,4 +1,4 @@
-"""Two steps of half the size: more than was asked for."""
+"""Two steps of half the size: more accurate than was asked for."""
 
 _whole = rk4_step
 

@@ -1,4 +1,4 @@
-"""accel gets each stage's position with the velocity of the start; only damping can tell."""
+"""accel gets each stage's position with the velocity of the start; only damping reveals it."""
 
 _right_rk4 = rk4_step
 

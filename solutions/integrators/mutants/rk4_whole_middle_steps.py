@@ -1,4 +1,4 @@
-"""The middle slopes are taken a whole step on."""
+"""The middle slopes are taken a whole step ahead."""
 
 
 def rk4_step(accel, t, q, v, h):

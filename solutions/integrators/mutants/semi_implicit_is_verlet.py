@@ -1,4 +1,4 @@
-"""Velocity Verlet in semi-implicit Euler's place."""
+"""Velocity Verlet in place of semi-implicit Euler."""
 
 
 def semi_implicit_euler_step(accel, t, q, v, h):

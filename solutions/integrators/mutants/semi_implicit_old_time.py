@@ -1,4 +1,4 @@
-"""Position first, but the new position is looked up at the old time."""
+"""Position first, but the acceleration at the new position is evaluated at the old time."""
 
 
 def semi_implicit_euler_step(accel, t, q, v, h):

@@ -1,4 +1,4 @@
-"""The matrix's norm is asked to stay below one instead of its eigenvalues."""
+"""The norm of the matrix, instead of its eigenvalues, must stay below one."""
 
 
 def max_stable_step(step, omega):

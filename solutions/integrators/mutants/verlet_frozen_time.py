@@ -1,4 +1,4 @@
-"""The second kick looks at the new position but at the old time."""
+"""The second kick uses the new position but the old time."""
 
 
 def velocity_verlet_step(accel, t, q, v, h):

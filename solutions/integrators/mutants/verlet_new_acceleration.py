@@ -1,4 +1,4 @@
-"""The velocity is kicked with the acceleration at the new position only."""
+"""The velocity is updated with the acceleration at the new position only."""
 
 
 def velocity_verlet_step(accel, t, q, v, h):

@@ -1,4 +1,4 @@
-"""The half kick after the drift is taken back instead of added."""
+"""The half kick after the drift is subtracted instead of added."""
 
 
 def velocity_verlet_step(accel, t, q, v, h):

@@ -1,4 +1,4 @@
-"""Reuses the last acceleration without asking whether this step starts where the last one ended."""
+"""Reuses the last acceleration without checking that this step starts where the last one ended."""
 
 _kept = []
 

@@ -1,4 +1,4 @@
-"""Nelder and Mead's simplex over the logarithms of kp and kd, after a coarse grid; 220 random draws."""
+"""The Nelder-Mead simplex over the logarithms of kp and kd, after a coarse grid; 220 random draws."""
 
 
 def tune(estimate, randomization):

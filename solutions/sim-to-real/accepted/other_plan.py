@@ -1,4 +1,4 @@
-"""Other gaps, other words: shares instead of per cent, a shorter bench run, factors rounded, a wider box."""
+"""Other gaps and words: fractions instead of per cent, a shorter bench run, rounded factors, a wider box."""
 
 
 def plan():

@@ -1,4 +1,4 @@
-"""Output error: simulated speeds against measured ones, started where the integral fit ends."""
+"""Output error: simulated speeds against measured ones, starting from the result of the integral fit."""
 
 
 def _simulated(u, p):

@@ -1,4 +1,4 @@
-"""Lists and tuples wherever an array may stand."""
+"""Lists and tuples instead of arrays."""
 
 _array_identify, _array_tune = identify, tune
 

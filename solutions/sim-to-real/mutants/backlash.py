@@ -1,4 +1,4 @@
-"""Gear backlash is put on the list because every list has it."""
+"""Gear backlash is listed because every list has it."""
 
 _sound_plan = plan
 

@@ -1,4 +1,4 @@
-"""The box holds the logarithms."""
+"""The box contains the logarithms."""
 
 _sound_plan = plan
 

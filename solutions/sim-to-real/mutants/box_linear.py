@@ -1,4 +1,4 @@
-"""The half-width is read as a share: 1 - w to 1 + w."""
+"""The half-width is read as a fraction: 1 - w to 1 + w."""
 
 _sound_plan = plan
 

@@ -1,4 +1,4 @@
-"""The box holds the parameters' own values."""
+"""The box contains the parameters' own values."""
 
 _sound_plan = plan
 

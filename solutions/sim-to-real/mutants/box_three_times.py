@@ -1,4 +1,4 @@
-"""The box is three times as wide as the fleet, to be on the safe side."""
+"""The box is three times as wide as the fleet, to be safe."""
 
 _sound_plan = plan
 

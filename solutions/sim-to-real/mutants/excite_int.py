@@ -1,4 +1,4 @@
-"""The number of commands is cut off, not rounded."""
+"""The number of commands is truncated, not rounded."""
 
 _rounded = design_excitation
 

@@ -1,4 +1,4 @@
-"""A signal whose standard deviation is u_max, with peaks far beyond."""
+"""A signal whose standard deviation is u_max, with peaks far above it."""
 
 
 def design_excitation(budget_s, u_max, rng):

@@ -1,4 +1,4 @@
-"""Three gaps, all of them friction."""
+"""Three gaps, all of them from friction."""
 
 _sound_plan = plan
 

@@ -1,4 +1,4 @@
-"""Half a second on the bench, because bench time is dear."""
+"""Half a second on the bench, because bench time is expensive."""
 
 _sound_plan = plan
 

@@ -1,4 +1,4 @@
-"""b and Fc exchanged."""
+"""b and Fc are swapped."""
 
 _right_way = identify
 

@@ -1,4 +1,4 @@
-"""Commands are taken to act at once; only tau is searched for."""
+"""Commands are treated as if they acted at once; only tau is searched for."""
 
 
 def identify(t, u, y):

@@ -1,4 +1,4 @@
-"""Intervals by the usual formula for least squares at the best point of the delay grid."""
+"""Intervals from the usual formula for least squares at the best point of the delay grid."""
 
 _values = identify
 

@@ -1,4 +1,4 @@
-"""Intervals so wide that they cannot be wrong: half the value either way."""
+"""Intervals so wide that they cannot be wrong: half the value on either side."""
 
 _narrow = identify
 

@@ -1,4 +1,4 @@
-"""The lag is to be seen while a constant force acts."""
+"""The lag is to be measured while a constant force acts."""
 
 _sound_plan = plan
 

@@ -1,4 +1,4 @@
-"""The promise is given in per cent."""
+"""The promise is a percentage."""
 
 _as_share = plan
 

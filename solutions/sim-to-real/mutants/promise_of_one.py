@@ -1,4 +1,4 @@
-"""The plan promises the best."""
+"""The plan promises the best possible result."""
 
 _modest = plan
 

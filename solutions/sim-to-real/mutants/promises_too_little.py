@@ -1,4 +1,4 @@
-"""A threshold that nobody can miss."""
+"""A threshold that every measurement meets."""
 
 _sound_plan = plan
 

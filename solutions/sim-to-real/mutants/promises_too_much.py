@@ -1,4 +1,4 @@
-"""A threshold that sounds good: a hundredth of a per cent."""
+"""A threshold that sounds good: a hundredth of one per cent."""
 
 _sound_plan = plan
 

@@ -1,4 +1,4 @@
-"""Downhill from timid gains in small steps, stopping at the first bump."""
+"""Downhill from small gains in small steps, stopping at the first bump."""
 
 
 def tune(estimate, randomization):

@@ -1,4 +1,4 @@
-"""The gains of the first call, kept: tuning takes long."""
+"""The gains of the first call, kept because tuning takes long."""
 
 _anew = tune
 _FOUND = {}

@@ -1,4 +1,4 @@
-"""Gains that once served the data sheet's cart well."""
+"""Gains that once suited the data sheet's cart."""
 
 
 def tune(estimate, randomization):

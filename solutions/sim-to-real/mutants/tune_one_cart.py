@@ -1,4 +1,4 @@
-"""Tuned for the estimate itself, not for the fleet about it."""
+"""Tuned for the estimate itself, not for the fleet around it."""
 
 _fleet = tune
 

@@ -1,4 +1,4 @@
-"""kp and kd exchanged in the result."""
+"""kp and kd are swapped in the result."""
 
 _right = tune
 

@@ -1,4 +1,4 @@
-"""The carts that are tuned on hear every command at once."""
+"""The carts used for tuning receive every command at once."""
 
 _late_too = tune
 

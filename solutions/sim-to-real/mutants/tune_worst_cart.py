@@ -1,4 +1,4 @@
-"""The gains at which the slowest of the carts is quickest."""
+"""The gains for which the slowest of the carts is fastest."""
 
 
 def tune(estimate, randomization):

@@ -1,4 +1,4 @@
-"""The angle of the point that an angle points to; half a turn comes out positive."""
+"""The angle from its cosine and sine; half a turn comes out positive."""
 
 
 def wrap_angle(e):

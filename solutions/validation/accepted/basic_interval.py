@@ -1,4 +1,4 @@
-"""The basic interval: the resampled values mirrored at the statistic of the series."""
+"""The basic interval: the resampled values reflected about the statistic of the series."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

@@ -1,4 +1,4 @@
-"""Hands predict a run without its answer, and gives the larger folds to the end of the list."""
+"""Passes predict a run without its answer, and puts the larger folds at the end of the list."""
 
 
 def cross_validate(fit, predict, runs, k):

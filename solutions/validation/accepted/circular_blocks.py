@@ -1,4 +1,4 @@
-"""Blocks that go on at the start of the series when they reach its end."""
+"""Blocks that continue at the start of the series when they reach its end."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

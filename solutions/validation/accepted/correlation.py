@@ -1,4 +1,4 @@
-"""The lag by what two signals have in common: their squares less twice their product, over all runs."""
+"""The lag by correlation: the squares of both signals minus twice their product, over all runs."""
 
 
 def best_shift(pairs):

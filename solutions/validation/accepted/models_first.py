@@ -1,4 +1,4 @@
-"""Fits all models before it predicts anything, the last fold first."""
+"""Fits all models before it predicts anything, starting with the last fold."""
 
 
 def cross_validate(fit, predict, runs, k):

@@ -1,4 +1,4 @@
-"""Arrays of ends, truth values of numpy, and keys in another order."""
+"""Arrays of ends, numpy's own booleans, and keys in another order."""
 
 _judge = validate
 

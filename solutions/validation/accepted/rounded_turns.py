@@ -1,4 +1,4 @@
-"""Take off the nearest whole number of turns; squared distances by Cholesky factors."""
+"""Subtracts the nearest whole number of turns; squared distances by Cholesky factors."""
 
 
 def wrap_angle(e):

@@ -1,4 +1,4 @@
-"""Integrals by Simpson's rule, which wants an odd number of samples."""
+"""Integrals by Simpson's rule, which needs an odd number of samples."""
 
 
 def contact_force_error(f_sim, f_real, dt):

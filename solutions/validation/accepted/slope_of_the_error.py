@@ -1,4 +1,4 @@
-"""The lag by Gauss and Newton: an error that is a little shift is the slope times that shift."""
+"""The lag by the Gauss-Newton method: a small shift gives an error of the slope times that shift."""
 
 
 def best_shift(pairs):

@@ -1,4 +1,4 @@
-"""Blocks of random length, geometric with the mean asked for, in a circle."""
+"""Blocks of random length, geometric with the given mean, on a circular series."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

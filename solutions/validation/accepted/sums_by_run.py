@@ -1,4 +1,4 @@
-"""Sums for each run, made once; every number, with all runs or without one, is put together from them."""
+"""Sums for each run, computed once; every number, with all runs or with one left out, comes from them."""
 
 
 def validate(sim, real, spec):

@@ -1,4 +1,4 @@
-"""Integrals by the trapezoidal rule; energies relative to the first by division, sign repaired after."""
+"""Integrals by the trapezoidal rule; energies divided by the first one, and the sign corrected afterwards."""
 
 
 def contact_force_error(f_sim, f_real, dt):

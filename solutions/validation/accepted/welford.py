@@ -1,4 +1,4 @@
-"""A running mean and variance, one sample after the other."""
+"""A running mean and variance, sample by sample."""
 
 
 def bias_variance(e):

@@ -1,4 +1,4 @@
-"""An average is spread as one of its terms is."""
+"""An average varies as much as one of its terms."""
 
 
 def consistency_band(dof, runs, alpha):

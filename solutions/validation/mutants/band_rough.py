@@ -1,4 +1,4 @@
-"""A chi-square is a shifted square of a normal variable, near enough."""
+"""A chi-square is close enough to a shifted square of a normal variable."""
 
 
 def consistency_band(dof, runs, alpha):

@@ -1,4 +1,4 @@
-"""A bias is how far off it is: a size."""
+"""A bias is how far off it is, without a sign."""
 
 
 def bias_variance(e):

@@ -1,4 +1,4 @@
-"""The statistic is the mean, and is asked because it has to be."""
+"""The statistic is the mean, and calling it is a formality."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

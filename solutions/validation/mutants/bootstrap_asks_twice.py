@@ -1,4 +1,4 @@
-"""The statistic is asked whenever its value is needed."""
+"""The statistic is called whenever its value is needed."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

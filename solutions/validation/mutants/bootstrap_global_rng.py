@@ -1,4 +1,4 @@
-"""Chance is chance: any generator will do."""
+"""Any generator of random numbers will do."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

@@ -1,4 +1,4 @@
-"""The errors may be centred before they are resampled."""
+"""The errors may be centred in the caller's array before they are resampled."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

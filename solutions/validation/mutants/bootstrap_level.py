@@ -1,4 +1,4 @@
-"""alpha is what the interval holds."""
+"""alpha is the fraction inside the interval."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

@@ -1,4 +1,4 @@
-"""The interval is made of what the resamples differ by."""
+"""The interval is made of the differences between the resamples and the series."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

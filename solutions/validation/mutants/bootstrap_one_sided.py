@@ -1,4 +1,4 @@
-"""alpha is cut off at either end."""
+"""alpha is cut off at each end."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

@@ -1,4 +1,4 @@
-"""The cube root of N is always the right length of a block."""
+"""The cube root of N is always the right block length."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

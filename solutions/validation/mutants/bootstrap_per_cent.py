@@ -1,4 +1,4 @@
-"""np.percentile takes the level as it is."""
+"""np.percentile takes a level between 0 and 1."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

@@ -1,4 +1,4 @@
-"""An interval begins with its upper end."""
+"""The upper end of an interval comes first."""
 
 
 def block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):

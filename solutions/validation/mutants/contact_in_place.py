@@ -1,4 +1,4 @@
-"""A force is measured in units of the real peak."""
+"""Forces are measured in units of the real peak, so they may be rescaled."""
 
 
 def contact_force_error(f_sim, f_real, dt):

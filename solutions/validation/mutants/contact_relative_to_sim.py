@@ -1,4 +1,4 @@
-"""Relative to the simulation, which is what is being judged."""
+"""The error is relative to the simulation, because that is what is judged."""
 
 
 def contact_force_error(f_sim, f_real, dt):

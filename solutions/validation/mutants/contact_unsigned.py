@@ -1,4 +1,4 @@
-"""An error is positive."""
+"""An error is always positive."""
 
 
 def contact_force_error(f_sim, f_real, dt):

@@ -1,4 +1,4 @@
-"""How many are covered is what was asked."""
+"""The task asks how many values are covered."""
 
 
 def coverage(y, lo, hi):

@@ -1,4 +1,4 @@
-"""lo and hi, measured from y, are all that counts."""
+"""Only lo and hi relative to y matter, so they may be overwritten."""
 
 
 def coverage(y, lo, hi):

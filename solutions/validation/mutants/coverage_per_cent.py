@@ -1,4 +1,4 @@
-"""95 % is ninety-five."""
+"""95 % is written as 95."""
 
 
 def coverage(y, lo, hi):

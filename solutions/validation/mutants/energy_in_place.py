@@ -1,4 +1,4 @@
-"""Heights count from where the run began."""
+"""Heights are measured from where the run began, so q may be shifted."""
 
 
 def energy_error(q, v, energy):

@@ -1,4 +1,4 @@
-"""An energy is positive."""
+"""An energy is always positive."""
 
 
 def energy_error(q, v, energy):

@@ -1,4 +1,4 @@
-"""Relative to the energy there is at that moment."""
+"""The error is relative to the energy at that moment."""
 
 
 def energy_error(q, v, energy):

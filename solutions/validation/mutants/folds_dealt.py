@@ -1,4 +1,4 @@
-"""Dealing the runs out evens the folds."""
+"""Folds are most even if the runs are dealt out like cards."""
 
 
 def cross_validate(fit, predict, runs, k):

@@ -1,4 +1,4 @@
-"""Each fold makes a model, and the rest tells how good it is."""
+"""Each fold gives a model, and the rest shows how good it is."""
 
 
 def cross_validate(fit, predict, runs, k):

@@ -1,4 +1,4 @@
-"""The error of a run is kept where its measurement was."""
+"""The error of a run is stored where its measurement was."""
 
 
 def cross_validate(fit, predict, runs, k):

@@ -1,4 +1,4 @@
-"""The more data a model is fitted to, the better it is judged."""
+"""The more data a model is fitted to, the better its score can be trusted."""
 
 
 def cross_validate(fit, predict, runs, k):

@@ -1,4 +1,4 @@
-"""The fold next door is enough to learn from."""
+"""The neighbouring fold is enough to fit a model."""
 
 
 def cross_validate(fit, predict, runs, k):

@@ -1,4 +1,4 @@
-"""In the end one average is wanted, so it may be returned at once."""
+"""In the end an average is needed, so it may be returned at once."""
 
 
 def nees(err, P):

@@ -1,4 +1,4 @@
-"""Only the variances matter; the rest of the matrix is decoration."""
+"""Only the variances matter; the rest of the matrix does not."""
 
 
 def nees(err, P):

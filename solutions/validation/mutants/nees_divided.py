@@ -1,4 +1,4 @@
-"""Normalised means: per component."""
+"""Normalised means per component."""
 
 
 def nees(err, P):

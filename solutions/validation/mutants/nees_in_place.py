@@ -1,4 +1,4 @@
-"""P is mine to invert."""
+"""I may invert P in its own place."""
 
 
 def nees(err, P):

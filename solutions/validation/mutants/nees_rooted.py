@@ -1,4 +1,4 @@
-"""A distance is what counts, and a distance has a root."""
+"""The task asks for a distance, and a distance has a square root."""
 
 
 def nees(err, P):

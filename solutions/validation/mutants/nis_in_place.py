@@ -1,4 +1,4 @@
-"""Whitened innovations may take the place of the innovations."""
+"""The whitened innovations may replace the innovations."""
 
 
 def nis(nu, S):

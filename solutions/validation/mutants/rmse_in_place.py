@@ -1,4 +1,4 @@
-"""e *= e squares the errors."""
+"""e *= e squares the errors and changes nothing else."""
 
 
 def rmse(e):

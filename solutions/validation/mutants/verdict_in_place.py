@@ -1,4 +1,4 @@
-"""y -= r is the error, and nobody needs the speeds any more."""
+"""y -= r is the error, and the speeds are not needed any more."""
 
 _judged = validate
 

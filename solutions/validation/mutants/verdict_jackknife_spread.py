@@ -1,4 +1,4 @@
-"""How far the numbers scatter with one run left out is their standard error."""
+"""The standard error is how far the numbers scatter with one run left out."""
 
 
 def interval_of_each(pairs):

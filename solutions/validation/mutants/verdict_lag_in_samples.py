@@ -1,4 +1,4 @@
-"""A lag is so many samples."""
+"""A lag is a number of samples."""
 
 _shift = best_shift
 

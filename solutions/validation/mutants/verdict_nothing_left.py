@@ -1,4 +1,4 @@
-"""Where nothing speaks against a simulation, it is accepted."""
+"""If nothing speaks against a simulation, it is accepted."""
 
 _judged = validate
 

@@ -1,4 +1,4 @@
-"""A band of one sigma is the band."""
+"""A band of one sigma covers 95 %."""
 
 
 def columns(pair):

@@ -1,4 +1,4 @@
-"""A number below its limit is below its limit."""
+"""If the number is below its limit, the limit is kept."""
 
 _judged = validate
 

@@ -1,4 +1,4 @@
-"""An error is what must be added to be right."""
+"""The error is what must be added to the simulation to make it right."""
 
 _judged = validate
 

@@ -1,4 +1,4 @@
-"""Too little is never too much."""
+"""A bias can only be too large, not too small."""
 
 _judged = validate
 

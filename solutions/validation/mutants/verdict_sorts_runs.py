@@ -1,4 +1,4 @@
-"""Lists that I was handed may be put in order."""
+"""Lists that I was given may be put in order."""
 
 _judged = validate
 

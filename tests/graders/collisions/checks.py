@@ -137,14 +137,14 @@ def test_impulse_wall(submission, rng):
 @pytest.mark.points(2)
 def test_resolve_momentum(submission, rng):
     """An impact keeps the total momentum"""
-    laws.expect_momentum(submission, bundles.RESOLVE, [draws.blow(rng, d) for d in (2, 2, 3, 3, 3)])
+    laws.expect_momentum(submission, bundles.RESOLVE, [draws.impact(rng, d) for d in (2, 2, 3, 3, 3)])
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_parting(submission, rng):
     """Bodies part at e times the speed of approach, and slide past each other as before"""
-    calls = [*(draws.blow(rng, d) for d in (1, 2, 3, 3, 3)), *(draws.slow(rng, 3) for _ in range(3))]
+    calls = [*(draws.impact(rng, d) for d in (1, 2, 3, 3, 3)), *(draws.slow(rng, 3) for _ in range(3))]
     laws.expect_parting(submission, calls)
 
 
@@ -152,7 +152,7 @@ def test_resolve_parting(submission, rng):
 @pytest.mark.points(2)
 def test_resolve_energy(submission, rng):
     """An impact costs just the energy that e says, and none for e = 1"""
-    laws.expect_energy(submission, [draws.blow(rng, 3, e) for e in (1.0, 1.0, 0.0, None, None)])
+    laws.expect_energy(submission, [draws.impact(rng, 3, e) for e in (1.0, 1.0, 0.0, None, None)])
 
 
 @pytest.mark.task(bundles.RESOLVE)
@@ -187,7 +187,7 @@ def test_friction_cone(submission, rng):
         submission,
         bundles.FRICTION,
         [
-            *(draws.rub(rng, d, share) for d in (2, 3, 3) for share in (0.3, 0.8, 1.3, 4.0)),
+            *(draws.friction(rng, d, share) for d in (2, 3, 3) for share in (0.3, 0.8, 1.3, 4.0)),
             draws.rough(rng),
             (*draws.slow(rng, 3), 0.3),
         ],
@@ -201,7 +201,7 @@ def test_friction_cone(submission, rng):
 @pytest.mark.points(2)
 def test_friction_energy(submission, rng):
     """Friction keeps the momentum, never adds energy, and slows the slip without turning it round"""
-    laws.expect_braking(submission, [draws.rub(rng, 3, share) for share in (0.4, 0.7, 2.0, 4.0)])
+    laws.expect_braking(submission, [draws.friction(rng, 3, share) for share in (0.4, 0.7, 2.0, 4.0)])
 
 
 @pytest.mark.task(bundles.FRICTION)

@@ -13,7 +13,7 @@ draws = kit.reference("collisions", "draws")
 probes = bundles.probes
 
 
-def _blows(submission, task, calls):
+def _impacts(submission, task, calls):
     """Answers to ``calls``, and a function that looks for the mistake behind all of them."""
     values, parts = bundles.answers(submission, task, calls)
     return parts, lambda: probes.of_calls(task, calls, values, bundles.right(task, calls))
@@ -26,7 +26,7 @@ def _speeds(args):
 
 @np.errstate(all="ignore")
 def _expect_response(args, found, finding):
-    """Bodies that approached no longer do: an impact was struck at all."""
+    """Bodies that approached no longer do: there was an impact at all."""
     n = args[4]
     closing = float((found[0] - found[1]) @ n)
     kit.expect_bounded(
@@ -46,7 +46,7 @@ def _finding(task, args, message, help, diagnose):  # noqa: A002 - the field's n
 @np.errstate(all="ignore")
 def expect_momentum(submission, task, calls):
     """The total momentum is kept, and something happens."""
-    parts, diagnose = _blows(submission, task, calls)
+    parts, diagnose = _impacts(submission, task, calls)
     for args, found in zip(calls, parts, strict=True):
         finding = _finding(
             task,
@@ -77,7 +77,7 @@ def _expect_momentum(args, found, finding):
 def expect_parting(submission, calls):
     """Newton's rule along the normal; across it nothing."""
     task = bundles.RESOLVE
-    parts, diagnose = _blows(submission, task, calls)
+    parts, diagnose = _impacts(submission, task, calls)
     for args, (va_next, vb_next) in zip(calls, parts, strict=True):
         _, _, va, vb, n, e = args
         finding = _finding(
@@ -104,7 +104,7 @@ def expect_parting(submission, calls):
 def expect_energy(submission, calls):
     """The energy that is lost is (1 - e²)/2 times the reduced mass times the square of the approach."""
     task = bundles.RESOLVE
-    parts, diagnose = _blows(submission, task, calls)
+    parts, diagnose = _impacts(submission, task, calls)
     for args, found in zip(calls, parts, strict=True):
         ma, mb, va, vb, n, e = args
         before = probes.energy(ma, mb, va, vb)
@@ -133,7 +133,7 @@ def expect_energy(submission, calls):
 def expect_braking(submission, calls):
     """Friction: momentum kept, energy never more, the slip smaller and in the same direction."""
     task = bundles.FRICTION
-    parts, diagnose = _blows(submission, task, calls)
+    parts, diagnose = _impacts(submission, task, calls)
     for args, found in zip(calls, parts, strict=True):
         ma, mb, va, vb, n = args[:5]
         finding = _finding(
@@ -217,7 +217,7 @@ def expect_line_symmetries(submission, rng):
 @np.errstate(all="ignore")
 def expect_symmetries(submission, task, rng):
     """One impact five times: as it is, from a train, turned, mirrored, exchanged."""
-    args = draws.rub(rng, 3, 0.6) if task == bundles.FRICTION else draws.blow(rng, 3)
+    args = draws.friction(rng, 3, 0.6) if task == bundles.FRICTION else draws.impact(rng, 3)
     ma, mb, va, vb, n, *rest = args
     train = rng.uniform(10.0, 20.0, 3)
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
@@ -239,7 +239,7 @@ def expect_symmetries(submission, task, rng):
         ("In a mirror, an impact is another one.", "DEPENDS_ON_DIRECTION"),
         ("With a and b exchanged, an impact is another one.", "DEPENDS_ON_DIRECTION"),
     )
-    parts, diagnose = _blows(submission, task, calls)
+    parts, diagnose = _impacts(submission, task, calls)
     for given, found, true, (message, code) in zip(calls, parts, wanted, words, strict=True):
 
         def look(code=code):
@@ -260,7 +260,11 @@ def expect_wall(submission, task, rng):
     """An infinite mass on either side, at rest and moving."""
     calls = []
     for side in (0, 1, 0, 1):
-        args = draws.rub(rng, 3, rng.uniform(0.4, 0.8)) if task == bundles.FRICTION else draws.blow(rng, 3)
+        args = (
+            draws.friction(rng, 3, rng.uniform(0.4, 0.8))
+            if task == bundles.FRICTION
+            else draws.impact(rng, 3)
+        )
         ma, mb, *rest = args
         calls.append((math.inf, mb, *rest) if side else (ma, math.inf, *rest))
     bundles.expect_formula(
@@ -275,7 +279,7 @@ def expect_wall(submission, task, rng):
 @np.errstate(all="ignore")
 def expect_clean(submission, task, rng):
     """Arguments are left alone."""
-    args = draws.rub(rng, 3, 0.6) if task == bundles.FRICTION else draws.blow(rng, 3)
+    args = draws.friction(rng, 3, 0.6) if task == bundles.FRICTION else draws.impact(rng, 3)
     inspected = submission.call_inspect(task, *args)
     given = {"input": bundles.shown(task, args)}
     found = kit.as_pair(inspected.value, 3, ("va_next", "vb_next"))

@@ -70,8 +70,8 @@ def scenes(task, seed=0):
         "detect_sphere_sphere": lambda s: draws.spheres(rng, 3, s),
         "detect_sphere_plane": lambda s: draws.plane(rng, 3, s - 1.0),
         "impulse_1d": lambda s: draws.line(rng),
-        "resolve": lambda s: draws.blow(rng, 3),
-        "resolve_with_friction": lambda s: draws.rub(rng, 3, s),
+        "resolve": lambda s: draws.impact(rng, 3),
+        "resolve_with_friction": lambda s: draws.friction(rng, 3, s),
     }
     if task == "time_of_impact":
         some = [draws.passing(rng, 3, share) for share in (0.3, 0.7, 0.9, 1.2, 1.8)]

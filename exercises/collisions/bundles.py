@@ -227,7 +227,7 @@ def samples(value, t_end, h, names, given, width=None):
             name=name,
             input=given,
             message="The number of samples is not one more than the number of steps.",
-            help="N = round(t_end / h) steps join N + 1 states.",
+            help="N = round(t_end / h) steps connect N + 1 states.",
             diagnose=lambda rows=rows: probes.of_count(len(kit.as_list(rows)), t_end, h, kit.as_vector(t)),
         )
     t = kit.as_array(t, (n + 1,), names[0])
@@ -242,7 +242,7 @@ def samples(value, t_end, h, names, given, width=None):
         units="s",
         input=given,
         message="The times are not 0, h, 2h, ... up to t_end.",
-        help="Sample number i belongs to i * h.",
+        help="The time of sample i is i * h.",
         diagnose=lambda: probes.of_times(t, h),
     )
     return t, x, v

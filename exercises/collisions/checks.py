@@ -13,7 +13,7 @@ probes, engine = bundles.probes, bundles.engine
 @pytest.mark.task(bundles.SPHERES)
 @pytest.mark.points(4)
 def test_sphere_contact(submission, draw):
-    """Two spheres: do they touch, along which normal, how deep?"""
+    """Two spheres: do they touch, along which normal, and how deep?"""
     bundles.expect_public(
         submission,
         bundles.SPHERES,
@@ -42,7 +42,7 @@ def test_plane_contact(submission, draw):
 @pytest.mark.task(bundles.IMPULSE)
 @pytest.mark.points(3)
 def test_impulse_value(submission, draw):
-    """The impulse parts two bodies at e times the speed of approach"""
+    """The impulse separates two bodies at e times the speed of approach"""
     bundles.expect_public(
         submission,
         bundles.IMPULSE,
@@ -77,7 +77,7 @@ def test_impulse_walls(submission, draw):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(4)
 def test_resolve_oblique(submission, draw):
-    """An impact at an angle changes what is along the normal and nothing across it"""
+    """An impact at an angle changes the velocities along the normal and nothing across it"""
     bundles.expect_public(
         submission,
         bundles.RESOLVE,
@@ -161,7 +161,7 @@ def test_moment_of_contact(submission, draw):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(2)
 def test_moment_never(submission, draw):
-    """None where they pass by, part, keep their distance or meet after the step, and only there"""
+    """None where they miss, separate, keep their distance or meet after the step, and only there"""
     bundles.expect_public(
         submission,
         bundles.MOMENT,
@@ -210,7 +210,7 @@ def test_moment_arguments(submission, draw):
 @pytest.mark.task(bundles.HEAD_ON)
 @pytest.mark.points(4)
 def test_head_on_mended(submission, draw):
-    """The mended program: two balls meet and part as e says"""
+    """The mended program: two balls meet and separate as e says"""
     cases = bundles.asked("head_on_mended", draw)
     values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
     truths = bundles.meetings(cases, "head_on_mended")
@@ -265,7 +265,7 @@ def test_head_on_pymunk(submission, draw):
 @pytest.mark.task(bundles.DROP)
 @pytest.mark.points(3)
 def test_drop_bounces(submission, draw):
-    """A dropped ball bounces to e squared of its height, time after time, and then lies still"""
+    """A dropped ball bounces to e squared times its height, again and again, and then lies still"""
     cases = bundles.asked("drop_bounces", draw)
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
     truths = bundles.bounces(cases, "drop_bounces")

@@ -86,7 +86,7 @@ def _head_on(submission, title):
     return kit.Section(
         title,
         text="Two balls of 1 kg and radius 0.5 m start 10 m apart, at 2 m/s each. They must touch at 2.25 s. "
-        "The momentum is zero from beginning to end, and of the 4 J a share of e squared is left. If "
+        "The momentum is zero from beginning to end, and of the 4 J a fraction of e squared is left. If "
         "your balls "
         "change sides, there was no contact between them.",
         columns=("e", "your last x1", "exact", "largest momentum", "energy left", "exact"),
@@ -95,7 +95,7 @@ def _head_on(submission, title):
             title="The head-on pair: your samples on the exact lines",
             description="Three panels of position over time, one for each restitution: the exact "
             "lines of both "
-            "balls bend at 2.25 s, and the points of the submission are drawn over them.",
+            "balls bend at 2.25 s, and the points of your program are drawn over them.",
             panels=tuple(panels),
             columns=3,
         ),
@@ -118,7 +118,8 @@ def _drop(submission, title):
     rest = f"{contacts[-1]:.4f} s" if speeds[-1] == 0.0 else "not by the end"
     return kit.Section(
         title,
-        text=f"A ball of radius 0.1 m falls from 1 m with e = 0.7. Each hop is e squared, 0.49, of "
+        text=f"A ball of radius 0.1 m falls from 1 m with e = 0.7. Each bounce has e squared, 0.49, of the "
+        f"height of "
         "the one before. "
         f"With g h for the slowest bounce it comes to rest at about {rest}; at the end yours is "
         f"{z[-1] - scene.radius + 0.0:.2g} m above the floor, at {v[-1] + 0.0:.2g} m/s.",
@@ -128,7 +129,7 @@ def _drop(submission, title):
             title="The drop: your samples on the exact parabolas",
             description="Height over time: parabolas that shrink to the floor and end there, with "
             "the points of "
-            "the submission over them.",
+            "your program are drawn over them.",
             panels=(
                 kit.Panel(
                     x_label="time / s",
@@ -158,7 +159,7 @@ def _pymunk_head_on(submission, title):
         change = scene.v0[0] - truth.after[0]
         seen.append(
             f"{1000 * h:g} ms: at most {1000 * np.max(np.abs(off[t < truth.contact])):.2f} mm up to the "
-            f"contact, {1000 * np.max(np.abs(off)):.2f} mm over all, {1000 * off[-1]:.2f} mm at the end"
+            f"contact, {1000 * np.max(np.abs(off)):.2f} mm overall, {1000 * off[-1]:.2f} mm at the end"
         )
         series.append(kit.Series(f"h = {1000 * h:g} ms", t, 1000 * off))
         rows.append(
@@ -177,7 +178,8 @@ def _pymunk_head_on(submission, title):
         "for overlaps afterwards, so the impact comes at the first sample after the contact. Until then the "
         "ball keeps "
         "its old velocity, and from then on it is off by the change of velocity times the delay.\n\n"
-        "If your program is right, the last but one column equals the column before it: you can predict "
+        'If your program is right, the columns "predicted difference" and "pymunk less yours" agree: '
+        "you can predict "
         "another engine's error to the last digit.",
         columns=("step", "pymunk's delay", "predicted difference", "pymunk less yours", "at most"),
         rows=tuple(rows),
@@ -200,7 +202,7 @@ def _pymunk_drop(submission, title):
         k = int(np.searchsorted(t, first)) - 1
         seen.append(
             f"{1000 * h:g} ms: {1000 * off[k]:.2f} mm before the first contact, "
-            f"at most {1000 * np.max(np.abs(off)):.1f} mm over all"
+            f"at most {1000 * np.max(np.abs(off)):.1f} mm overall"
         )
         rows.append(
             (

@@ -25,7 +25,7 @@ def expect_play(submission, inputs, gap, states, outputs):
             quantity=name,
             t=np.arange(len(inputs)),  # the number of the input stands for its time
             input={"x": inputs, "gap": gap, "state": states},
-            message="The output of the gear is not its old output, pushed by the edges of the gap.",
+            message="The output of the gear is not its old output moved by the edges of the gap.",
             help="y is the state, clipped to [x - gap/2, x + gap/2], and so is the next state.",
             diagnose=lambda: actuators.of_backlash(submission),
         )
@@ -44,8 +44,9 @@ def expect_delayed(submission, value, x, dt, latency, expected):
         quantity="y",
         t=t,
         input={"x": x, "dt": dt, "latency": latency},
-        message="What comes out is not the signal of latency ago.",
-        help="At time k dt look at k dt - latency: between two samples on their line, before all 0.0.",
+        message="The output is not the signal delayed by the latency.",
+        help="At time k*dt take the signal of k*dt - latency: interpolated between samples, 0.0 before "
+        "the first.",
         diagnose=lambda: actuators.of_delay(submission),
     )
 
@@ -74,7 +75,8 @@ def expect_motor(submission, w, calls, message, source="rounding"):
         t=np.cumsum([dt for _, dt, *_ in calls]),
         input={"(u, dt, tau, u_max, deadband)": calls},
         message=message,
-        help="In this order: dead band, saturation, then the exact lag from wherever the speed is.",
+        help="Apply in this order: dead band, saturation, then the exact lag, starting from the present "
+        "speed.",
         diagnose=lambda: actuators.of_motor(submission),
     )
 
@@ -115,7 +117,8 @@ def expect_pose(submission, value, pose, wheels, expected=None):
             units=units,
             input={"pose": pose, **dict(zip(("v_left", "v_right", "track", "dt"), wheels, strict=True))},
             message="After one step, the robot is not where the arc of its two wheels ends.",
-            help="The axle's middle goes at the mean speed; the turn rate is the difference over the track.",
+            help="The middle of the axle moves at the mean speed; the turn rate is the difference over "
+            "the track.",
             diagnose=lambda: actuators.of_drive(submission),
         )
 

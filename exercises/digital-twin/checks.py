@@ -42,7 +42,7 @@ def test_encoder_keeps(submission):
 @pytest.mark.task("imu")
 @pytest.mark.points(3)
 def test_imu_white_noise(submission):
-    """White noise is as strong as its density says, at two sampling rates"""
+    """White noise has the strength that its density gives, at two sampling rates"""
     calls = [
         (np.zeros(4000), dt, 0.002, 0.0, 0.1, np.random.default_rng(seed))
         for seed, dt in enumerate((0.01, 0.09))
@@ -53,7 +53,7 @@ def test_imu_white_noise(submission):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_bias(submission):
-    """The bias starts at bias0, each time, is on the measured rate, and takes steps of the right size"""
+    """The bias starts at bias0 each time, is in the measured rate, and takes steps of the right size"""
     n, dt, walk = 4000, 0.04, 0.01
     true = np.linspace(1.0, -1.0, n)
     given = {"dt": dt, "noise_density": 0.0, "bias_random_walk": walk, "samples": n}
@@ -132,14 +132,14 @@ def _recordings():
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(4)
 def test_fit_noise_recordings(submission):
-    """From eight recordings at rest, the numbers they were made with are found again"""
+    """From eight recordings at rest, fit_noise finds the numbers they were made with"""
     sensors.expect_fits(submission, _recordings())
 
 
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(0)
 def test_fit_noise_short(submission):
-    """A short recording tells the noise density, and is left as it is"""
+    """A short recording is enough for the noise density, and is left as it is"""
     still = scenes.recording(np.random.default_rng(3), 2000, 0.02, 0.002, 0.003, -0.5)
     sensors.expect_density_of_short(submission, still, 0.02, 0.002)
 
@@ -169,7 +169,7 @@ def test_lidar_room(submission):
 @pytest.mark.task("lidar")
 @pytest.mark.points(0)
 def test_lidar_nearest(submission):
-    """Of walls in a row the nearest counts; one behind, and those that a beam misses, do not"""
+    """Of several walls the nearest counts; walls behind the robot or beside the beam do not"""
     across = ((2.0, 1.0), (1.0, 0.2), (3.5, 2.0), (-1.0, 3.0))  # at x, from -y to y
     walls = np.array([[[x, -y], [x, y]] for x, y in across])
     angles = np.array([0.0, 0.3, -0.49, 0.7])
@@ -183,7 +183,7 @@ def test_lidar_nearest(submission):
         quantity="ranges",
         units="m",
         input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
-        message="Of several walls, another one than the nearest that the beam hits is read.",
+        message="Of several walls, the reading is not that of the nearest one that the beam hits.",
         help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
         diagnose=lambda: sensors.sensors.of_lidar(submission),
     )
@@ -230,7 +230,7 @@ def test_motor_response(submission):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(0)
 def test_motor_limits(submission):
-    """At the edge of the dead band nothing happens, and a motor beyond u_max runs out gradually"""
+    """At the limit of the dead band nothing happens, and a motor beyond u_max slows down gradually"""
     calls = [(0.5, 0.1, 0.2, 10.0, 0.5), (-0.5, 0.1, 0.2, 10.0, 0.5), (4.0, 0.1, 0.2, 10.0, 0.5)]
     message = "A motor that was pushed beyond u_max does not run out as its lag says."
     actuators.expect_motor(submission, 25.0, calls, message)
@@ -249,7 +249,7 @@ def test_backlash_there_and_back(submission):
 @pytest.mark.task("backlash")
 @pytest.mark.points(0)
 def test_backlash_of_two(submission):
-    """Of two gears that are asked in turn, each goes on from its own state"""
+    """Of two gears that are called in turn, each continues from its own state"""
     inputs = [0.0, 5.0, 1.0, 5.4, 2.0, 4.0, 1.8, 4.2]
     states = [0.2, 4.9, 0.2, 4.9, 0.5, 5.0, 1.5, 4.5]
     outputs = [0.2, 4.9, 0.5, 4.9, 1.5, 4.5, 1.5, 4.5]
@@ -259,7 +259,7 @@ def test_backlash_of_two(submission):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(3)
 def test_delay_between_samples(submission):
-    """A delay that is no whole number of samples interpolates, and nothing comes out before it"""
+    """A delay that is not a whole number of samples is interpolated, and the output before it is zero"""
     x = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 2.0])
     expected = [0.0, 0.0, 0.0, 2.75, 1.5, 4.0, 4.25, 4.0]
     actuators.expect_delayed(
@@ -270,7 +270,7 @@ def test_delay_between_samples(submission):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(0)
 def test_delay_none_and_all(submission):
-    """Without latency a new array like the old one comes out; of a latency beyond the signal only zeros do"""
+    """Without latency the output is a copy; with a latency longer than the signal it is all zeros"""
     x = np.array([2.0, -3.0, 1.0, 5.0])
     actuators.expect_new_signal(submission, x, 0.1)
     actuators.expect_delayed(
@@ -281,7 +281,7 @@ def test_delay_none_and_all(submission):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(4)
 def test_drive_known_arcs(submission):
-    """Straight ahead, on the spot, and round a quarter of a circle to the left"""
+    """Straight ahead, on the spot, and a quarter of a circle to the left"""
     quarter = math.pi / 2
     cases = (
         ((1.0, 2.0, 0.0), (0.5, 0.5, 0.4, 2.0), (2.0, 2.0, 0.0)),
@@ -298,7 +298,7 @@ def test_drive_known_arcs(submission):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(0)
 def test_drive_ever_slower(submission):
-    """Ever slower turns go over into a straight line, and the old pose is left as it is"""
+    """Slower and slower turns approach a straight line, and the old pose is left as it is"""
     actuators.expect_slow_turns(submission, np.random.default_rng(12))
     pose, wheels = np.array([1.0, 2.0, 0.5]), (0.3, 0.5, 0.4, 1.0)
     value = bundles.expect_clean(submission, "diff_drive_step", (pose, *wheels), ("pose", *[None] * 4))
@@ -316,7 +316,7 @@ def test_sync_follows(submission):
         scenes.measured(cart, 0.5, scenes.moments(rng, 24.0), rng),
         settled=((2.0, 8.0), (14.0, 24.0)),
         frictions=((3.0, 8.0, 0.5), (16.0, 24.0, 0.8)),
-        message="The twin does not stay with its cart.",
+        message="The twin does not keep up with its cart.",
     )
 
 
@@ -331,7 +331,7 @@ def test_sync_backwards(submission):
 @pytest.mark.task("sync")
 @pytest.mark.points(1)
 def test_sync_some_late(submission):
-    """A twin keeps up although one measurement in three comes late"""
+    """A twin keeps up even when one measurement in three comes late"""
     message = "With measurements that come late and out of order, the twin does not stay with its cart."
     twins.expect_keeps_up(submission, np.random.default_rng(6), sign=1.0, late=0.33, message=message)
 
@@ -340,21 +340,21 @@ def test_sync_some_late(submission):
 @pytest.mark.points(0)
 @pytest.mark.requires("sync_follows")  # a twin that never changes passes this one as well
 def test_sync_keeps(submission):
-    """The old twin is kept, the same call gives the same twin again, and the memory stays small"""
+    """The old twin is unchanged, the same call gives the same twin again, and the memory stays small"""
     twins.expect_twin_contract(submission, np.random.default_rng(7))
 
 
 @pytest.mark.task("sync")
 @pytest.mark.points(0)
 def test_sync_in_a_loop(submission):
-    """A cart that is driven by what the twin has learned gets back to its speed"""
+    """A cart that is driven with the friction the twin has learned gets back to its speed"""
     twins.expect_sync_closes_loop(submission, np.random.default_rng(8))
 
 
 @pytest.mark.task("command")
 @pytest.mark.points(3)
 def test_command_balances(submission):
-    """At the target speed, the drive is as large as the friction that the twin believes in"""
+    """At the target speed, the drive balances the twin's friction"""
     cases = [(0.5, 1.0), (0.8, 1.0), (0.8, 0.4), (0.6, -0.7), (0.8, 0.0)]
     twins.expect_drives(submission, cases)
 
@@ -362,5 +362,5 @@ def test_command_balances(submission):
 @pytest.mark.task("command")
 @pytest.mark.points(0)
 def test_command_in_a_loop(submission):
-    """Driven by command, carts whose friction jumps get to their speed and back to it, both ways"""
+    """Driven by command, carts whose friction jumps reach their speed and return to it, in both directions"""
     twins.expect_command_closes_loop(submission, np.random.default_rng(9))

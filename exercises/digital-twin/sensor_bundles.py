@@ -49,7 +49,7 @@ def expect_counts(counts, theta, counts_per_rev):
     )
     kit.expect_true(
         whole,
-        "The counts do not come as whole numbers.",
+        "The counts are not integers.",
         input=given,
         diagnose=sensors.named("COUNTS_AS_FLOATS"),
     )
@@ -76,8 +76,8 @@ def expect_no_mean(values, spread, quantity, diagnose, **finding):
         source="the README's share of the std",
         quantity=f"mean of {quantity}",
         units="rad/s",
-        message="On the whole, noise or steps go one way: their mean is not zero.",
-        help="A standard normal number is as often negative as positive; nothing is added to it.",
+        message="The mean of the noise or of the bias steps is not zero.",
+        help="A standard normal number is negative as often as positive; add nothing to it.",
         diagnose=diagnose,
         **finding,
     )
@@ -121,7 +121,7 @@ def expect_white(submission, calls, rel, source):
             "Without a walk, the spread of the measured rate is not noise_density / sqrt(dt).",
             lambda: sensors.of_imu(submission),
             quantity="std of measured - bias",
-            help="A density is per square root of hertz: how many samples share a second?",
+            help="A noise density is per square root of hertz: how many samples are there in a second?",
             input={"dt": dt, "noise_density": density, "bias_random_walk": 0.0, "samples": len(true)},
         )
 
@@ -140,7 +140,7 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
             quantity=f"variance of the bias over {m} samples",
             units="(rad/s)²",
             input={"dt": dt, "bias_random_walk": walk, "noise_density": 0.0, "samples": n},
-            message="The bias does not wander as a random walk of its strength does.",
+            message="The bias does not wander as a random walk of this strength should.",
             help="Independent steps add up: the variance grows with the time between two samples.",
             diagnose=lambda: sensors.of_imu(submission, bias_first=True),
         )
@@ -193,7 +193,7 @@ def expect_gyroscope_draws(submission, seed, dt):
     )
     kit.expect_true(
         repeats,
-        "The generator that is passed in does not decide about the noise and the walk.",
+        "The noise and the bias do not come from the generator that is passed in.",
         help="Draw both from rng and from nothing else.",
         diagnose=lambda: sensors.of_randomness(submission),
     )
@@ -207,7 +207,8 @@ def expect_gyroscope_draws(submission, seed, dt):
         source="six times the scatter of a correlation from 4000 samples",
         quantity="largest correlation",
         input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
-        message="White noise and steps of the bias are not independent of each other and of their own past.",
+        message="The white noise and the bias steps are not independent of each other and of earlier "
+        "samples.",
         help="Draw two arrays of standard normal numbers, and sum up only one of them.",
         diagnose=lambda: sensors.of_imu(submission),
     )
@@ -327,14 +328,14 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     # Half a std from zero or from r_max, three in ten readings go beyond: 0.2 is sixteen stds away.
     kit.expect_true(
         bool(np.all(near >= 0.0) and np.mean(near == 0.0) > 0.2),
-        "Very close to a wall, the noise is not cut off at zero.",
-        help="No distance is below zero: np.maximum(..., 0.0) after the noise.",
+        "Very close to a wall, the noise makes readings negative.",
+        help="A distance cannot be negative: apply np.maximum(..., 0.0) after the noise.",
         input=given,
         diagnose=ask,
     )
     kit.expect_true(
         bool(np.mean(far > r_max) > 0.2),
-        "Close to the end of its reach, the noise of a hit is cut off at r_max.",
+        "Close to the maximum range, readings of hits are cut off at r_max.",
         help="Whether a beam hits is decided without noise; what the noise makes of the reading stays.",
         input=given,
         diagnose=ask,
@@ -348,7 +349,7 @@ def expect_scan_draws(submission, seed):
     scans = [kit.as_vector(v, 20, "ranges") for v in submission.call_each("lidar", calls)]
     kit.expect_true(
         np.array_equal(scans[0], scans[1]) and not np.any(scans[0] == scans[2]),
-        "The generator that is passed in does not decide about the noise of every hit.",
+        "The noise of the hits does not come from the generator that is passed in.",
         help="Draw from rng and from nothing else.",
         diagnose=lambda: sensors.of_scan_draws(submission),
     )

@@ -45,7 +45,7 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
         quantity="t",
         units="s",
         t=truth[:, 0],
-        message="The twin's time is not the latest time that it has heard of.",
+        message="The twin's time is not the latest time that it has received.",
         help='Return "t": max(twin["t"], t_measured).',
         diagnose=ask,
     )
@@ -74,8 +74,8 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
         quantity="rms error of the speed",
         units="m/s",
         input={"measurements": len(calls), "twin": twin},
-        message="The twin keeps up with the position, and its speed is not that of the cart.",
-        help="Predict the speed with drive and friction, then correct it by a share of the surprise.",
+        message="The twin keeps up with the position, but its speed is not that of the cart.",
+        help="Predict the speed from the drive and the friction, then correct it by a share of the surprise.",
         diagnose=ask,
     )
     for start, stop, friction in frictions:
@@ -91,7 +91,7 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
             units="1/s",
             input={"from": start, "to": stop, "sigma": twin["sigma"]},
             message="The twin keeps up with the position, but it has not found the friction behind it.",
-            help="A surprise that keeps its sign says that the friction is wrong.",
+            help="A surprise that keeps its sign shows that the friction is wrong.",
             diagnose=ask,
         )
     return folded
@@ -111,8 +111,9 @@ def _expect_no_flight(rows, given, ask):
     grew = np.abs(rows[max(first - 3, 0) : first]).max(initial=0.0) > 1e2
     if grew or np.all(np.isfinite(rows[first])):
         kit.fail(
-            "The twin runs away: its state grows beyond anything that a cart can have.",
-            help="A correction has to pull towards the measurement, and each step to be as long as it took.",
+            "The twin diverges: its state becomes larger than any cart's can be.",
+            help="A correction must move the twin towards the measurement, and each prediction must cover "
+            "the time since the last.",
             diagnose=ask,
             input={**given, "measurement": first},
             expected={"at most": _FLOWN},
@@ -136,8 +137,8 @@ def expect_drives(submission, cases):
         quantity="drive",
         units="m/s²",
         input={"friction, target speed": cases},
-        message="At the target speed, the drive does not balance the friction that the twin believes in.",
-        help="There dv/dt = drive - friction * speed has to be zero.",
+        message="At the target speed, the drive does not balance the twin's friction.",
+        help="At that speed dv/dt = drive - friction * speed must be zero.",
         diagnose=lambda: twins.of_command(submission),
     )
 
@@ -187,7 +188,7 @@ def expect_twin_contract(submission, rng):
     again = submission.call_each("sync", [(folded[i], *run.calls[i]) for i in picks])
     kit.expect_true(
         all(twins.same(value, folded[i + 1]) for value, i in zip(again, picks, strict=True)),
-        "Given an earlier twin and its measurement once more, sync returns another twin than the first time.",
+        "Given the same earlier twin and measurement again, sync returns a different twin.",
         help='Everything that sync remembers has to be in twin["memory"].',
         diagnose=twins.named("GLOBAL_MEMORY"),
     )
@@ -203,7 +204,7 @@ def expect_twin_contract(submission, rng):
                 source="it is not for sync to change",
                 quantity=key,
                 units=units,
-                message=f"The {key} of the twin that comes out is not that of the twin that went in.",
+                message=f"The {key} of the returned twin is not that of the twin that was passed in.",
                 diagnose=twins.named("DRIVE_CHANGED"),
             )
     held, before = (twins.numbers_in(folded[i]["memory"]) for i in (-1, len(folded) // 2))
@@ -214,7 +215,7 @@ def expect_twin_contract(submission, rng):
         quantity="numbers in the memory after 16 s",
         input={"after 8 s": before},
         message="The memory grows with the length of the run.",
-        help="Keep the last second or two of the history, and drop what is older.",
+        help="Keep the last second or two of the history, and discard what is older.",
         diagnose=twins.named("MEMORY_GROWS"),
     )
 
@@ -261,7 +262,7 @@ def expect_sync_closes_loop(submission, rng):
             quantity="friction",
             units="1/s",
             input=given,
-            message="The twin's friction has left anything that a cart can have.",
+            message="The twin's friction has become a value that no cart can have.",
             diagnose=ask,
         )
         twin = {**folded[-1], "drive": friction * target}
@@ -285,7 +286,7 @@ def expect_sync_closes_loop(submission, rng):
         quantity="friction",
         units="1/s",
         input=given,
-        message="In the loop, the twin does not find the friction.",
+        message="In the closed loop, the twin does not find the friction.",
         diagnose=ask,
     )
 
@@ -321,8 +322,8 @@ def expect_command_closes_loop(submission, rng):
             quantity="largest drive",
             units="m/s²",
             input={**given, "time": step * k, "speeds": v},
-            message="A cart that is driven by command runs away.",
-            help="A correction has to vanish at the target speed, and to push towards it on either side.",
+            message="A cart that is driven by command keeps getting faster.",
+            help="A correction must be zero at the target speed, and push towards it on both sides.",
             diagnose=ask,
         )
         a = drives - b * v
@@ -342,6 +343,6 @@ def expect_command_closes_loop(submission, rng):
         quantity="speed over the last three seconds, as a share of the target",
         input={**given, "speeds": reached},
         message="A cart that is driven by command does not hold its speed after its friction has changed.",
-        help="The drive comes from the friction that the twin has learned and from the speed asked for.",
+        help="Compute the drive from the friction that the twin has learned and from the target speed.",
         diagnose=ask,
     )

@@ -133,7 +133,7 @@ def engine(case: Case) -> Any:
             answer = case.box.run(*values)
         except (TypeError, ValueError, OverflowError) as error:
             kit.fail(
-                "Your code runs the engine with arguments that it refuses.",
+                "Your code calls the engine with arguments that it does not accept.",
                 help="Call engine.run(scene, q0, v0, h, n, force): a scene's name, as many coordinates as it "
                 "has in q0, v0 and force, a positive step, a whole number of steps.",
                 diagnose="ENGINE_MISUSED",

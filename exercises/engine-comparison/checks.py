@@ -68,7 +68,7 @@ def test_order(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_symplectic(submission, draw):
-    """Of anvil, balsa and cork it is known which one keeps area"""
+    """The report says which of anvil, balsa and cork conserve area"""
     judging.expect_key(known(submission, draw), "symplectic", SPARED)
 
 
@@ -89,7 +89,7 @@ def test_max_stable_step(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(0)
 def test_max_stable_step_at_its_ends(submission, draw):
-    """Zero, infinity and the first of two limits are found (no points here, they count in the grading run)"""
+    """Zero, infinity and the first of two limits are found (no points here; they count in the grading run)"""
     found = known(submission, draw) if draw is not None else ends(submission)
     judging.expect_key(found, "max_stable_step", SPARED)
 
@@ -97,14 +97,14 @@ def test_max_stable_step_at_its_ends(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_friction_anisotropy(submission, draw):
-    """Of anvil, balsa and cork it is known how much harder a diagonal push must be"""
+    """How much harder a diagonal push must be is found for anvil, balsa and cork"""
     judging.expect_key(known(submission, draw), "friction_anisotropy", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_rest_penetration(submission, draw):
-    """Of anvil, balsa and cork it is known how deep a body sinks into the floor"""
+    """How deep a body sinks into the floor is found for anvil, balsa and cork"""
     judging.expect_key(known(submission, draw), "rest_penetration", SPARED)
 
 
@@ -118,28 +118,28 @@ def test_restitution(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_tunnelling_speed(submission, draw):
-    """Of anvil, balsa and cork it is known at which speed bodies get through the wall"""
+    """The speed at which bodies get through the wall is found for anvil, balsa and cork"""
     judging.expect_key(known(submission, draw), "tunnelling_speed", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_deterministic(submission, draw):
-    """Of anvil, balsa and cork it is known which one never repeats itself"""
+    """The report says which of anvil, balsa and cork never repeats itself"""
     judging.expect_key(known(submission, draw), "deterministic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_report_complete(submission, draw):
-    """The report has its nine keys and no other, each with a value"""
+    """The report has exactly its nine keys, each with a value"""
     judging.expect_complete(known(submission, draw))
 
 
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(3)
 def test_choose_by_report(submission, draw):
-    """Of anvil, balsa and cork the cheapest that meets every requirement is chosen"""
+    """Of anvil, balsa and cork, the cheapest that meets every requirement is chosen"""
     reports = _priced(cork=5.0, anvil=8.0, balsa=1.0)
     needs = [need("order", ">=", 2)]
     told = asked(
@@ -172,7 +172,7 @@ def _priced(**costs):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(2)
 def test_choose_nothing(submission, draw):
-    """None is chosen where no engine meets every requirement or one was not measured, and only there"""
+    """None is returned where no engine meets every requirement, or one was not measured, and only there"""
     reports = {
         "anvil": {**boxes.TRUTH["anvil"], "cost": 2.0, "noise_db": None},
         "balsa": {**boxes.TRUTH["balsa"], "cost": 1.0},
@@ -228,5 +228,5 @@ def test_facts_complete(submission):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(3)
 def test_facts_sources(submission):
-    """Every fact names an address as its source and a day on which it held"""
+    """Every fact has a web address as its source, and a date on which it was true"""
     listing.expect_sources(listing.entries(submission))

@@ -33,10 +33,10 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
             )
         if answer != expected:
             kit.fail(
-                "No engine meets every requirement, and one is chosen all the same."
+                "No engine meets every requirement, but one is chosen."
                 if expected is None
-                else "It is not the cheapest engine that meets every requirement.",
-                help="Keep the engines that meet all requirements, then take the one with the least cost.",
+                else "The chosen engine is not the cheapest that meets every requirement.",
+                help="Keep the engines that meet all requirements, then take the one with the lowest cost.",
                 diagnose=lambda: _of_choices(submission, questions, answers),
                 input=given,
                 expected=expected,

@@ -13,25 +13,25 @@ probes = kit.companion("engine-comparison", "probes")
 #: What a wrong value under each key means, without values.
 MESSAGES = {
     "order": "The order of convergence on the spring is wrong.",
-    "symplectic": "Whether one spring step keeps area is answered wrongly.",
+    "symplectic": "The answer to whether one spring step conserves area is wrong.",
     "linear_damping": "The rate at which a free body slows down is wrong.",
     "max_stable_step": "The largest stable step on the spring is wrong.",
-    "friction_anisotropy": "The ratio of the sliding forces, diagonal to straight, is wrong.",
-    "rest_penetration": "How deep a resting body lies in the floor is wrong.",
-    "restitution": "The ratio of speeds after and before the wall is wrong.",
+    "friction_anisotropy": "The ratio of the sliding forces, along the diagonal to along x, is wrong.",
+    "rest_penetration": "The depth of a resting body in the floor is wrong.",
+    "restitution": "The ratio of the speeds after and before the hit is wrong.",
     "tunnelling_speed": "The largest speed at which the wall stops every body is wrong.",
-    "deterministic": "Whether the engine repeats itself is answered wrongly.",
+    "deterministic": "The answer to whether the engine repeats itself is wrong.",
 }
 
 HELP = {
     "order": "Compare the engine with itself at h, h/2 and h/4 over one fixed time.",
     "symplectic": "Build the matrix of one spring step from two runs with n = 1; look at its determinant.",
-    "linear_damping": "A free body without a force: how does ln|v| fall as the step gets small?",
-    "max_stable_step": "Walk up from the smallest step; the eigenvalues of a step say if it is stable.",
+    "linear_damping": "Take a body without a force: how fast does ln|v| fall when the step is very small?",
+    "max_stable_step": "Increase the step from the smallest; its eigenvalues say whether it is stable.",
     "friction_anisotropy": "Let the body settle, then bisect the force along x and along the diagonal.",
-    "rest_penetration": "Put the body down, wait, and compare its height with its radius.",
+    "rest_penetration": "Place the body on the floor, wait, and compare its height with its radius.",
     "restitution": "Start close to the wall; compare the samples on either side of the hit.",
-    "tunnelling_speed": "For each speed it is the unluckiest start that counts.",
+    "tunnelling_speed": "For each speed, the worst starting position counts.",
     "deterministic": "Make the same run of a moving body twice.",
 }
 
@@ -85,7 +85,7 @@ def _expect_kind(case: Any, key: str) -> None:
             source="a whole number",
             quantity=key,
             input={"engine": case.name},
-            message="`order` is not a number that could be rounded.",
+            message="`order` is not a finite number.",
             help="Print the two differences and their ratio.",
         )
     if not number.is_integer():

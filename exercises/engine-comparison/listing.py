@@ -54,7 +54,7 @@ def expect_complete(listed: list[dict[str, Any]]) -> None:
     for engine, field in pairs:
         if engine not in ENGINES or field not in FIELDS:
             kit.fail(
-                "An entry is about an engine or a field that nobody asked for.",
+                "An entry is about an engine or a field that the README does not list.",
                 help=f"The engines are {', '.join(ENGINES)}; the fields are {', '.join(FIELDS)}.",
                 actual=[engine, field],
             )
@@ -62,7 +62,7 @@ def expect_complete(listed: list[dict[str, Any]]) -> None:
         if pairs.count(pair) != 1:
             missing = pairs.count(pair) == 0
             kit.fail(
-                "The list is not complete." if missing else "The list says something twice.",
+                "The list is not complete." if missing else "The list has an entry twice.",
                 diagnose=named("PAIR_MISSING" if missing else "PAIR_TWICE"),
                 expected="one entry",
                 actual={"/".join(pair): pairs.count(pair)},
@@ -86,7 +86,7 @@ def _expect_kind(entry: dict[str, Any]) -> None:
         text = kit.as_text(value, name)
         if field == "default_integrator" and text not in INTEGRATORS:
             kit.fail(
-                "A default integrator is none of those that the README lists.",
+                "A default integrator is not one of those that the README lists.",
                 help=f"Use one of {', '.join(INTEGRATORS)}.",
                 actual=text,
             )
@@ -105,7 +105,7 @@ def expect_sources(listed: list[dict[str, Any]]) -> None:
         source = kit.as_text(entry["source"], "a source")
         if not _ADDRESS.fullmatch(source.strip()) or any(host in source for host in _NO_SOURCE):
             kit.fail(
-                "A fact has no source that can be opened.",
+                "The source of a fact cannot be opened.",
                 diagnose=named("SOURCE_NOT_A_URL"),
                 input=about,
                 actual=source,
@@ -113,7 +113,7 @@ def expect_sources(listed: list[dict[str, Any]]) -> None:
         day = date_of(entry)
         if day is None or day.year < 2001:
             kit.fail(
-                "A fact does not say when it held.",
+                "A fact has no valid date.",
                 diagnose=named("NOT_A_DATE"),
                 input=about,
                 actual=entry["as_of"],
@@ -121,7 +121,7 @@ def expect_sources(listed: list[dict[str, Any]]) -> None:
         # A day's grace: the date line runs between a student and the grader.
         if day > datetime.datetime.now(tz=datetime.UTC).date() + datetime.timedelta(days=1):
             kit.fail(
-                "A fact says that it will hold some day.",
+                "The date of a fact lies in the future.",
                 diagnose=named("DATE_AHEAD"),
                 input=about,
                 actual=entry["as_of"],

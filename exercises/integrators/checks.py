@@ -50,7 +50,7 @@ def test_explicit_euler_growth(submission, draw):
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(5)
 def test_semi_implicit_energy(submission, draw):
-    """Semi-implicit Euler's energy on a spring swings within its bound and never drifts"""
+    """Semi-implicit Euler's energy on a spring oscillates within its bound and never drifts"""
     # At this z 400 samples come near the extreme, whatever the spring and the amplitude.
     task, omega, z, n, q0 = "semi_implicit_euler_step", 2.0, 0.54, 400, [1.0]
     if draw is not None:
@@ -65,9 +65,9 @@ def test_semi_implicit_energy(submission, draw):
         source="closed form from rest; 400 samples come within 0.1 % of the extreme",
         quantity="max |dE|/E0",
         input={"omega": omega, "h": h, "steps": n, "q0": q0, "v0": [0.0]},
-        message="From rest on a spring, semi-implicit Euler's energy swings by z/(2 - z) with z = h*omega; "
+        message="From rest on a spring, semi-implicit Euler's energy varies by z/(2 - z) with z = h*omega; "
         "yours does not.",
-        help="One half of the state moves with the other half's new value.",
+        help="One half of the state is updated with the other half's new value.",
         diagnose=lambda: probes.of_swing(
             submission, task, swing, z / (2 - z), (spring, q0, [0.0], h, n, 0.0)
         ),
@@ -131,7 +131,7 @@ def test_integrate_samples(submission, draw):
         t,
         n + 1,
         message="integrate does not return one sample more than there are steps.",
-        help="N = round(t_end / h) steps join N + 1 states.",
+        help="N = round(t_end / h) steps connect N + 1 states.",
         input=given,
         diagnose=lambda: probes.of_count(submission),
     )
@@ -193,7 +193,7 @@ def test_integrate_counts(submission, draw):
                 name=name,
                 input=given,
                 message="The number of samples is not N + 1 with N = round(t_end / h).",
-                help="In floating point, t_end / h may fall just beside a whole number.",
+                help="In floating point, t_end / h may come out just below or above a whole number.",
                 diagnose=lambda: probes.of_count(submission),
             )
 
@@ -214,7 +214,7 @@ def _awkward(draw):
 @pytest.mark.task("observed_order")
 @pytest.mark.points(4)
 def test_observed_order_slope(submission, draw):
-    """observed_order finds the power that errors were made with"""
+    """observed_order finds the power of h that the errors were made with"""
     hs, orders = [0.1, 0.05, 0.025, 0.0125], ((3.0, 1.0), (0.2, 2.0), (7.0, 4.0))
     if draw is not None:
         hs = (0.3 * np.cumprod(draw.uniform(0.4, 0.7, 4))).tolist()
@@ -307,7 +307,7 @@ def test_integrate_arguments(submission):
     q = kit.as_array(q, (n + 1, 2), "q")
     kit.expect_true(
         not np.array_equal(q, np.trunc(q)),
-        "From whole numbers, integrate goes through whole numbers only.",
+        "From an initial state of whole numbers, integrate produces whole numbers only.",
         input=given,
         diagnose=lambda: probes.named("INTEGER_STATE"),
     )
@@ -352,7 +352,8 @@ def _expect_clean(submission, task):
             source="the same step from the same state as floats",
             quantity=name,
             input=given,
-            message="From whole numbers the step gives something else than from the same state as floats.",
+            message="From a state of whole numbers the step gives a different result than from the same "
+            "state as floats.",
             diagnose=lambda: probes.of_whole_numbers(submission, task),
         )
 

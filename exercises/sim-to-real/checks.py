@@ -26,7 +26,7 @@ def test_plan_complete(submission):
     sources = sorted({gap["source"] for gap in gaps})
     kit.expect_true(
         len(sources) >= 3,
-        "The plan looks at too few sources of the gap.",
+        "The plan names too few sources of the gap.",
         diagnose=named("TOO_FEW_SOURCES"),
         actual=sources,
     )
@@ -34,7 +34,7 @@ def test_plan_complete(submission):
     threshold = kit.as_number(plan["threshold"], "threshold")
     kit.expect_true(
         plan["metric"] == "success" and 0.90 <= threshold < 1.0,
-        "The plan does not say what would make it a success.",
+        "The plan does not say what counts as success.",
         diagnose=lambda: words.of_promise(plan["metric"], threshold),
         expected=["success", "0.90 or more and below 1"],
         actual=[plan["metric"], threshold],
@@ -44,7 +44,7 @@ def test_plan_complete(submission):
 @pytest.mark.task("plan")
 @pytest.mark.points(2)
 def test_plan_gaps_at_home(submission):
-    """Each gap is measured on three carts that you may look at, and its threshold can be kept and matters"""
+    """Each gap is measured on three public carts, and its threshold can be met and means something"""
     plan = submission.call("plan")
     seconds = words.budget_of(plan)
     for i, gap in enumerate(words.gaps_of(plan)):
@@ -55,7 +55,7 @@ def test_plan_gaps_at_home(submission):
 @pytest.mark.task("plan")
 @pytest.mark.points(4)
 def test_plan_box(submission):
-    """The randomisation box is as wide as the fleet, and no wider than half as much again"""
+    """The randomisation box is as wide as the fleet, and at most one and a half times as wide"""
     box = words.box_of(kit.as_record(submission.call("plan"), words.PLAN_KEYS))
     for name in cart.NAMES:
         for fits, expected in (
@@ -75,7 +75,7 @@ def test_plan_box(submission):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(3)
 def test_excitation_obeys(submission):
-    """The excitation lasts as long as asked and keeps within the bench's force"""
+    """The excitation has the required length and stays within the bench's force"""
     cases = [(20.0, 3.0), (12.5, 3.0), (8.2, 1.7)]  # 100 * 8.2 is 819.9999999999999
     given = [(*case, np.random.default_rng(7)) for case in cases]
     for case, value in zip(cases, submission.call_each("design_excitation", given), strict=True):
@@ -103,7 +103,7 @@ def test_excitation_shorter_and_weaker(submission):
 @pytest.mark.task("identify")
 @pytest.mark.points(7)
 def test_identify_public(submission):
-    """identify finds mass, frictions and lag of the public cart from a bench recording"""
+    """identify finds mass, both frictions and lag of the public cart from a bench recording"""
     recordings, carts = judge.public_recordings()
     values = probes.patient(lambda: submission.call_each("identify", recordings), "IDENTIFY_TOO_SLOW")
     judge.expect_accurate([probes.estimate_of(value) for value in values], carts, recordings)
@@ -112,7 +112,7 @@ def test_identify_public(submission):
 @pytest.mark.task("identify")
 @pytest.mark.points(4)
 def test_identify_intervals(submission):
-    """Each interval holds its value, and says what its recording holds: no more, and not much less"""
+    """Each interval contains its value, and is about as wide as its recording allows"""
     recordings, carts = judge.public_recordings()
     both = [*recordings, *judge.weak_recordings()]
     values = probes.patient(lambda: submission.call_each("identify", both), "IDENTIFY_TOO_SLOW")
@@ -129,14 +129,14 @@ def test_identify_intervals(submission):
 @pytest.mark.task("tune")
 @pytest.mark.points(7)
 def test_tune_public(submission):
-    """With the gains from tune, a fleet of the public type settles nearly as soon as any gains allow"""
+    """With the gains from tune, a fleet of the public type settles almost as soon as any gains allow"""
     _expect_tuned(submission, cart.MATCHED, None, cart.PUBLIC_BEST_S)
 
 
 @pytest.mark.task("tune")
 @pytest.mark.points(3)
 def test_tune_other_fleets(submission):
-    """Asked about other boxes, one loaded and late, one light and prompt, tune finds the gains for these"""
+    """For other boxes, one heavy and late, one light and prompt, tune finds the right gains"""
     for box, best in ((cart.LOADED, cart.LOADED_BEST_S), (cart.PROMPT, cart.PROMPT_BEST_S)):
         _expect_tuned(submission, box, box, best)
 
@@ -151,7 +151,7 @@ def _expect_tuned(submission, asked, drawn, best):
         low=judge.PASS,
         source="correct solutions reach 0.97 and more (tests/benchmarks/calibration/sim-to-real.md)",
         quantity="success: best mean settling over own",
-        message="The fleet settles later than it could.",
+        message="With these gains the fleet settles later than it could.",
         input={"kp": gains[0], "kd": gains[1], "box": asked, "best mean settling, s": best},
         diagnose=lambda: probes.of_gains(
             submission, estimate, asked, gains, lambda kp, kd: cart.public_success(kp, kd, drawn)[0]

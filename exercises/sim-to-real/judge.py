@@ -80,7 +80,7 @@ def expect_shows(u, carts):
             high=cart.SCORED[name],
             source="the accuracy asked of identify; random full force reaches a quarter of it",
             quantity=f"narrowest possible 95 % half-width of {name}, as a share",
-            message="A recording with this excitation cannot show every parameter, whoever evaluates it.",
+            message="No method could determine every parameter from a recording with this excitation.",
             input={"parameter": name},
             diagnose=lambda: probes.of_command(u),
         )
@@ -123,7 +123,7 @@ def expect_kept(i, gap, seconds, carts, seed):
     else:
         return
     kit.fail(
-        "A gap of the plan was executed, and its measurement did not come out as the plan says.",
+        "When a gap of the plan was executed, its measurement did not give what the plan says.",
         diagnose=named(wrong),
         input={"gap": i, "parameter": gap["parameter"], "excitation": gap["excitation"]},
         expected=[reach, needed],
@@ -166,7 +166,7 @@ def expect_accurate(estimates, carts, recordings=()):
                 quantity=name,
                 units=_UNITS[name],
                 message="A parameter identified from a bench recording is too far from the cart's own.",
-                help="Try it on a recording that you make yourself with `record`, where you know the cart.",
+                help="Try it on a recording that you make with `record` from a cart that you know.",
                 input={"parameter": name},
                 diagnose=lambda: probes.of_values(estimates, carts, recordings),
             )
@@ -191,7 +191,7 @@ def expect_intervals(estimates, carts):
         for name, (value, low, high) in estimate.items():
             kit.expect_true(
                 low <= value <= high and low < high,
-                "An interval does not hold its own value.",
+                "An interval does not contain its own value.",
                 diagnose=named("INTERVAL_REVERSED"),
                 input={"parameter": name},
                 actual=[value, low, high],
@@ -204,7 +204,7 @@ def expect_intervals(estimates, carts):
                 source="the README's; correct solutions use a third of it",
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
-                message="An interval is wider than what is of use.",
+                message="An interval is too wide to be useful.",
                 diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
                 input={"parameter": name, "value": value},
             )
@@ -229,7 +229,7 @@ def expect_honest_widths(estimates, recordings, carts):
             high=WIDEST,
             source="the README's; correct solutions are 1 to 8 times as wide",
             quantity=f"mean half-width of {name} over the narrowest possible",
-            message="The intervals are far wider than what the recordings hold.",
+            message="The intervals are far wider than the recordings require.",
             diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
             input={"parameter": name},
         )
@@ -247,7 +247,7 @@ def expect_growth(full, weak, carts):
         low=WIDER,
         source="the README's; those of correct solutions are 2.4 to 13 times as wide",
         quantity="half-widths from the weak recordings over those from the full ones, geometric mean",
-        message="The intervals do not grow when the recording tells less.",
+        message="The intervals do not get wider when the recording contains less information.",
         diagnose=lambda: probes.of_values(full, carts) or named("INTERVAL_WITHOUT_RECORDING"),
         input={"weak recordings": "8 s at 1.2 N", "full ones": "20 s at 3 N"},
     )
@@ -266,7 +266,7 @@ def expect_truth(estimates, carts, recordings, most):
         high=most,
         source="the README's; tests/benchmarks/calibration/sim-to-real.md",
         quantity="intervals that miss the truth when doubled",
-        message="Intervals twice as wide as those of identify miss the truth too often.",
+        message="Even intervals twice as wide as those of identify miss the true value too often.",
         diagnose=lambda: probes.of_misses(estimates, carts, recordings),
         input={"intervals": total},
     )

@@ -29,7 +29,7 @@ def patient(call, slow):
     except kit.StudentFailure as failure:
         if failure.kind != "timeout":
             raise
-        kit.fail("It is too slow to be executed.", diagnose=named(slow))
+        kit.fail("The call takes too long.", diagnose=named(slow))
 
 
 def command_of(value, seconds, u_max):
@@ -43,13 +43,13 @@ def command_of(value, seconds, u_max):
     kit.expect_length(
         u,
         round(100 * seconds),
-        message="The excitation does not last as long as asked.",
+        message="The excitation does not have the required length.",
         diagnose=named("WRONG_LENGTH"),
         input=given,
     )
     kit.expect_true(
         bool(np.all(np.isfinite(u))),
-        "The excitation is not made of finite numbers.",
+        "The excitation contains values that are not finite numbers.",
         diagnose=named("NOT_FINITE"),
         input=given,
     )
@@ -59,7 +59,7 @@ def command_of(value, seconds, u_max):
         source="the bench's force, with room for rounding",
         quantity="largest force",
         units="N",
-        message="The excitation asks for more force than the bench gives.",
+        message="The excitation commands more force than the bench can give.",
         diagnose=named("EXCITATION_SATURATES"),
         input=given,
     )
@@ -101,7 +101,7 @@ def gains_of(value):
     record = kit.as_record(value, ("kp", "kd"))
     kp, kd = (kit.as_number(record[k], k) for k in ("kp", "kd"))
     if not (abs(kp) < 1e6 and abs(kd) < 1e6):  # NaN too; beyond it the rollout itself would overflow
-        kit.fail("A gain is not a finite number of ordinary size.", diagnose=named("NOT_FINITE"))
+        kit.fail("A gain is not a finite number of reasonable size.", diagnose=named("NOT_FINITE"))
     if kp < 0 or kd < 0:
         kit.fail("A gain has the wrong sign.", diagnose=named("GAINS_NEGATIVE"), actual=[kp, kd])
     return kp, kd

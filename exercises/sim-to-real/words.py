@@ -77,7 +77,7 @@ def budget_of(plan):
     seconds = kit.as_number(plan["excitation_budget_s"], "excitation_budget_s")
     if not 0.0 < seconds <= cart.BUDGET_S:
         kit.fail(
-            "The plan's bench time is not what the bench allows.",
+            "The plan's bench time is not within what the bench allows.",
             diagnose=named("BUDGET_EXCEEDED"),
             expected=[0.0, cart.BUDGET_S],
             actual=seconds,
@@ -95,7 +95,7 @@ def box_of(plan):
     box = plan["randomization"]
     if not isinstance(box, dict) or set(box) != set(cart.NAMES):
         kit.fail(
-            "The randomisation box does not say for each parameter how far to draw.",
+            "The randomisation box does not give an interval for each parameter.",
             diagnose=named("BOX_LACKS"),
             expected=list(cart.NAMES),
             actual=box,
@@ -106,7 +106,7 @@ def box_of(plan):
         if not (0.0 < low <= high < math.inf):
             logarithms = low < 0 < high and math.isclose(-low, high)
             kit.fail(
-                "An interval of the randomisation box is not one of positive factors.",
+                "An interval of the randomisation box does not consist of positive factors.",
                 diagnose=named("BOX_IN_LOGARITHMS" if logarithms else "BOX_REVERSED"),
                 input={"parameter": name},
                 actual=[low, high],

@@ -166,8 +166,8 @@ def expect_numbers(report, sim, right, shown):
     kit.expect_equal(
         sorted(used),
         sorted(right.used),
-        message="The verdict rests on other runs than it should.",
-        help="Use the runs that both sides have, without those the simulation was calibrated on.",
+        message="The verdict is based on the wrong runs.",
+        help="Use the runs that both lists have, without those on which the simulation was calibrated.",
         input=shown,
         diagnose=lambda: probes.of_used(used, sim),
     )
@@ -227,7 +227,7 @@ def _expect_intervals(report, right, shown):
             abs=1e-9 + END_SHARE * right.half(key),
             source="three digits of Student's t",
             quantity=f"{key} interval",
-            message=f"The interval of `{key}` does not reach from lo to hi as it should.",
+            message=f"The interval of `{key}` has the wrong ends.",
             diagnose=lambda: probes.of_interval(ends, right),
             **words,
         )
@@ -237,7 +237,7 @@ def _expect_intervals(report, right, shown):
         abs=LAG_END_SHARE * right.dt + 0.03 * right.half("lag_s"),
         source="the search for the lag with one run or another left out",
         quantity="lag_s interval",
-        message="The interval of `lag_s` does not reach from lo to hi as it should.",
+        message="The interval of `lag_s` has the wrong ends.",
         diagnose=lambda: probes.of_lag_interval(report["lag_s"], right),
         **words,
     )
@@ -255,7 +255,7 @@ def _expect_conclusion(report, right, spec, shown):
         reasons,
         expected,
         message="The reasons are not the ones that apply.",
-        help="A reason for each interval that leaves its margin, sorted by alphabet.",
+        help="Give one reason for each interval that reaches beyond its margin, in alphabetical order.",
         input=shown,
         diagnose=lambda: probes.of_reasons([(reasons, expected)]),
     )
@@ -268,7 +268,7 @@ def expect_accepted(report, accepted, shown):
         kit.as_bool(report["accepted"], "accepted"),
         accepted,
         message="`accepted` is wrong.",
-        help="A simulation is accepted where there is no reason against it.",
+        help="A simulation is accepted exactly where there is no reason against it.",
         input=shown,
         diagnose=named("VERDICT_AGAINST_REASONS"),
     )
@@ -292,7 +292,7 @@ def expect_margins(submission, case, right):
             reasons,
             expected,
             message="The reasons are not the ones that apply.",
-            help="A reason for each interval that leaves its margin: no more, and no fewer.",
+            help="Give one reason for each interval that reaches beyond its margin: no more, and no fewer.",
             input=shown,
             diagnose=lambda: probes.of_reasons(
                 [(r, right.reasons(s)) for r, s in zip(found, specs, strict=True)]
@@ -330,11 +330,10 @@ def expect_nothing(submission, case, spec, right, shown):
         and told
         and kit.as_bool(report["accepted"], "accepted") is False
         and len(used) == len(right.used),
-        "A single run is left to judge by, and the report does not say that and nothing else."
+        "A single run is left to judge by, and the report does not say exactly that."
         if single
-        else "Every run was used to calibrate the simulation, and the report does not say that and nothing "
-        "else.",
-        help="With no run left the only reason is calibration_data and every number is None; with one, the "
+        else "Every run was used to calibrate the simulation, and the report does not say exactly that.",
+        help="With no run left, the only reason is calibration_data and every number is None; with one, the "
         "only reason is single_run. Then intervals is None, and it is not accepted.",
         input=shown,
         actual=report,

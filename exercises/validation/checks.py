@@ -33,7 +33,7 @@ def test_bias_variance_by_hand(submission):
 @pytest.mark.task("bias_variance")
 @pytest.mark.points(1)
 def test_bias_variance_large_mean(submission):
-    """The variance of errors that are large and hardly scatter"""
+    """The variance of errors that are large but scatter little"""
     shared.expect_large_mean(submission, 1e7 + np.array([0.3, 1.1, -0.7, 0.5, 1.9]))
 
 
@@ -54,8 +54,8 @@ def test_wrap_angle_some(submission):
         quantity="angle",
         units="rad",
         input={"e": angles},
-        message="An angle that was moved by whole turns does not come back as it was.",
-        help="Take off whole turns until every angle lies in [-pi, pi).",
+        message="An angle that was shifted by whole turns does not come back unchanged.",
+        help="Subtract whole turns until every angle lies in [-pi, pi).",
     )
     shared.expect_left_alone(inspected, [angles], ["e"])
 
@@ -63,14 +63,14 @@ def test_wrap_angle_some(submission):
 @pytest.mark.task("nees")
 @pytest.mark.points(3)
 def test_nees_by_hand(submission):
-    """NEES of three errors, with a covariance that ties their components together"""
+    """NEES of three errors whose components are correlated"""
     _expect_by_hand(submission, "nees", "err", "P")
 
 
 @pytest.mark.task("nis")
 @pytest.mark.points(2)
 def test_nis_by_hand(submission):
-    """NIS of three innovations, with a covariance that ties their components together"""
+    """NIS of three innovations whose components are correlated"""
     _expect_by_hand(submission, "nis", "nu", "S")
 
 
@@ -90,7 +90,7 @@ def test_consistency_band_table(submission):
                 source="the contract's 1 %",
                 quantity=name,
                 input={"dof": dof, "runs": count, "alpha": alpha},
-                message="The band is not that of an average of chi-square numbers.",
+                message="The band is not that of an average of chi-square values.",
                 help="The sum over the runs is chi-square with dof * runs degrees of freedom: take its "
                 "quantiles at alpha/2 and 1 - alpha/2, and divide both by runs.",
                 diagnose=lambda lo=lo, hi=hi, expected=expected: probes.of_band((lo, hi), expected),
@@ -112,7 +112,7 @@ _TABLE = {
 @pytest.mark.task("coverage")
 @pytest.mark.points(2)
 def test_coverage_counts(submission):
-    """The share of values inside their intervals, those on an end included"""
+    """The fraction of values inside their intervals, including those on an end"""
     y = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
     lo = np.array([-1.0, 1.0, 2.5, 2.0, 4.5, 4.0, 5.0, 6.0])
     hi = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 5.0, 7.0, 8.0])
@@ -129,14 +129,14 @@ def test_bootstrap_width(submission):
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(1)
 def test_bootstrap_resamples(submission):
-    """24 resamples of 250 errors in blocks of 12: each as long as the series, which is left alone"""
+    """24 resamples of 250 errors in blocks of 12: each as long as the series, which stays unchanged"""
     intervals.expect_resamples(submission, 3)
 
 
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(1)
 def test_bootstrap_chance(submission):
-    """The width follows alpha, the statistic is the given one, and all chance comes from rng"""
+    """The width depends on alpha, the given statistic is used, and all random numbers come from rng"""
     statistic = systems.AveragePolynomial([0.0, 0.0, 1.0])
     intervals.expect_level(submission, np.random.default_rng(161), statistic)
 
@@ -144,7 +144,7 @@ def test_bootstrap_chance(submission):
 @pytest.mark.task("energy_error")
 @pytest.mark.points(3)
 def test_energy_error_falling(submission):
-    """The energy of a body that falls, now too slowly, now too fast; zero height is far above it"""
+    """The energy of a body that falls too slowly or too fast; the zero of height is far above it"""
     t = 0.1 * np.arange(8)
     q, v = np.stack([-40.0 - 4.9 * t**2], 1), np.stack([-9.8 * t * (1 + 0.03 * np.cos(8 * t))], 1)
     shared.expect_energies(submission, q, v, lambda q, v: float(0.5 * v @ v + 9.81 * q[-1]))
@@ -153,7 +153,7 @@ def test_energy_error_falling(submission):
 @pytest.mark.task("contact_force_error")
 @pytest.mark.points(3)
 def test_contact_force_late(submission):
-    """An impact that comes late, is a little too hard and a little too short"""
+    """An impact that is late, a little too hard and a little too short"""
     t = 0.001 * np.arange(61)
     pair = shared.pulse(t, 0.021, 0.016, 88.0), shared.pulse(t, 0.012, 0.02, 80.0), 0.001
     shared.expect_forces(submission, [pair])
@@ -174,7 +174,7 @@ def test_cross_validate_folds(submission):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(1)
 def test_cross_validate_lengths(submission):
-    """Folds of different size, of runs of different length, count by their samples"""
+    """Folds of different sizes, with runs of different lengths, are scored by their samples"""
     rng = np.random.default_rng(32)
     data = []
     for i, n in enumerate((8, 40, 15, 60, 25)):
@@ -186,7 +186,7 @@ def test_cross_validate_lengths(submission):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_late(submission, draw):
-    """A perfect simulation that is late is refused, with one lag for runs of different step and size"""
+    """A perfect simulation that is late is refused, with one lag for runs of different step and length"""
     spec = {"rmse_max": 0.1, "bias_max": 0.05, "lag_max_s": 0.02, "coverage_min": 0.9, "coverage_max": 1.1}
     (case, right), (far, lags) = bundles.public("validate_late", draw)
     shown = {"runs": "c + A sin(2 pi t); sim the same, late", "late": list(case.lates), "spec": spec}
@@ -202,7 +202,7 @@ def test_validate_late(submission, draw):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_accepts(submission, draw):
-    """A good simulation is accepted on runs it was not calibrated on; on one, or none, it is not"""
+    """A good simulation is accepted on new runs, but not if only one run is left, or none"""
     spec = {"rmse_max": 0.05, "bias_max": 0.02, "lag_max_s": 0.01, "coverage_min": 0.8, "coverage_max": 1.1}
     (case, right), *rest = bundles.public("validate_accepts", draw)
     shown = {"runs": "a, c, d: right but for noise of 0.03; b: wrong", "calibrated_on": ["b"], "spec": spec}
@@ -215,7 +215,7 @@ def test_validate_accepts(submission, draw):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_margins_apart(submission, draw):
-    """Each measure is refused for itself, and for its interval where the number alone would pass"""
+    """Each measure is judged separately, and by its interval where the number alone would pass"""
     ((case, right),) = bundles.public("validate_margins_apart", draw)
     bundles.expect_margins(submission, case, right)
 

@@ -34,7 +34,7 @@ def expect_rmse(submission, e):
         units="m",
         input={"e": e},
         message="The root mean square error is wrong.",
-        help="Square the errors, average the squares, take the root: in this order from right to left.",
+        help="Square the errors, average the squares, then take the root.",
     )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -57,7 +57,8 @@ def expect_bias_variance(submission, e):
             units="m" if name == "bias" else "m²",
             input={"e": e},
             message=f"The {name} is wrong.",
-            help="The bias is the mean; the variance is the mean square of what is left without it.",
+            help="The bias is the mean; the variance is the mean square of what is left after subtracting "
+            "it.",
         )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -75,8 +76,8 @@ def expect_large_mean(submission, e):
         quantity="variance",
         units="m²",
         input={"e": e},
-        message="Where the errors are large and hardly scatter, the variance is wrong.",
-        help="Take the mean off before squaring.",
+        message="Where the errors are large but scatter little, the variance is wrong.",
+        help="Subtract the mean before you square.",
         diagnose=lambda: probes.of_offset(submission, e),
     )
 
@@ -122,8 +123,8 @@ def expect_coverage(submission, y, lo, hi):
         source=EXACT,
         quantity="coverage",
         input={"y": y, "lo": lo, "hi": hi},
-        message="The share of covered values is wrong.",
-        help="Count the values with lo <= y <= hi, ends included, and divide by how many there are.",
+        message="The fraction of covered values is wrong.",
+        help="Count the values with lo <= y <= hi, ends included, and divide by the number of values.",
     )
     expect_left_alone(inspected, [y, lo, hi], ["y", "lo", "hi"])
 
@@ -135,7 +136,7 @@ def expect_normalised(submission, task, err, covariance, names):
     expected = np.einsum("ni,nij,nj->n", err, np.linalg.inv(covariance), err)
     if isinstance(value, int | float):
         kit.fail(
-            "The result has no row per error.",
+            "The result does not have one row per error.",
             help="Return one value per row.",
             diagnose=probes.named("SUMMED"),
             expected=f"shape ({len(err)},)",
@@ -205,7 +206,7 @@ def expect_energies(submission, q, v, energy):
         quantity="energy error",
         input={"energies": energies},
         message="The relative error of the energy is wrong.",
-        help="Compare every sample with the first, and divide by the size of the first.",
+        help="Compare every sample with the first, and divide by the absolute value of the first.",
     )
     expect_left_alone(inspected, [q, v], ["q", "v"])
 
@@ -230,7 +231,7 @@ def expect_forces(submission, pairs):
                 quantity=key,
                 input={"peaks": [np.max(f_sim), np.max(f_real)], "dt": dt, "samples": len(f_sim)},
                 message=f"The relative error of the {key} is wrong.",
-                help="One number of each force, then their difference over the real one.",
+                help="Reduce each force to one number, then divide their difference by the real one.",
             )
         expect_left_alone(inspected, [f_sim, f_real], ["f_sim", "f_real"])
 
@@ -263,7 +264,7 @@ def expect_folds(submission, data, k):
         source=EXACT,
         quantity="RMSE of the folds",
         input=shown,
-        message="The folds are right and their scores are not.",
+        message="The folds are right but their scores are wrong.",
         help="Pool the errors of all runs of a fold, then take one RMSE; fold by fold, in order.",
     )
     expect_left_alone(inspected, [None, None, given], [None, None, "runs"])

@@ -31,7 +31,7 @@ def expect_width(submission, rng, scale, offset):
         "one it is 0.22",
         quantity="mean width over true width",
         input=shown,
-        message="The intervals do not have the width that the scatter of the mean asks for.",
+        message="The intervals are not as wide as the scatter of the mean requires.",
         help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
         diagnose=lambda: probes.of_interval(submission, 1),
     )
@@ -44,7 +44,7 @@ def expect_resamples(submission, seed):
     code = probes.of_resamples(found)
     if code is not None:
         kit.fail(
-            "The resamples that the statistic is asked about are not made as they should be.",
+            "The resamples that are passed to the statistic are not made as they should be.",
             help="Join blocks of neighbours, drawn with replacement, until there are as many as in e.",
             diagnose=probes.named(code),
             expected="24 resamples of 250 samples in blocks of 12",
@@ -75,7 +75,7 @@ def expect_centred(submission, ends, statistics, shown):
         source="correct variants stay below 0.2 over 200 seeds",
         quantity="distance of the middle from the statistic, in widths",
         input=shown,
-        message="The intervals do not lie where they should.",
+        message="The intervals are in the wrong place.",
         help="The ends are quantiles of the statistic over the resamples.",
         diagnose=lambda: probes.of_interval(submission, 1) or probes.named("NOT_CENTRED"),
     )
@@ -105,8 +105,8 @@ def expect_level(submission, rng, statistic):
         source="1.97 for a normal distribution; correct variants over 200 seeds",
         quantity="width at alpha 0.05 over width at alpha 0.32",
         input=shown,
-        message="The width of the interval does not follow alpha as it should.",
-        help="alpha is the share outside, both sides together.",
+        message="The width of the interval does not depend on alpha as it should.",
+        help="alpha is the fraction outside, both sides together.",
         diagnose=lambda: probes.of_interval(submission, 1) or probes.named("ONE_STANDARD_ERROR"),
     )
 
@@ -115,15 +115,15 @@ def _expect_chance(submission, ends, shown):
     first, same, other = ends
     kit.expect_true(
         bool(np.array_equal(first, same)),
-        "Two calls with the same arguments and generators in the same state differ.",
-        help="All chance has to come from rng.",
+        "Two calls with the same arguments, and generators in the same state, give different intervals.",
+        help="Take every random number from rng.",
         input=shown,
         diagnose=probes.named("GLOBAL_RNG"),
     )
     kit.expect_true(
         not np.array_equal(first, other),
         "Two calls with different generators give the same interval.",
-        help="All chance has to come from rng.",
+        help="Take every random number from rng.",
         input=shown,
         diagnose=lambda: probes.of_interval(submission, 1) or probes.named("FIXED_SEED"),
     )

@@ -235,8 +235,8 @@ class Folds:
         number = model.get("model") if isinstance(model, dict) else None
         if type(number) is not int or not 0 <= number < len(self.fitted):
             kit.fail(
-                "Your code hands predict something that fit did not return.",
-                help="Keep what fit returns as it is, and give it to predict first: predict(model, run).",
+                "Your code passes something to predict that fit did not return.",
+                help="Keep what fit returns as it is, and pass it to predict first: predict(model, run).",
                 diagnose="NOT_A_MODEL",
                 expected="a model that fit returned",
                 actual=model,

@@ -40,7 +40,7 @@ def test_sphere_contact_drawn(submission, rng):
 @pytest.mark.task(bundles.SPHERES)
 @pytest.mark.points(2)
 def test_sphere_same_centre(submission, rng):
-    """Spheres with one centre touch, as deep as both radii, along some unit vector"""
+    """Spheres with the same centre touch, as deep as both radii, along some unit vector"""
     calls = [draws.spheres(rng, d, 0.0) for d in (2, 3)]
     values, parts = bundles.answers(submission, bundles.SPHERES, calls)
     for args, (touching, normal, depth) in zip(calls, parts, strict=True):
@@ -80,7 +80,7 @@ def test_plane_contact_drawn(submission, rng):
 @pytest.mark.task(bundles.PLANE)
 @pytest.mark.points(2)
 def test_plane_below(submission, rng):
-    """A centre that is already below the plane still touches, deeper than its radius"""
+    """A sphere whose centre is already below the plane still touches it, deeper than its radius"""
     bundles.expect_formula(
         submission,
         bundles.PLANE,
@@ -109,7 +109,7 @@ def test_impulse_drawn(submission, rng):
 @pytest.mark.task(bundles.IMPULSE)
 @pytest.mark.points(2)
 def test_impulse_symmetries(submission, rng):
-    """The impulse is the same seen from a moving train, in a mirror, and with a and b exchanged"""
+    """The impulse is the same seen from a moving train, in a mirror, and with a and b swapped"""
     laws.expect_line_symmetries(submission, rng)
 
 
@@ -136,14 +136,14 @@ def test_impulse_wall(submission, rng):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_momentum(submission, rng):
-    """An impact keeps the total momentum"""
+    """An impact conserves the total momentum"""
     laws.expect_momentum(submission, bundles.RESOLVE, [draws.impact(rng, d) for d in (2, 2, 3, 3, 3)])
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_parting(submission, rng):
-    """Bodies part at e times the speed of approach, and slide past each other as before"""
+    """Bodies separate at e times the speed of approach, and slide past each other as before"""
     calls = [*(draws.impact(rng, d) for d in (1, 2, 3, 3, 3)), *(draws.slow(rng, 3) for _ in range(3))]
     laws.expect_parting(submission, calls)
 
@@ -151,21 +151,21 @@ def test_resolve_parting(submission, rng):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_energy(submission, rng):
-    """An impact costs just the energy that e says, and none for e = 1"""
+    """An impact costs exactly the energy that e says, and none for e = 1"""
     laws.expect_energy(submission, [draws.impact(rng, 3, e) for e in (1.0, 1.0, 0.0, None, None)])
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_symmetries(submission, rng):
-    """An impact is the same seen from a moving train, turned, mirrored, and with a and b exchanged"""
+    """An impact is the same seen from a moving train, rotated, mirrored, and with a and b swapped"""
     laws.expect_symmetries(submission, bundles.RESOLVE, rng)
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_wall(submission, rng):
-    """A body of infinite mass goes on as if nothing had been, and the other one rebounds from it"""
+    """A body of infinite mass keeps its velocity, and the other one rebounds from it"""
     laws.expect_wall(submission, bundles.RESOLVE, rng)
 
 
@@ -200,14 +200,14 @@ def test_friction_cone(submission, rng):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(2)
 def test_friction_energy(submission, rng):
-    """Friction keeps the momentum, never adds energy, and slows the slip without turning it round"""
+    """Friction conserves momentum, never adds energy, and slows the slip without reversing it"""
     laws.expect_braking(submission, [draws.friction(rng, 3, share) for share in (0.4, 0.7, 2.0, 4.0)])
 
 
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(2)
 def test_friction_symmetries(submission, rng):
-    """An impact with friction is the same from a moving train, turned, mirrored, with a and b exchanged"""
+    """An impact with friction is the same from a moving train, rotated, mirrored, with a and b swapped"""
     laws.expect_symmetries(submission, bundles.FRICTION, rng)
 
 
@@ -244,7 +244,7 @@ def test_moment_any_speed(submission, rng):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(3)
 def test_moment_oblique(submission, rng):
-    """Spheres that meet off centre touch at the first root; those that pass by do not touch"""
+    """Spheres that meet off centre touch at the first root; those that miss do not touch"""
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
@@ -259,7 +259,7 @@ def test_moment_oblique(submission, rng):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(1)
 def test_moment_overlap(submission, rng):
-    """Overlapping spheres touch now if they approach, and never if they part"""
+    """Overlapping spheres touch now if they approach, and never if they separate"""
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
@@ -272,7 +272,7 @@ def test_moment_overlap(submission, rng):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(1)
 def test_moment_symmetries(submission, rng):
-    """The moment of contact is the same from a moving train, from elsewhere, and with a and b exchanged"""
+    """The moment of contact is the same from a moving train, from elsewhere, and with a and b swapped"""
     calls = [call for share in (0.4, 0.8) for call in draws.same_meeting(rng, share)]
     bundles.expect_formula(
         submission,
@@ -289,7 +289,7 @@ def test_moment_symmetries(submission, rng):
 @pytest.mark.task(bundles.HEAD_ON)
 @pytest.mark.points(3)
 def test_head_on_drawn(submission, rng):
-    """Balls of any masses meet at the right instant and part as they should; those that part do not meet"""
+    """Balls of any masses meet at the right instant and separate as they should; others do not meet"""
     scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "slow", "part")]
     h, n = rng.uniform(0.01, 0.03), 120
     values = submission.call_each(bundles.HEAD_ON, [scene.args(n * h, h) for scene in scenes])
@@ -390,7 +390,7 @@ def test_drop_rest(submission, rng):
 @pytest.mark.task(bundles.DROP)
 @pytest.mark.points(1)
 def test_drop_elastic(submission, rng):
-    """With e = 1 the ball returns to its height for ever, and never higher"""
+    """With e = 1 the ball returns to its height every time, and never goes higher"""
     scene, t_end, h = draws.elastic(rng)
     value = submission.call(bundles.DROP, *scene.args(t_end, h))
     bundles.expect_drop(

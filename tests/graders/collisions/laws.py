@@ -207,7 +207,7 @@ def expect_line_symmetries(submission, rng):
             units="N s",
             input=bundles.shown(task, args),
             message=message or "The impulse of an impact on a line is wrong.",
-            help="Only the difference of the velocities may enter, and both masses in the same way.",
+            help="Use only the difference of the velocities, and both masses in the same way.",
             diagnose=lambda: (
                 probes.of_calls(task, calls, values, truth) or bundles.named("DEPENDS_ON_THE_FRAME")
             ),

@@ -46,7 +46,7 @@ def test_encoder_inputs(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_white(submission, rng):
-    """At other densities and sampling rates, white noise is as strong as its density says"""
+    """At other densities and sampling rates, white noise has the strength that its density gives"""
     calls = [
         (np.zeros(20000), dt, 10 ** rng.uniform(-3.5, -2.0), 0.0, float(rng.normal()), rng)
         for dt in (rng.uniform(0.002, 0.006), rng.uniform(0.05, 0.5))
@@ -57,7 +57,7 @@ def test_imu_white(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_walk(submission, rng):
-    """Over one sample and over ten, the bias wanders as the root of time"""
+    """Over one sample and over ten, the bias wanders with the square root of time"""
     dt, walk = rng.uniform(0.004, 0.05), 0.01 * rng.uniform(0.5, 2.0)
     sensors.expect_walk(submission, 20000, dt, walk, float(rng.normal()), rng)
 
@@ -65,14 +65,14 @@ def test_imu_walk(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_randomness(submission, rng):
-    """Noise and bias are independent, and the generator that is passed in decides about both"""
+    """Noise and bias are independent, and both come from the generator that is passed in"""
     sensors.expect_gyroscope_draws(submission, int(rng.integers(2**32)), rng.uniform(0.004, 0.05))
 
 
 @pytest.mark.task("imu")
 @pytest.mark.points(1)
 def test_imu_inputs(submission, rng):
-    """The true rate is left alone, and is in the measured one unchanged"""
+    """The true rate is left unchanged, and is in the measured rate exactly as it is"""
     true, dt = 3.0 * np.sin(np.linspace(0, rng.uniform(5, 9), 50)), rng.uniform(0.01, 0.1)
     sensors.expect_rate_kept(submission, true, dt, -0.1, rng)
 
@@ -107,14 +107,14 @@ def test_fit_noise_inputs(submission, rng):
 @pytest.mark.task("lidar")
 @pytest.mark.points(3)
 def test_lidar_walls(submission, rng):
-    """In a crooked hall with walls standing about, every beam finds its nearest wall or none"""
+    """In a crooked hall with free-standing walls, every beam finds its nearest wall or none"""
     parts.expect_hall(submission, rng)
 
 
 @pytest.mark.task("lidar")
 @pytest.mark.points(3)
 def test_lidar_noise(submission, rng):
-    """Hits have noise of std sigma from the generator passed in, from zero on; others read r_max exactly"""
+    """Hits have noise of std sigma from the given generator, and no reading is negative; others are r_max"""
     sensors.expect_scan_noise(submission, rng.uniform(6.0, 9.0), rng.uniform(0.02, 0.08), rng)
     sensors.expect_scan_draws(submission, int(rng.integers(2**32)))
 
@@ -148,7 +148,7 @@ def test_motor_unknown(submission, rng):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(2)
 def test_motor_overspeed(submission, rng):
-    """A motor that spins faster than its command may be runs out gradually"""
+    """A motor that spins faster than the largest command slows down gradually"""
     tau, u_max = rng.uniform(0.1, 1.0), rng.uniform(5, 20)
     calls = [(u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
     actuators.expect_motor(submission, rng.uniform(1.5, 3.0) * u_max, calls, _MOTOR)
@@ -160,7 +160,7 @@ def test_motor_overspeed(submission, rng):
 @pytest.mark.task("backlash")
 @pytest.mark.points(5)
 def test_backlash_swings(submission, rng):
-    """On swings of any speed the output is late by half the gap each way, and rests on small ones"""
+    """For motions of any speed the output is half the gap behind each way, and stays at rest for small ones"""
     parts.expect_swings(submission, rng)
 
 
@@ -181,7 +181,7 @@ def test_delay_fractions(submission, rng):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(2)
 def test_delay_edges(submission, rng):
-    """No latency, whole samples, more latency than signal; and what comes out is a new array"""
+    """No latency, whole samples, more latency than signal; and the output is a new array"""
     x, dt = rng.normal(2.0, 1.0, 12), rng.uniform(0.01, 0.1)
     parts.expect_delays(submission, [(x, dt, 0.0), (x, dt, 3 * dt), (x, dt, 20.3 * dt)])
     actuators.expect_new_signal(submission, x, dt)
@@ -193,21 +193,21 @@ def test_delay_edges(submission, rng):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(2)
 def test_drive_tour(submission, rng):
-    """On a tour of many arcs, some backwards and some turning round and round, each step is right"""
+    """On a tour of many arcs, some backwards and some with many turns, each step is right"""
     parts.expect_tour(submission, rng)
 
 
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(3)
 def test_drive_slow_turns(submission, rng):
-    """As the turn rate goes to zero, the arc goes over into a straight line without a jump"""
+    """As the turn rate goes to zero, the arc becomes a straight line without a jump"""
     actuators.expect_slow_turns(submission, rng)
 
 
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(1)
 def test_drive_inputs(submission, rng):
-    """A step leaves the old pose alone"""
+    """A step leaves the old pose unchanged"""
     pose, wheels = rng.uniform(1, 2, 3), (0.3, 0.5, 0.4, 1.0)
     value = bundles.expect_clean(submission, "diff_drive_step", (pose, *wheels), ("pose", *[None] * 4))
     actuators.expect_pose(submission, value, pose, wheels)
@@ -219,7 +219,7 @@ def test_drive_inputs(submission, rng):
 @pytest.mark.task("sync")
 @pytest.mark.points(3)
 def test_sync_late(submission, rng):
-    """Twins keep up, forwards and backwards, although a third of the measurements come late"""
+    """Twins keep up, forwards and backwards, even when a third of the measurements come late"""
     message = "With measurements that come late and out of order, the twin does not stay with its cart."
     for sign in (1.0, -1.0):
         twins.expect_keeps_up(submission, rng, sign=sign, late=0.33, message=message)
@@ -228,7 +228,7 @@ def test_sync_late(submission, rng):
 @pytest.mark.task("sync")
 @pytest.mark.points(3)
 def test_sync_closes_loop(submission, rng):
-    """A cart that is driven by what the twin has learned gets back to its speed after the friction jumped"""
+    """A cart driven with the friction the twin has learned gets back to its speed after a jump in friction"""
     twins.expect_sync_closes_loop(submission, rng)
 
 
@@ -236,7 +236,7 @@ def test_sync_closes_loop(submission, rng):
 @pytest.mark.points(2)
 @pytest.mark.requires("sync_follows")  # a twin that never changes passes this one as well
 def test_sync_repeats(submission, rng):
-    """The same twin and the same measurement give the same result again, and the twin passed in is kept"""
+    """The same twin and measurement give the same result again, and the twin passed in is unchanged"""
     twins.expect_twin_contract(submission, rng)
 
 
@@ -251,5 +251,5 @@ def test_command_unknown(submission, rng):
 @pytest.mark.task("command")
 @pytest.mark.points(3)
 def test_command_closes_loop(submission, rng):
-    """Driven by command, carts whose friction jumps get to their speed and back to it, both ways"""
+    """Driven by command, carts whose friction jumps reach their speed and return to it, in both directions"""
     twins.expect_command_closes_loop(submission, rng)

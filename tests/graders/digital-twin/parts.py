@@ -23,7 +23,7 @@ def expect_ranges(submission, value, pose, walls, angles, r_max, message):
         units="m",
         input={"pose": pose, "segments": walls, "angles": angles, "r_max": r_max, "sigma": 0.0},
         message=message,
-        help="Try a wall behind the robot, one that the beam misses, two in a row, and none.",
+        help="Try a wall behind the robot, one that the beam misses, two behind each other, and none.",
         diagnose=lambda: sensors.of_lidar(submission),
     )
 

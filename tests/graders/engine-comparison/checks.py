@@ -45,7 +45,7 @@ def test_hidden_order(submission):
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_symplectic(submission):
-    """Of eight unknown engines it is found which ones keep area"""
+    """The reports say which of eight unknown engines conserve area"""
     judging.expect_key(unknown(submission), "symplectic", SPARED)
 
 
@@ -73,7 +73,7 @@ def test_hidden_friction_anisotropy(submission):
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_rest_penetration(submission):
-    """How deep bodies sink into the floor of eight unknown engines is found"""
+    """How deep a body sinks into the floor is found for eight unknown engines"""
     judging.expect_key(unknown(submission), "rest_penetration", SPARED)
 
 
@@ -87,21 +87,21 @@ def test_hidden_restitution(submission):
 @pytest.mark.task("characterise")
 @pytest.mark.points(5)
 def test_hidden_tunnelling_speed(submission):
-    """At which speed bodies get through the wall of eight unknown engines is found"""
+    """The speed at which bodies get through the wall is found for eight unknown engines"""
     judging.expect_key(unknown(submission), "tunnelling_speed", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_deterministic(submission):
-    """Of eight unknown engines it is found which ones never repeat themselves"""
+    """The reports say which of eight unknown engines never repeat themselves"""
     judging.expect_key(unknown(submission), "deterministic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_report_complete(submission):
-    """Each of eight unknown engines gets a whole report"""
+    """Each of eight unknown engines gets a complete report"""
     judging.expect_complete(unknown(submission))
 
 
@@ -130,7 +130,7 @@ def _questions(seed):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(4)
 def test_choose_drawn(submission):
-    """Of eight engines the cheapest that meets all of several requirements is chosen"""
+    """Of eight engines, the cheapest that meets all of several requirements is chosen"""
     choosing.expect_choices(submission, _questions(submission.seed)["plain"])
 
 
@@ -138,7 +138,7 @@ def test_choose_drawn(submission):
 @pytest.mark.points(3)
 @pytest.mark.requires("choose_by_report")
 def test_choose_gaps(submission):
-    """What was not measured was not met, and where nothing fits nothing is chosen"""
+    """A requirement that was not measured is not met, and where nothing fits, nothing is chosen"""
     choosing.expect_choices(submission, _questions(submission.seed)["gaps"])
 
 
@@ -167,7 +167,7 @@ def test_choose_by_numbers_only(submission):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(2)
 def test_facts_licences(submission):
-    """The licences are those of today, named as SPDX names them, and dated after they came"""
+    """The licences are today's, have their SPDX names, and are dated after they came into force"""
     entries = listing.by_pair(listing.entries(submission))
     for engine in listing.ENGINES:
         entry = _entry(entries, engine, "licence")
@@ -175,7 +175,7 @@ def test_facts_licences(submission):
         if not facts.right_licence(engine, text):
             kit.fail(
                 "A licence is not right.",
-                help="Read the licence file in the engine's repository of today.",
+                help="Read the licence file in the engine's present repository.",
                 diagnose=lambda engine=engine, text=text: _of_licence(engine, text),
                 input={"engine": engine},
                 expected=sorted(facts.LICENCES[engine]),
@@ -184,7 +184,7 @@ def test_facts_licences(submission):
         day = listing.date_of(entry)
         if engine in facts.SINCE and day is not None and day < facts.SINCE[engine]:
             kit.fail(
-                "A licence is dated to a day on which the engine had another one.",
+                "A licence has a date on which the engine had another licence.",
                 diagnose=named("DATE_BEFORE_FACT"),
                 input={"engine": engine},
                 expected=f"{facts.SINCE[engine]} or later",
@@ -204,7 +204,7 @@ def test_facts_defaults(submission):
             explicit = integrator == "explicit_euler"
             kit.fail(
                 "A default integrator is not right.",
-                help="Which half of the state is updated first, and what does the other half use?",
+                help="Find out which half of the state is updated first, and what the other half uses.",
                 diagnose=named("INTEGRATOR_BY_NAME") if explicit else None,
                 input={"engine": engine},
                 expected=facts.INTEGRATOR,
@@ -217,7 +217,7 @@ def test_facts_defaults(submission):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(2)
 def test_facts_users(submission):
-    """Languages are right, and so are the projects that are named as users"""
+    """The languages are right, and so are the projects in the lists of users"""
     entries = listing.by_pair(listing.entries(submission))
     for engine in listing.ENGINES:
         language = kit.as_text(_entry(entries, engine, "language")["value"], "a language")
@@ -234,9 +234,9 @@ def test_facts_users(submission):
         stale = engine == "ode" and any(map(facts.is_new_gazebo, names))
         if stale or not any(facts.right_user(engine, name) for name in names):
             kit.fail(
-                "A project that is said to use an engine does not."
+                "A project in the list of users does not use this engine."
                 if stale
-                else "None of the projects named for an engine is known to use it.",
+                else "None of the projects in the list of users is known to use this engine.",
                 help="Name projects whose own documentation says that they run on it.",
                 diagnose=named("GAZEBO_SIM_USES_DART") if stale else None,
                 input={"engine": engine},
@@ -272,7 +272,8 @@ def _expect_step(engine, value):
     if not close:
         kit.fail(
             "A default step is not the engine's own.",
-            help="Where is the step said, as an argument or as an option, and has it a default there?",
+            help="Find where the step is set, as an argument or as an option, and whether it has a "
+            "default there.",
             diagnose=named("STEP_OF_A_HABIT") if own == (None,) else None,
             input={"engine": engine},
             expected=list(own),

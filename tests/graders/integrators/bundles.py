@@ -163,7 +163,8 @@ def expect_formula(submission, task, result, accel, t, q, v, h):
             quantity=name,
             units=units,
             input={"t": t, "q": q, "v": v, "h": h},
-            message="One step on a system in which everything matters is not what the formula gives.",
+            message="On a system where time, position and velocity all matter, one step is not what the "
+            "formula gives.",
             help="Write the formula down with every argument of accel and compare it with your line of code.",
             diagnose=lambda: probes.of_step(submission, task),
         )
@@ -204,7 +205,8 @@ def expect_clean(submission, task, rng):
             source="the same step from the same state as floats",
             quantity=name,
             input=given,
-            message="From whole numbers the step gives something else than from the same state as floats.",
+            message="From a state of whole numbers the step gives a different result than from the same "
+            "state as floats.",
             diagnose=lambda: probes.of_whole_numbers(submission, task),
         )
 
@@ -228,8 +230,8 @@ def expect_symplectic(submission, task, rng):
         source="finite differences leave 1e-8 or less",
         quantity="max |J^T Omega J - Omega|",
         input={**problem.input, "h": h},
-        message="One step on an orbit does not keep the symplectic form, so energy and area will drift.",
-        help="Each half of the state must move with a function of the other half alone.",
+        message="One step on an orbit does not conserve the symplectic form, so energy and area will drift.",
+        help="Each half of the state must change by a function of the other half alone.",
         diagnose=lambda: probes.of_step(submission, task),
     )
 

@@ -94,7 +94,7 @@ def test_verlet_order_everywhere(submission, rng):
 @pytest.mark.task(VERLET)
 @pytest.mark.points(2)
 def test_verlet_energy(submission, rng):
-    """Velocity Verlet's energy on a spring swings as far as theory says"""
+    """Velocity Verlet's energy on a spring oscillates as far as theory says"""
     # A turn takes k + 0.38 steps: near the golden ratio the samples never repeat, so some fall near q = 0.
     z = 2 * math.sin(math.pi / (rng.integers(9, 16) + rng.uniform(0.37, 0.39)))
     omega, n = rng.uniform(0.5, 5.0), 300
@@ -113,7 +113,8 @@ def test_verlet_energy(submission, rng):
         source="closed forms z^2/4 (kick-drift-kick) and z^2/4/(1 - z^2/4) (drift-kick-drift)",
         quantity="max |dE|/E0",
         input={"omega": omega, "h": z / omega, "q0": q0, "steps": n},
-        message="Over many turns on a spring, the energy does not keep to the bound of velocity Verlet.",
+        message="Over many periods of a spring, the energy does not stay within the bound of velocity "
+        "Verlet.",
         help="Two half kicks around one drift, each with the acceleration at its own end of the step.",
         diagnose=lambda: probes.of_swing(
             submission, VERLET, swing, nearest, (system, q0, [0.0], z / omega, n, 0.0)
@@ -124,7 +125,7 @@ def test_verlet_energy(submission, rng):
 @pytest.mark.task(VERLET)
 @pytest.mark.points(1)
 def test_verlet_frequency(submission, rng):
-    """On a spring, velocity Verlet turns a little too fast, by exactly what theory says"""
+    """On a spring, velocity Verlet oscillates a little too fast, by exactly what theory says"""
     omega, z, n = rng.uniform(0.5, 5.0), rng.uniform(0.4, 1.2), 60
     h = z / omega
     start = bundles.signed(rng, 0.5, 1.5), omega * bundles.signed(rng, 0.3, 1.0)
@@ -159,7 +160,7 @@ def test_verlet_symplectic(submission, rng):
 @pytest.mark.points(1)
 @pytest.mark.requires("verlet_order")  # a step that ignores accel passes this one as well
 def test_verlet_reversible(submission, rng):
-    """Velocity Verlet run there, turned round and run back ends where it began"""
+    """Velocity Verlet, run forwards, reversed and run back, ends where it began"""
     problem, n = bundles.pendulum(rng), 60
     h = rng.uniform(0.3, 0.5) / problem.rate
     _, q, v = submission.march(VERLET, problem.system, problem.q0, problem.v0, h, n)
@@ -174,7 +175,8 @@ def test_verlet_reversible(submission, rng):
         units="rad",
         input={**problem.input, "h": h, "steps": n},
         message="With the velocity reversed, your velocity Verlet does not retrace its path.",
-        help="The step must look the same from both ends: half a kick at each, or half a drift at each.",
+        help="The step must be the same forwards and backwards: half a kick at each end, or half a drift "
+        "at each.",
         diagnose=lambda: probes.of_step(submission, VERLET),
     )
 
@@ -264,7 +266,7 @@ def test_integrate_time(submission, rng):
 @pytest.mark.task("integrate")
 @pytest.mark.points(2)
 def test_integrate_refuses(submission, rng):
-    """integrate raises ValueError for a duration that is no whole number of steps, and only then"""
+    """integrate raises ValueError for a duration that is not a whole number of steps, and only then"""
     loops.expect_awkward_durations(submission, rng)
     loops.expect_refusals(submission, rng)
 
@@ -272,7 +274,7 @@ def test_integrate_refuses(submission, rng):
 @pytest.mark.task("integrate")
 @pytest.mark.points(2)
 def test_integrate_whole_numbers(submission, rng):
-    """integrate takes an initial state of whole numbers, and leaves it alone"""
+    """integrate accepts an initial state of whole numbers, and leaves it unchanged"""
     loops.expect_whole_numbers(submission, rng)
 
 
@@ -339,7 +341,7 @@ def test_stable_step_limits(submission, rng):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(2)
 def test_stable_step_pocket(submission, rng):
-    """max_stable_step stops at the first unstable step although larger ones are stable again"""
+    """max_stable_step stops at the first unstable step, although larger ones are stable again"""
     low = rng.uniform(0.8, 2.0)
     high = low + rng.uniform(0.6, 1.0)
     curve = 1.5 / (
@@ -357,7 +359,7 @@ def test_stable_step_pocket(submission, rng):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(2)
 def test_stable_step_edges(submission, rng):
-    """max_stable_step is zero where every step fails and infinite where none does"""
+    """max_stable_step is zero where every step is unstable and infinite where none is"""
     euler = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
     calm = systems.LinearStep([0.5, rng.uniform(0.01, 0.04)], [0.1], [0.0], [0.4])
     never = "For a map that is unstable at every step, the result is not zero."

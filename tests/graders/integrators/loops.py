@@ -44,7 +44,7 @@ def expect_times(submission, rng):
         quantity="t",
         input=given,
         message="The times that integrate returns are not 0, h, 2h, ... up to t_end.",
-        help="Sample number i belongs to time i * h.",
+        help="The time of sample i is i * h.",
     )
 
 
@@ -84,7 +84,7 @@ def expect_refusals(submission, rng):
             ),
             "ValueError",
             input={"t_end": t_end, "h": h},
-            message="integrate does not raise ValueError for a duration that is no whole number of steps.",
+            message="integrate does not raise ValueError for a duration that is not a whole number of steps.",
             diagnose=lambda: probes.named("DURATION_NOT_CHECKED"),
         )
 
@@ -116,7 +116,8 @@ def expect_whole_numbers(submission, rng):
             quantity=name,
             t=h * np.arange(n + 1),
             input=given,
-            message="From whole numbers, integrate does not give the states that the step goes through.",
+            message="From an initial state of whole numbers, integrate does not return the states that "
+            "the steps produce.",
             diagnose=lambda: probes.of_rows(t, q, v, h, (q_true, v_true)),
         )
     kit.expect_untouched(
@@ -151,7 +152,7 @@ def _arrays(submission, value, n, d, given):
             name=name,
             input=given,
             message="The number of samples is not N + 1 with N = round(t_end / h).",
-            help="n steps join n + 1 states, and n is rounded, not cut off.",
+            help="n steps connect n + 1 states, and n is rounded, not truncated.",
             diagnose=lambda: probes.of_count(submission),
         )
     return kit.as_array(t, (n + 1,), "t"), kit.as_array(q, (n + 1, d), "q"), kit.as_array(v, (n + 1, d), "v")

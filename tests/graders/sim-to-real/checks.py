@@ -25,7 +25,7 @@ named = words.named
 @pytest.mark.task("plan")
 @pytest.mark.points(7)
 def test_plan_gaps_kept(submission):
-    """Each gap is measured as the plan says, and its threshold is one that can be kept and that matters"""
+    """Each gap is measured as the plan says, and its threshold can be met and means something"""
     plan = execution.plan(submission)
     gaps = words.gaps_of(plan)
     judge.expect_enough(gaps)
@@ -38,7 +38,7 @@ def test_plan_gaps_kept(submission):
 @pytest.mark.task("plan")
 @pytest.mark.points(5)
 def test_plan_executed(submission):
-    """Executed on three fleets with sound parts, the plan keeps what it promises"""
+    """Executed on three fleets, with the other parts correct, the plan keeps its promise"""
     plan = kit.as_record(execution.plan(submission), words.PLAN_KEYS)
     box, threshold = words.box_of(plan), kit.as_number(plan["threshold"], "threshold")
     kit.expect_bounded(
@@ -64,7 +64,7 @@ def _of_promise(box, threshold):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(6)
 def test_excitation_shows_all(submission):
-    """The excitation shows every parameter of three carts nobody has told about"""
+    """The excitation shows every parameter of three unknown carts"""
     u, carts = execution.command(submission), reference.realities(submission.seed)
     judge.expect_shows(u, carts)
     judge.expect_fitted(u, carts)
@@ -73,7 +73,7 @@ def test_excitation_shows_all(submission):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(3)
 def test_excitation_other_bench(submission, rng):
-    """On a bench with other limits it keeps to them and still shows everything"""
+    """On a bench with other limits the excitation stays within them and still shows everything"""
     seconds, u_max = _uneven(rng, 15.0, 18.0), float(rng.uniform(2.4, 2.8))
     value = submission.call("design_excitation", seconds, u_max, rng)
     judge.expect_shows(probes.command_of(value, seconds, u_max), reference.realities(submission.seed)[1:2])
@@ -91,7 +91,7 @@ def _uneven(rng, low, high):
 @pytest.mark.task("identify")
 @pytest.mark.points(11)
 def test_identify_accurate(submission):
-    """identify finds mass, frictions and lag of three unknown carts, as the mean of two recordings each"""
+    """identify finds mass, both frictions and lag of three unknown carts, from two recordings each"""
     estimates, carts = execution.bench(submission)
     recordings = reference.recordings(submission.seed)[:3]
     judge.expect_accurate(execution.means(estimates), carts[:3], recordings)
@@ -100,7 +100,7 @@ def test_identify_accurate(submission):
 @pytest.mark.task("identify")
 @pytest.mark.points(10)
 def test_identify_honest(submission):
-    """Intervals are as wide as recordings ask for, wider for weak ones, and doubled they hold the truth"""
+    """Intervals are as wide as recordings require, wider for weak ones; doubled, they contain the truth"""
     estimates, carts = execution.bench(submission)
     judge.expect_intervals(estimates, carts)
     judge.expect_growth(estimates, execution.weak(submission), carts)
@@ -114,7 +114,7 @@ def test_identify_honest(submission):
 @pytest.mark.task("tune")
 @pytest.mark.points(11)
 def test_tune_executed(submission):
-    """The whole plan executed: three unknown fleets settle nearly as soon as any gains allow"""
+    """The whole plan executed: three unknown fleets settle almost as soon as any gains allow"""
     box = execution.box(submission)
     asked = [(estimate, box) for estimate in execution.estimates(submission)]
     _expect_success(submission, asked, reference.success, "fleets that nobody has seen settle")
@@ -123,7 +123,7 @@ def test_tune_executed(submission):
 @pytest.mark.task("tune")
 @pytest.mark.points(7)
 def test_tune_other_boxes(submission):
-    """Asked about other boxes, one for each of three carts, tune finds the gains for these"""
+    """For other boxes, one for each of three carts, tune finds the right gains"""
     asked = [
         (cart.with_intervals(each), box)
         for each, box in zip(reference.realities(submission.seed), reference.OTHER_BOXES, strict=True)

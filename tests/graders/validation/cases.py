@@ -81,7 +81,7 @@ def expect_refused(submission, rng, recorded, sim, mass):
     reasons = set(bundles.reasons_of(report))
     kit.expect_true(
         {"coverage", "rmse"} <= reasons <= {"bias", "coverage", "lag", "rmse"},
-        "A simulation that is far off is not refused for the reasons that it gives.",
+        "A simulation that is far off is not refused for the right reasons.",
         help="Compare each interval with its margin.",
         input=shown,
         actual=sorted(reasons),

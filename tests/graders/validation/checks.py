@@ -28,7 +28,7 @@ cases = kit.sibling(__file__, "cases")
 @pytest.mark.task("rmse")
 @pytest.mark.points(2)
 def test_rmse_anything(submission, rng):
-    """rmse of errors of any number, size and mean, which it leaves as they are"""
+    """rmse of errors of any number, size and mean, which stay unchanged"""
     e = rng.uniform(-2, 2) + rng.uniform(0.1, 3) * rng.standard_normal(rng.integers(5, 60))
     shared.expect_rmse(submission, e)
 
@@ -36,7 +36,7 @@ def test_rmse_anything(submission, rng):
 @pytest.mark.task("bias_variance")
 @pytest.mark.points(2)
 def test_bias_variance_scatter(submission, rng):
-    """Bias and variance of scattered errors, which are left as they are"""
+    """Bias and variance of scattered errors, which stay unchanged"""
     e = rng.uniform(0.1, 3) * rng.standard_exponential(rng.integers(7, 40))
     for mean in (rng.uniform(0.2, 2), -rng.uniform(0.2, 2)):  # a bias without its sign shows in the second
         shared.expect_bias_variance(submission, e - np.mean(e) + mean)
@@ -45,7 +45,7 @@ def test_bias_variance_scatter(submission, rng):
 @pytest.mark.task("bias_variance")
 @pytest.mark.points(2)
 def test_bias_variance_offset(submission, rng):
-    """The variance keeps its digits where the mean is ten million times the scatter"""
+    """The variance is accurate where the mean is ten million times the scatter"""
     # At this size neighbouring floats are 2e-9 apart, so the errors themselves are exact enough.
     e = rng.uniform(1e7, 2e7) + rng.uniform(0.5, 1.5) * rng.standard_normal(200)
     shared.expect_large_mean(submission, e)
@@ -54,7 +54,7 @@ def test_bias_variance_offset(submission, rng):
 @pytest.mark.task("wrap_angle")
 @pytest.mark.points(4)
 def test_wrap_angle_many_turns(submission, rng):
-    """Angles many turns away in both directions, and half a turn itself; the argument stays as it is"""
+    """Angles many turns away in both directions, and half a turn itself; the argument stays unchanged"""
     e = np.concatenate([rng.uniform(-60, 60, 40), rng.uniform(-3, 3, 10), [np.pi, -np.pi, 0.0]])
     inspected = submission.call_inspect("wrap_angle", e)
     values = kit.as_vector(inspected.value, len(e), "the result")
@@ -62,8 +62,8 @@ def test_wrap_angle_many_turns(submission, rng):
     apart = np.abs(np.angle(np.exp(1j * (values - e))))
     kit.expect_true(
         bool(np.all(np.abs(values) <= np.pi + 1e-9) and np.all(apart <= 1e-9)),
-        "Some angle is not wrapped, or is another angle afterwards.",
-        help="Take off whole turns until every angle lies in [-pi, pi).",
+        "At least one angle is not wrapped, or its direction has changed.",
+        help="Subtract whole turns until every angle lies in [-pi, pi).",
         input={"e": e},
         actual=values,
     )
@@ -76,7 +76,7 @@ def test_wrap_angle_many_turns(submission, rng):
 @pytest.mark.task("nees")
 @pytest.mark.points(3)
 def test_nees_correlated(submission, rng):
-    """NEES where errors of components of very different size go together"""
+    """NEES with correlated errors in components of very different sizes"""
     cases.expect_normalised(submission, "nees", rng, [(3, 30)], ("err", "P"))
 
 
@@ -90,7 +90,7 @@ def test_nees_shapes(submission, rng):
 @pytest.mark.task("nis")
 @pytest.mark.points(3)
 def test_nis_correlated(submission, rng):
-    """NIS where innovations of components of very different size go together"""
+    """NIS with correlated innovations in components of very different sizes"""
     cases.expect_normalised(submission, "nis", rng, [(2, 25), (3, 3)], ("nu", "S"))
 
 
@@ -129,7 +129,7 @@ def _expect_bands(submission, settings):
                 source="the contract's 1 %; Wilson and Hilferty's formula is off by at most 0.7 % here",
                 quantity=name,
                 input={"dof": dof, "runs": count, "alpha": alpha},
-                message="The band is not that of an average of chi-square numbers.",
+                message="The band is not that of an average of chi-square values.",
                 help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
                 diagnose=lambda ends=ends, right=right: probes.of_band(ends, right),
             )
@@ -138,7 +138,7 @@ def _expect_bands(submission, settings):
 @pytest.mark.task("coverage")
 @pytest.mark.points(3)
 def test_coverage_edges(submission, rng):
-    """Coverage of many intervals, some of whose ends are met exactly and some of which are points"""
+    """Coverage of many intervals: some values lie exactly on an end, and some intervals are points"""
     n = int(rng.integers(40, 90))
     # Quarters are exact in floating point, so many values lie on an end on purpose.
     y = rng.integers(-8, 9, n) / 4
@@ -161,7 +161,7 @@ def test_bootstrap_width_drawn(submission, rng):
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(2)
 def test_bootstrap_level(submission, rng):
-    """The width follows alpha, the statistic is the given one, and all chance comes from rng"""
+    """The width depends on alpha, the given statistic is used, and all random numbers come from rng"""
     statistic = systems.AveragePolynomial([0.0, 0.0, float(rng.uniform(0.5, 3))])
     intervals.expect_level(submission, rng, statistic)
 
@@ -169,7 +169,7 @@ def test_bootstrap_level(submission, rng):
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(3)
 def test_bootstrap_blocks(submission, rng):
-    """n_boot resamples, as long as the series, of blocks of the length asked for; the series is left alone"""
+    """n_boot resamples, as long as the series, in blocks of the given length; the series stays unchanged"""
     intervals.expect_resamples(submission, int(rng.integers(2**31)))
 
 
@@ -211,7 +211,7 @@ def test_contact_force_shifted(submission, rng):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(3)
 def test_cross_validate_leak(submission, rng):
-    """The model that is asked about a run has never seen it, fold by fold"""
+    """Fold by fold, a run is predicted by a model that has never seen it"""
     count = int(rng.integers(4, 7))
     shared.expect_folds(submission, cases.pushed_runs(rng, [25] * count), count)
 
@@ -219,7 +219,7 @@ def test_cross_validate_leak(submission, rng):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(3)
 def test_cross_validate_uneven(submission, rng):
-    """Folds of different size, of runs of different length, are scored by their samples"""
+    """Folds of different sizes, with runs of different lengths, are scored by their samples"""
     lengths = rng.permutation([8, 12, 20, 30, 45, 60, 80])
     shared.expect_folds(submission, cases.pushed_runs(rng, lengths), int(rng.choice([4, 5])))
 
@@ -230,7 +230,7 @@ def test_cross_validate_uneven(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_good(submission, rng):
-    """A good simulation of runs of different length and step is accepted, and everything left as it was"""
+    """A good simulation of runs of different length and step is accepted; its arguments stay unchanged"""
     recordings = cases.recordings(rng)
     cases.expect_verdict(submission, rng, recordings, twins.simulated(recordings))
 
@@ -249,7 +249,7 @@ def test_validate_wrong_mass(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_lag(submission, rng):
-    """One lag for all runs is found to a fraction of a sample, late or early, the same in each or not"""
+    """One lag for all runs is found to a fraction of a sample, late or early, equal in all runs or not"""
     recordings = cases.recordings(rng, count=3, dts=(0.02,))
     for sign in (1, -1):
         late = sign * 0.02 * (int(rng.integers(2, 4)) + float(rng.uniform(0.35, 0.65)))
@@ -267,7 +267,7 @@ def test_validate_lag(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_margins(submission, rng):
-    """Each of the four intervals is held against its own margin, and no number is enough by itself"""
+    """Each of the four intervals is compared with its own margin, and no number is enough by itself"""
     case = bundles.apart(rng, int(rng.integers(3, 5)))
     bundles.expect_margins(submission, case, bundles.facts(case))
 
@@ -275,7 +275,7 @@ def test_validate_margins(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_calibration(submission, rng):
-    """A simulation is judged by runs that it was not calibrated on, by more than one, or not at all"""
+    """A simulation is judged by two or more runs on which it was not calibrated, or not at all"""
     recordings = cases.recordings(rng, count=5)
     mass = 1.5 * twins.MASS
     good, bad = twins.simulated(recordings), twins.simulated(recordings, mass=mass, offset=0.2)

@@ -160,7 +160,7 @@ def test_motor_overspeed(submission, rng):
 @pytest.mark.task("backlash")
 @pytest.mark.points(5)
 def test_backlash_swings(submission, rng):
-    """For motions of any speed the output is half the gap behind each way, and stays at rest for small ones"""
+    """At any speed the output is half the gap behind each way, and stays at rest for small ones"""
     parts.expect_swings(submission, rng)
 
 

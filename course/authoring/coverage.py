@@ -42,12 +42,12 @@ __all__ = [
 
 _LINES = re.compile(r"([1-9]\d*)(?:-([1-9]\d*))?")
 _KINDS = ("heading", "objective", "example", "exercise", "question")
-#: How a part came over, in one word.
+#: What the course made of a part of the chapter, in one word.
 WORDS = {
-    "kept": "the same, in other words",
-    "deeper": "says more, or has you do it",
-    "measured": "there a claim, here a number that you can measure again",
-    "corrected": "not quite right there, or no longer; here it is put right, with the reason",
+    "kept": "the same content, in other words",
+    "deeper": "the course says more, or lets you do it yourself",
+    "measured": "a claim in the chapter; in the course a number that you can measure again",
+    "corrected": "not quite right in the chapter, or not any more; the course corrects it and says why",
 }
 
 Filled = Annotated[str, msgspec.Meta(min_length=1)]
@@ -59,7 +59,7 @@ class Part(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=T
     Attributes:
         lines: where it stands there, "12" or "12-15", or several of these with commas.
         what: a name for it that is not the chapter's own sentence.
-        word: how it came over, one of ``WORDS``.
+        word: what the course made of it, one of ``WORDS``.
         where: the places of the course that have it; see ``docs/coverage.toml``.
     """
 
@@ -221,7 +221,7 @@ def as_markdown(coverage: Coverage) -> str:
         "# Where the course has what the chapter has",
         "",
         "The course grew out of a chapter that introduces physics simulation for robots. If you know that",
-        "chapter, this page says where each part of it is now, and how it came over:",
+        "chapter, this page says where each part of it is now, and what became of it:",
         "",
         *(f"- **{word}**: {meaning}." for word, meaning in WORDS.items()),
         "",

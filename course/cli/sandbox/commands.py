@@ -97,7 +97,8 @@ def play(
         typer.Option("--duration", metavar="S", help="Simulated seconds; the scene's own if left out."),
     ] = None,
     csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="FILE", help="Write positions and velocities over time, as a table.")
+        Path | None,
+        typer.Option("--csv", metavar="FILE", help="Write positions and velocities over time, as a table."),
     ] = None,
     every: Annotated[
         float, typer.Option("--every", metavar="S", help="Seconds between the samples of --csv.")

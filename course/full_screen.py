@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from textual.app import ComposeResult
 
-__all__ = ["FullScreenApp", "Overlay", "Tell"]
+__all__ = ["FullScreenApp", "Overlay", "TextOverlay"]
 
 #: How long a message stays in the last line, in s.
 _MESSAGE = 4.0
@@ -139,7 +139,7 @@ class Overlay(ModalScreen[Answer | None]):
         self.close(None)
 
 
-class Tell(Overlay[str]):
+class TextOverlay(Overlay[str]):
     """Something to read. Dismissed with the key that closed it, if it was one of ``keys``.
 
     Args:

@@ -30,8 +30,18 @@ from course.engines.base import AS_IT_COMES, Tuning
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["BUDGET", "TOPICS", "Choice", "Left", "Option", "Options", "candidates", "choices", "options_of",
-           "tuning"]  # fmt: skip
+__all__ = [
+    "BUDGET",
+    "TOPICS",
+    "Choice",
+    "Option",
+    "Options",
+    "UnusedOption",
+    "candidates",
+    "choices",
+    "options_of",
+    "tuning",
+]  # fmt: skip
 
 #: The most iterations that a solver may be given in a step.
 BUDGET = 100
@@ -74,7 +84,7 @@ class Option(msgspec.Struct, frozen=True, kw_only=True):
     values: dict[str, list[Any]] = msgspec.field(name="try", default_factory=dict)
 
 
-class Left(msgspec.Struct, frozen=True, kw_only=True):
+class UnusedOption(msgspec.Struct, frozen=True, kw_only=True):
     """One option that keeps its default in every test."""
 
     name: str
@@ -87,7 +97,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
     documented: str
     option: tuple[Option, ...] = ()
-    left: tuple[Left, ...] = ()
+    left: tuple[UnusedOption, ...] = ()
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):

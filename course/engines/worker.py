@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
     from course.engines.base import Adapter, Scene, World
 
-__all__ = ["Desk", "main"]
+__all__ = ["EngineServer", "main"]
 
 
-class Desk:
+class EngineServer:
     """Does what it is asked with one engine.
 
     Args:
@@ -99,7 +99,7 @@ def main(arguments: list[str]) -> int:
         from course.engines import settings
         from course.engines.registry import load
 
-        desk = Desk(load(arguments[0]), functools.partial(settings.tuning, arguments[0]))
+        desk = EngineServer(load(arguments[0]), functools.partial(settings.tuning, arguments[0]))
     except Exception as error:  # noqa: BLE001 - an extension module may raise anything when it cannot load
         say({"status": "unavailable", "message": f"{type(error).__name__}: {error}"})
         return 0

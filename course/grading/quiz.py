@@ -25,7 +25,7 @@ from course.quizzing.bank import MAX_SEED, Bank
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 if TYPE_CHECKING:
-    from course.quizzing.attempt import Marked
+    from course.quizzing.attempt import MarkedQuestion
 
 __all__ = [
     "EXERCISE_ID",
@@ -209,7 +209,7 @@ def _inconsistent(message: str, version: str = "") -> UngradableError:
     )
 
 
-def _check(marked: Marked, seed: int) -> CheckResult:
+def _check(marked: MarkedQuestion, seed: int) -> CheckResult:
     posed, chosen = marked.posed, marked.chosen
     return CheckResult(
         id=posed.question,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from course.reading.parts import Question, Script
     from course.reading.record import InProgress
 
-__all__ = ["Asked", "answer_of", "predict"]
+__all__ = ["LessonPrediction", "answer_of", "predict"]
 
 
 def predict(lesson_id: str, number: int, text: str = "") -> Any:
@@ -30,7 +30,7 @@ def predict(lesson_id: str, number: int, text: str = "") -> Any:
     Raises:
         NotFoundError: there is no such lesson or prediction.
     """
-    asked = Asked(lesson_id, number)
+    asked = LessonPrediction(lesson_id, number)
     if text.strip():
         asked.say(text)
     if asked.said is None and alive():
@@ -40,7 +40,7 @@ def predict(lesson_id: str, number: int, text: str = "") -> Any:
     return asked
 
 
-class Asked:
+class LessonPrediction:
     """A prediction of a lesson, and what was said.
 
     Attributes:

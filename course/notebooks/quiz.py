@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from course.catalog.load import Catalog
-    from course.quizzing.attempt import Marked, Result
-    from course.quizzing.bank import Posed
+    from course.quizzing.attempt import MarkedQuestion, Result
+    from course.quizzing.bank import PosedQuestion
 
 __all__ = ["SEED", "Marks", "marked", "quiz_notebook"]
 
@@ -58,7 +58,7 @@ def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
     return document(cells, kind="quiz", id="quiz", version=catalog.version, seed=seed)
 
 
-def _question(number: int, total: int, posed: Posed) -> list[Cell]:
+def _question(number: int, total: int, posed: PosedQuestion) -> list[Cell]:
     choices = "\n".join(f"- **{choice.letter}.** {escaped(choice.text)}" for choice in posed.choices)
     text = f"## Question {number} of {total}: {escaped(posed.title)}\n\n{escaped(posed.prompt)}\n\n{choices}"
     answer = f'answers["{posed.question}"] = ""'
@@ -121,7 +121,7 @@ class Marks:
         return "".join(parts)
 
 
-def _told(one: Marked) -> list[tuple[str, str, str]]:
+def _told(one: MarkedQuestion) -> list[tuple[str, str, str]]:
     """(what it is, the option, why) of each option worth showing."""
     key = one.posed.key
     told = [] if one.right else [("Your answer", one.chosen.text, one.chosen.explanation)]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from course.progress.store import Store
     from course.quizzing.attempt import Result
 
-__all__ = ["Taken", "take"]
+__all__ = ["OngoingAttempt", "take"]
 
 
 def take() -> Any:
@@ -28,12 +28,12 @@ def take() -> Any:
     if not alive():
         print("Without anywidget there is no attempt here: practise below, or run `course quiz take`.")  # noqa: T201 - a cell's output is its screen
         return None
-    from course.notebooks.widgets.take import Take
+    from course.notebooks.widgets.take import QuizForm
 
-    return Take(Taken())
+    return QuizForm(OngoingAttempt())
 
 
-class Taken:
+class OngoingAttempt:
     """An attempt that goes on, or a new one.
 
     Attributes:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from course.quizzing.bank import Bank, Posed
+    from course.quizzing.bank import Bank, PosedQuestion
 
 __all__ = ["FORMAT_VERSION", "AnswerFile", "read_answers"]
 
@@ -51,7 +51,7 @@ class AnswerFile:
         """Raise the UsageError that points at the line of ``key`` (empty: the whole file)."""
         raise UsageError(f"{self.path}{self._at(key)}: {problem}", help=fix, code=code)
 
-    def choose(self, posed: Sequence[Posed], bank: Bank, seed: int) -> dict[str, str]:
+    def choose(self, posed: Sequence[PosedQuestion], bank: Bank, seed: int) -> dict[str, str]:
         """Option ids by question id.
 
         Args:
@@ -96,7 +96,7 @@ class AnswerFile:
         fix = f"Did you mean {close[0]}?" if close else f"The questions are {', '.join(asked)}."
         self.fail(name, f"there is no question {name[:60]!r}.", fix, "question_not_found")
 
-    def _option(self, name: str, posed: Posed, bank: Bank, seed: int) -> str:
+    def _option(self, name: str, posed: PosedQuestion, bank: Bank, seed: int) -> str:
         given = self.answers[name]
         if isinstance(given, int) and not isinstance(given, bool):
             given = str(given)
@@ -112,7 +112,7 @@ class AnswerFile:
             self._unknown_option(name, given, posed, bank, seed)
         return choice.id
 
-    def _unknown_option(self, name: str, given: str, posed: Posed, bank: Bank, seed: int) -> NoReturn:
+    def _unknown_option(self, name: str, given: str, posed: PosedQuestion, bank: Bank, seed: int) -> NoReturn:
         options = ", ".join(f"{choice.letter} ({choice.id})" for choice in posed.choices)
         if any(given == option.id for variant in _variants(bank, name) for option in variant.option):
             self.fail(

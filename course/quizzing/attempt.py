@@ -14,9 +14,18 @@ from course.quizzing.bank import MAX_SEED
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from course.quizzing.bank import Bank, Choice, Posed
+    from course.quizzing.bank import Bank, Choice, PosedQuestion
 
-__all__ = ["PASS_SHARE", "Marked", "Result", "check_seed", "fresh_seed", "mark", "mark_sentence", "needed"]
+__all__ = [
+    "PASS_SHARE",
+    "MarkedQuestion",
+    "Result",
+    "check_seed",
+    "fresh_seed",
+    "mark",
+    "mark_sentence",
+    "needed",
+]
 
 #: The share of the questions that passes. A fraction: 0.7 as a float is a little less than 7/10.
 PASS_SHARE = Fraction(7, 10)
@@ -28,10 +37,10 @@ _PATIENCE = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Marked:
+class MarkedQuestion:
     """A question, and what was answered."""
 
-    posed: Posed
+    posed: PosedQuestion
     chosen: Choice
 
     @property
@@ -43,7 +52,7 @@ class Marked:
 class Result:
     """A scored attempt; one point a question."""
 
-    marked: tuple[Marked, ...]
+    marked: tuple[MarkedQuestion, ...]
 
     @property
     def score(self) -> int:
@@ -58,7 +67,7 @@ class Result:
         return self.score >= needed(self.total)
 
     @property
-    def missed(self) -> tuple[Marked, ...]:
+    def missed(self) -> tuple[MarkedQuestion, ...]:
         return tuple(marked for marked in self.marked if not marked.right)
 
 
@@ -72,7 +81,7 @@ def mark_sentence(total: int) -> str:
     return f"{needed(total)} right answers of {total} pass"
 
 
-def mark(posed: Sequence[Posed], answers: Mapping[str, str]) -> Result:
+def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:
     """Score answers: option ids (or letters) by question id.
 
     Raises:
@@ -83,7 +92,7 @@ def mark(posed: Sequence[Posed], answers: Mapping[str, str]) -> Result:
         chosen = question.choice(answers[question.question])
         if chosen is None:
             raise KeyError(answers[question.question])
-        marked.append(Marked(question, chosen))
+        marked.append(MarkedQuestion(question, chosen))
     return Result(tuple(marked))
 
 

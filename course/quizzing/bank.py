@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from course.catalog.questions import Question, Variant
     from course.catalog.reading import Document
 
-__all__ = ["LETTERS", "MAX_SEED", "Bank", "Choice", "Posed", "pose_case", "same_answer"]
+__all__ = ["LETTERS", "MAX_SEED", "Bank", "Choice", "PosedQuestion", "pose_case", "same_answer"]
 
 MAX_SEED = 2**31 - 1
 LETTERS = "abcd"
@@ -61,7 +61,7 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Posed:
+class PosedQuestion:
     """One question as one seed asks it."""
 
     question: str
@@ -128,7 +128,7 @@ class Bank:
             total.update(hashlib.sha256(document.path.read_bytes()).digest())
         return total.hexdigest()
 
-    def pose(self, seed: int, only: Sequence[str] | None = None) -> tuple[Posed, ...]:
+    def pose(self, seed: int, only: Sequence[str] | None = None) -> tuple[PosedQuestion, ...]:
         """The questions as ``seed`` asks them; ``only`` these, or all.
 
         Raises:
@@ -145,7 +145,7 @@ class Bank:
         index = draw(seed, question.id, "variant") % len(question.variant)
         return index, question.variant[index]
 
-    def _pose(self, document: Document[Question], seed: int) -> Posed:
+    def _pose(self, document: Document[Question], seed: int) -> PosedQuestion:
         question = document.value
         index, variant = self._pick(question, seed)
         case = draw(seed, question.id, variant.id, "case") % variant.cases
@@ -167,7 +167,7 @@ def draw(seed: int, *words: str) -> int:
     return int.from_bytes(hashlib.sha256("/".join((str(seed), *words)).encode()).digest()[:8], "big")
 
 
-def pose_case(document: Document[Question], variant_index: int, case: int) -> Posed:
+def pose_case(document: Document[Question], variant_index: int, case: int) -> PosedQuestion:
     """A variant with the numbers of one of its cases, options in the order of the file.
 
     Raises:
@@ -188,7 +188,7 @@ def pose_case(document: Document[Question], variant_index: int, case: int) -> Po
         )
         for index, option in enumerate(variant.option)
     )
-    return Posed(
+    return PosedQuestion(
         question=question.id,
         title=question.title,
         variant=variant.id,
@@ -199,7 +199,7 @@ def pose_case(document: Document[Question], variant_index: int, case: int) -> Po
     )
 
 
-def _replace_choices(posed: Posed, choices: Sequence[Choice]) -> Posed:
+def _replace_choices(posed: PosedQuestion, choices: Sequence[Choice]) -> PosedQuestion:
     from dataclasses import replace
 
     placed = tuple(replace(choice, letter=letter) for choice, letter in zip(choices, LETTERS, strict=True))

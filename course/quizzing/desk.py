@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from course.progress.quiz import Attempt
     from course.quizzing.attempt import Result
-    from course.quizzing.bank import Bank, Posed
+    from course.quizzing.bank import Bank, PosedQuestion
 
     Record = Callable[[str, str, dict[str, object]], None]
 
@@ -51,7 +51,7 @@ def answered(attempt: Attempt, question: str, option: str, record: Record) -> No
     record(quiz.ANSWER, question, quiz.answer_data(attempt.id, option))
 
 
-def finished(attempt: Attempt, posed: Sequence[Posed], record: Record) -> Result:
+def finished(attempt: Attempt, posed: Sequence[PosedQuestion], record: Record) -> Result:
     """Score an attempt that is answered, and record its end."""
     result = mark(posed, attempt.answers)
     right = {marked.posed.question: marked.right for marked in result.marked}

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from course.isolation.levels import Level, Spawner
     from course.reading.parts import Cell
 
-__all__ = ["DEADLINE_S", "STOPPED", "CellRunner", "Gave"]
+__all__ = ["DEADLINE_S", "STOPPED", "CellOutput", "CellRunner"]
 
 #: A lesson's own cell takes under two seconds; one that was changed may take this long before it is stopped.
 DEADLINE_S = 60.0
@@ -88,7 +88,7 @@ def run(source, name):
 
 
 @dataclass(frozen=True, slots=True)
-class Gave:
+class CellOutput:
     """What a run of a cell gave.
 
     Attributes:
@@ -156,7 +156,7 @@ class CellRunner:
         except LoadRefusedError as refused:
             raise IsolationError(f"the cells' process did not load: {refused.failure}") from None
 
-    def run(self, cell: Cell) -> Gave:
+    def run(self, cell: Cell) -> CellOutput:
         """Run a cell, and before it what it needs.
 
         Raises:
@@ -171,9 +171,9 @@ class CellRunner:
                 earlier.append(before.number)
             if gave.error:
                 which = f"Cell {before.number}, which this one needs," if before.number else "A hidden cell"
-                return Gave("", f"{which} did not run.\n{gave.error}", gave.seconds, tuple(earlier))
+                return CellOutput("", f"{which} did not run.\n{gave.error}", gave.seconds, tuple(earlier))
         gave = self._run_one(cell)
-        return Gave(gave.printed, gave.error, gave.seconds, tuple(earlier))
+        return CellOutput(gave.printed, gave.error, gave.seconds, tuple(earlier))
 
     def interrupt(self) -> None:
         """Stop the cell that is running; what it printed so far is kept."""
@@ -210,7 +210,7 @@ class CellRunner:
             used |= uses
         return needed[::-1]
 
-    def _run_one(self, cell: Cell) -> Gave:
+    def _run_one(self, cell: Cell) -> CellOutput:
         connection, source = self._connection, self._source(cell)
         if connection is None or not connection.alive:
             raise IsolationError("the cells' process has ended")
@@ -230,7 +230,7 @@ class CellRunner:
             self._ran[cell.key] = source
         else:
             self._ran.pop(cell.key, None)
-        return Gave(printed.rstrip("\n"), error, seconds)
+        return CellOutput(printed.rstrip("\n"), error, seconds)
 
     def _why(self, failure: StudentFailure) -> str:
         if self._interrupted.is_set():

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from course.progress.store import Event
     from course.reading.record import Judgement
 
-__all__ = ["Said", "Tally", "predictions_of", "tally"]
+__all__ = ["RecordedPrediction", "Tally", "predictions_of", "tally"]
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class RecordedPrediction:
     """One prediction.
 
     Attributes:
@@ -53,12 +53,12 @@ class Tally:
         return self.right + self.nearly + self.wrong + self.unjudged
 
 
-def predictions_of(events: Iterable[Event]) -> tuple[Said, ...]:
+def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
     """The predictions that events of kind "prediction" tell of, in the order they were made.
 
     What was said first to a question stays, as the reader has it; the last judgement counts.
     """
-    found: dict[tuple[str, str], Said] = {}
+    found: dict[tuple[str, str], RecordedPrediction] = {}
     for event in events:
         if event.kind != "prediction":
             continue
@@ -67,13 +67,15 @@ def predictions_of(events: Iterable[Event]) -> tuple[Said, ...]:
         if said is None:
             number = data.get("number")
             text = str(data.get("text", ""))
-            found[place] = Said(*place, number if isinstance(number, int) else 0, text, event.at)
+            found[place] = RecordedPrediction(
+                *place, number if isinstance(number, int) else 0, text, event.at
+            )
         elif judged in JUDGEMENTS and said.text:
             found[place] = replace(said, judged=judged)
     return tuple(found.values())
 
 
-def tally(predictions: Iterable[Said]) -> Tally:
+def tally(predictions: Iterable[RecordedPrediction]) -> Tally:
     """Count them."""
     counts = dict.fromkeys(Tally.__dataclass_fields__, 0)
     for one in predictions:

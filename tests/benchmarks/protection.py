@@ -35,7 +35,11 @@ from course.authoring.exercises.variants import (  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
-from course.scoring.judging.session import GradingSession, Submission, kept_on  # noqa: E402
+from course.scoring.judging.session import (  # noqa: E402
+    GradingSession,
+    Submission,
+    pinned_to,
+)
 from course.scoring.kit import expectations  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")
@@ -122,7 +126,7 @@ def protection(exercise_id: str, rounds: int) -> None:
         f" {statistics.median(extra):.2f} of 15 ms a worker and 40 us a callback (target 1)"
     )
     if exercise_id == "integrators":
-        with kept_on(guarded._processor):  # as in a session that grades
+        with pinned_to(guarded._processor):  # as in a session that grades
             worker_start(guarded, work["solution"], exercise.module)
             callbacks(guarded)
         per_pytest(guarded, exercise.module, work["solution"], "one_pytest.py")

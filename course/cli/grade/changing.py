@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from course.grading.gradebook.book import Gradebook
     from course.grading.gradebook.records import SubmittedAt
     from course.grading.results.effective import Effective
-    from course.grading.results.journal import Moved
+    from course.grading.results.journal import ScoreChange
     from course.grading.results.roster import Roster
     from course.grading.running.rerun import Regraded
 
@@ -217,7 +217,7 @@ def late(
     return 0
 
 
-def _show_moved(console: Console, moved: list[Moved], *, dry_run: bool) -> None:
+def _show_moved(console: Console, moved: list[ScoreChange], *, dry_run: bool) -> None:
     for one in moved[:_SHOWN]:
         scores = f"{_points(one.before)} -> {_points(one.after)}"
         console.item(f"{one_line(one.student)} {one.exercise}", scores)

@@ -6,9 +6,9 @@ import msgspec
 
 from course.cli.frame.replies import Envelope
 from course.grading.gradebook.records import Decision, Run
-from course.grading.results.journal import Moved
+from course.grading.results.journal import ScoreChange
 from course.grading.running.rerun import Change
-from course.grading.running.summary import Trouble
+from course.grading.running.summary import Ungraded
 
 __all__ = [
     "AssignedOne",
@@ -40,7 +40,7 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     seed: int
     elapsed_s: float
     out: str
-    troubled: tuple[Trouble, ...]
+    troubled: tuple[Ungraded, ...]
     unrecognised: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     strangers: tuple[str, ...] = ()
@@ -137,7 +137,7 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
     time_unknown: int
     unknown_names: tuple[str, ...]
     dry_run: bool = False
-    moved: tuple[Moved, ...] = ()
+    moved: tuple[ScoreChange, ...] = ()
 
 
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):

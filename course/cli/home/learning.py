@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from course.cli.frame.terminal.console import Console
     from course.progress.store import Event
     from course.reading.parts import Script
-    from course.reading.predictions import Said
+    from course.reading.predictions import RecordedPrediction
 
 __all__ = ["Learning", "day", "show_learning"]
 
@@ -48,7 +48,7 @@ class Learning:
 
     # -- predictions -----------------------------------------------------------------------------------
 
-    def _predictions(self, said: Sequence[Said]) -> PredictionsState:
+    def _predictions(self, said: Sequence[RecordedPrediction]) -> PredictionsState:
         lessons = [one for one in self._catalog.lesson_ids() if any(each.lesson == one for each in said)]
         days = sorted({_day(one) for one in said})
         return PredictionsState(
@@ -75,12 +75,12 @@ class Learning:
         except CourseError:
             return None
 
-    def _question(self, said: Said) -> str:
+    def _question(self, said: RecordedPrediction) -> str:
         script = self._scripts(said.lesson)
         asked = next((one for one in script.questions if one.key == said.key), None) if script else None
         return asked.words if asked else ""
 
-    def _section(self, said: Said) -> tuple[str, str]:
+    def _section(self, said: RecordedPrediction) -> tuple[str, str]:
         """Where it was asked, as "lesson#section", and the title of that section; "" if it is gone."""
         script = self._scripts(said.lesson)
         asked = next((one for one in script.questions if one.key == said.key), None) if script else None
@@ -111,7 +111,7 @@ class Learning:
 
     # -- what to read again ----------------------------------------------------------------------------
 
-    def _revisit(self, said: Sequence[Said]) -> Iterable[Revisit]:
+    def _revisit(self, said: Sequence[RecordedPrediction]) -> Iterable[Revisit]:
         why: dict[str, list[str]] = {}
         for one in self.mistakes:
             if one.mended_at is None:
@@ -200,7 +200,7 @@ def _in_words(counts: PredictionsOf) -> str:
     return ", ".join(f"{number} {word}" for number, word in named if number)
 
 
-def _counts(of: str, said: Sequence[Said]) -> PredictionsOf:
+def _counts(of: str, said: Sequence[RecordedPrediction]) -> PredictionsOf:
     counted = tally(said)
     return PredictionsOf(
         of=of,
@@ -224,7 +224,7 @@ def _looks_like(exercise: Exercise, code: str) -> str:
     return entry.looks_like if entry else ""
 
 
-def _day(said: Said) -> str:
+def _day(said: RecordedPrediction) -> str:
     return said.at.astimezone().strftime("%Y-%m-%d")
 
 

@@ -47,7 +47,7 @@ def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose
         seconds = time.perf_counter() - begin
     if here is not None and path.is_relative_to(here.workspace.root):
         checking.record_verdict(here, exercise, module.source, verdict, seconds)
-    problem = checking.unlike_verdict(verdict)
+    problem = checking.error_without_checks(verdict)
     if problem is not None:
         raise problem
     show_verdict(console, exercise, verdict, verbose=verbose)

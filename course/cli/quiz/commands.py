@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from course.progress.quiz import Attempt
-    from course.quizzing.attempt import Marked
-    from course.quizzing.bank import Posed
+    from course.quizzing.attempt import MarkedQuestion
+    from course.quizzing.bank import PosedQuestion
     from course.quizzing.review import Due
 
 __all__ = ["app", "history", "review", "take"]
@@ -114,7 +114,7 @@ def _need_terminal(console: Console, command: str) -> None:
     )
 
 
-def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed]) -> bool:
+def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion]) -> bool:
     """Ask what is not answered yet; False if the student stops."""
     for number, question in enumerate(posed, start=1):
         if question.question in attempt.answers:
@@ -156,7 +156,9 @@ def _no_seed(path: Path, command: str) -> NoReturn:
     )
 
 
-def _finish(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Posed], *, resumed: bool) -> int:
+def _finish(
+    console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion], *, resumed: bool
+) -> int:
     """Score, record, show."""
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
@@ -187,7 +189,7 @@ def _finish(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pose
     return 0 if result.passed else 1
 
 
-def _step(missed: Sequence[Marked], due: Sequence[Due], *, passed: bool) -> str:
+def _step(missed: Sequence[MarkedQuestion], due: Sequence[Due], *, passed: bool) -> str:
     """The command to run next."""
     if passed:
         return "course quiz review" if due else "course"
@@ -218,7 +220,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     if questions:
         return screen.hand_out(console, desk.here, posed, seed, "review")
     screen.show_keys(console)
-    marked: list[Marked] = []
+    marked: list[MarkedQuestion] = []
     for number, question in enumerate(posed, start=1):
         one = screen.ask(console, question, number, len(posed))
         if one is None:
@@ -243,14 +245,14 @@ def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids
     return _end_review(console, desk, seed, marked)
 
 
-def _reviewed(desk: Desk, posed: Posed, option: str, seed: int) -> Marked:
+def _reviewed(desk: Desk, posed: PosedQuestion, option: str, seed: int) -> MarkedQuestion:
     """Mark and record one answer of a review."""
     (marked,) = mark([posed], {posed.question: option}).marked
     desk.here.record(quiz.REVIEW, posed.question, quiz.review_data(seed, option, right=marked.right))
     return marked
 
 
-def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[Marked]) -> int:
+def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[MarkedQuestion]) -> int:
     due = desk.reviews()
     missed = [one for one in marked if not one.right]
     if marked:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from course.cli.frame.here import Here
     from course.cli.frame.terminal.console import Console
     from course.progress.quiz import Attempt, QuizHistory
-    from course.quizzing.attempt import Marked, Result
-    from course.quizzing.bank import Choice, Posed
+    from course.quizzing.attempt import MarkedQuestion, Result
+    from course.quizzing.bank import Choice, PosedQuestion
     from course.quizzing.review import Due
 
 __all__ = [
@@ -60,7 +60,7 @@ def show_keys(console: Console) -> None:
     console.note(_KEYS)
 
 
-def ask(console: Console, posed: Posed, number: int, total: int) -> Choice | None:
+def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choice | None:
     """Ask one question; None if the student stops or the input ends."""
     console.blank()
     _show_question(console, posed, number, total)
@@ -77,14 +77,14 @@ def ask(console: Console, posed: Posed, number: int, total: int) -> Choice | Non
         console.line(_KEYS)
 
 
-def _show_question(console: Console, posed: Posed, number: int, total: int) -> None:
+def _show_question(console: Console, posed: PosedQuestion, number: int, total: int) -> None:
     console.heading(f"Question {number} of {total}", posed.title)
     _show_prompt(console, posed)
     for choice in posed.choices:
         console.item(choice.letter, choice.text, style="bold")
 
 
-def _show_prompt(console: Console, posed: Posed, indent: int = 0) -> None:
+def _show_prompt(console: Console, posed: PosedQuestion, indent: int = 0) -> None:
     for paragraph in posed.prompt.split("\n\n"):
         console.line(paragraph, indent=indent)
 
@@ -101,7 +101,7 @@ def show_result(console: Console, result: Result) -> None:
             show_marked(console, marked, number)
 
 
-def show_marked(console: Console, marked: Marked, number: int) -> None:
+def show_marked(console: Console, marked: MarkedQuestion, number: int) -> None:
     """One answered question and why its options are right or wrong."""
     posed, chosen = marked.posed, marked.chosen
     console.blank()
@@ -163,7 +163,7 @@ def show_attempts(console: Console, attempts: Sequence[QuizAttempt], best: Attem
         console.line(f"Best: {best.score} of {best.total}; the best attempt counts.")
 
 
-def hand_out(console: Console, here: Here, posed: Sequence[Posed], seed: int, command: str) -> int:
+def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed: int, command: str) -> int:
     """Print questions, and below them the file to fill in."""
     step = f"course quiz {command} --answers answers.toml"
     template = _template(posed, seed)
@@ -190,17 +190,17 @@ def hand_out(console: Console, here: Here, posed: Sequence[Posed], seed: int, co
     return 0
 
 
-def _template(posed: Sequence[Posed], seed: int) -> str:
+def _template(posed: Sequence[PosedQuestion], seed: int) -> str:
     lines = ["format_version = 1", f"seed = {seed}", "", "[answers]"]
     return "\n".join([*lines, *(f'{question.question} = ""' for question in posed)]) + "\n"
 
 
-def _asked(posed: Posed) -> QuizAsked:
+def _asked(posed: PosedQuestion) -> QuizAsked:
     places = tuple(QuizPlace(choice.letter, choice.id, choice.text) for choice in posed.choices)
     return QuizAsked(posed.question, posed.title, posed.prompt, places)
 
 
-def question_reply(marked: Marked) -> QuizQuestion:
+def question_reply(marked: MarkedQuestion) -> QuizQuestion:
     """An answered question as a script reads it."""
     posed = marked.posed
     return QuizQuestion(

@@ -141,13 +141,13 @@ def _motion(console: Console, session: GradingSession, source: str) -> _Motion:
     """Check a module and let it compute the motion that is drawn."""
     import numpy as np
 
-    from course.cli.work.checking import grade_once, unlike_verdict
+    from course.cli.work.checking import error_without_checks, grade_once
     from course.scoring.judging.session import Submission
 
     submission = Submission({session.exercise.module: source.encode()})
     with console.working("Checking"):
         verdict = grade_once(session, submission)
-        problem = unlike_verdict(verdict)
+        problem = error_without_checks(verdict)
         if problem is not None:
             raise InternalError(problem.message, help=problem.help, code=problem.code)
         task = session.exercise.task[0].id

@@ -15,7 +15,7 @@ from course.cli.frame.arguments import ExerciseName, OneExercise  # noqa: TC001 
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Backup, NextStep
 from course.cli.frame.terminal.console import Console, current
-from course.cli.work.checking import say_which
+from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Update
 from course.errors import UsageError
@@ -38,7 +38,7 @@ def diff(exercise: ExerciseName = None) -> int:
 
     console, here = current(), Here.load()
     work = chosen_work(here, *asked_for(here, exercise))
-    say_which(console, here, work)
+    report_source_file(console, here, work)
     name = work.path
     before, after = _lines(work.stub), _lines(work.source)
     rows = list(difflib.unified_diff(before, after, f"stub/{name}", name, lineterm=""))

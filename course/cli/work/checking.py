@@ -25,18 +25,18 @@ from course.progress.history import check_data
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import CourseRef, Exercise
-    from course.cli.work.chosen import Work
+    from course.cli.work.chosen import StudentWork
     from course.scoring.judging.session import GradingSession, Submission
     from course.scoring.verdict import Verdict
 
 __all__ = [
     "check",
+    "error_without_checks",
     "grade_once",
     "open_session",
     "record_verdict",
     "reply_to",
-    "say_which",
-    "unlike_verdict",
+    "report_source_file",
 ]
 
 FAILED = 1
@@ -91,7 +91,7 @@ def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
     return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
 
 
-def say_which(console: Console, here: Here, work: Work) -> None:
+def report_source_file(console: Console, here: Here, work: StudentWork) -> None:
     """Which file was read, where there is a choice; what else there is becomes a warning."""
     if work.notebook is not None or work.notes:
         console.note(f"Reading {work.path}.")
@@ -112,7 +112,7 @@ def grade_once(session: GradingSession, submission: Submission, only: str | None
     return session.grade(submission, only=[only] if only else ())
 
 
-def unlike_verdict(verdict: Verdict) -> CourseError | None:
+def error_without_checks(verdict: Verdict) -> CourseError | None:
     """The error to report in place of a verdict that has no checks to show; None if it has."""
     if verdict.state == "graded":
         return None
@@ -173,7 +173,7 @@ def reply_to(course: CourseRef, verdict: Verdict, step: str = "", printed: str =
 def _check_one(
     console: Console,
     here: Here,
-    work: Work,
+    work: StudentWork,
     *,
     only: str | None = None,
     one_of_many: bool = False,
@@ -183,7 +183,7 @@ def _check_one(
     """Check, record, show; raises what keeps it from being checked."""
     exercise, source = work.exercise, work.source
     if form == "text":
-        say_which(console, here, work)
+        report_source_file(console, here, work)
     with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
         begin = time.perf_counter()
         with open_session(exercise, here.catalog) as session:
@@ -193,7 +193,7 @@ def _check_one(
     record_verdict(here, exercise, source, verdict, seconds, only=only, one_of_many=one_of_many)
     if form == "text":
         show_loading(console, printed, whole=verbose)
-    problem = unlike_verdict(verdict)
+    problem = error_without_checks(verdict)
     if problem is not None:
         if form != "text":
             annotate_error(console, here, work, problem, form)

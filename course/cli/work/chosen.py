@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from course.handed_in.notebook import NotebookSource
     from course.scoring.judging.session import Submission
 
-__all__ = ["Work", "asked_for", "chosen_work", "work_of", "worked_on"]
+__all__ = ["StudentWork", "asked_for", "chosen_work", "work_of", "worked_on"]
 
 NOTEBOOK = ".ipynb"
 
 
 @dataclass(frozen=True)
-class Work:
+class StudentWork:
     """What a student has of one exercise.
 
     Attributes:
@@ -89,7 +89,7 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
     )
 
 
-def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Work:
+def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> StudentWork:
     """The file of an exercise that counts, or the one that was named.
 
     Raises:
@@ -119,14 +119,14 @@ def worked_on(here: Here) -> tuple[Exercise, ...]:
     )
 
 
-def work_of(here: Here, *, warm_ups: bool = False) -> tuple[list[Work], list[FileReply]]:
+def work_of(here: Here, *, warm_ups: bool = False) -> tuple[list[StudentWork], list[FileReply]]:
     """What goes in, and what does not and why; warm-ups only if they are asked for."""
-    chosen: list[Work] = []
+    chosen: list[StudentWork] = []
     left_out: list[FileReply] = []
     for exercise in (*here.catalog.exercises(), *(here.warm_ups_started() if warm_ups else ())):
         module = _handed_in_module(here, exercise)
         notebook, why_not = _handed_in_notebook(here, exercise)
-        if isinstance(module, Work):
+        if isinstance(module, StudentWork):
             chosen.append(module)
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
@@ -152,13 +152,13 @@ def _notebook_name(exercise: Exercise) -> str:
 # -- the two kinds of files ----------------------------------------------------------------------------------
 
 
-def _module(here: Here, exercise: Exercise) -> Work:
+def _module(here: Here, exercise: Exercise) -> StudentWork:
     """The module as it lies in the workspace."""
     source = here.source(exercise)
-    return Work(exercise, exercise.module, source, source, here.stub(exercise))
+    return StudentWork(exercise, exercise.module, source, source, here.stub(exercise))
 
 
-def _notebook(here: Here, exercise: Exercise) -> Work:
+def _notebook(here: Here, exercise: Exercise) -> StudentWork:
     """The notebook as it lies in the workspace.
 
     Raises:
@@ -185,10 +185,10 @@ def _notebook(here: Here, exercise: Exercise) -> Work:
             code="too_large",
         )
     given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
-    return Work(exercise, name, data, module.source, given.source, module)
+    return StudentWork(exercise, name, data, module.source, given.source, module)
 
 
-def _is_edited(here: Here, work: Work) -> bool:
+def _is_edited(here: Here, work: StudentWork) -> bool:
     """Whether somebody wrote in a file since it was handed out."""
     if work.notebook is None:
         return here.workspace.is_edited(work.exercise.place, work.name, work.data)
@@ -196,7 +196,7 @@ def _is_edited(here: Here, work: Work) -> bool:
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
 
 
-def _beside_notebook(here: Here, module: Work) -> Work:
+def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
     """A module that was worked in, with a word about the notebook beside it if that holds something else."""
     from dataclasses import replace
 
@@ -216,7 +216,7 @@ def _beside_notebook(here: Here, module: Work) -> Work:
 # -- as they are handed in -----------------------------------------------------------------------------------
 
 
-def _handed_in_module(here: Here, exercise: Exercise) -> Work | str:
+def _handed_in_module(here: Here, exercise: Exercise) -> StudentWork | str:
     """The module as it is handed in, or why it is not."""
     if not here.workspace.path(exercise.place, exercise.module).exists():
         return _MISSING
@@ -224,7 +224,7 @@ def _handed_in_module(here: Here, exercise: Exercise) -> Work | str:
     return module if _is_edited(here, module) else _STUB
 
 
-def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[Work | None, str]:
+def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | None, str]:
     """The notebook as it is handed in; or None and why not, "" where there is none."""
     from dataclasses import replace
 

@@ -14,7 +14,7 @@ from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads
 from course.cli.frame.here import Here, cwd
 from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import after_report
-from course.cli.work.checking import say_which
+from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import ReportReply, SectionReply
 from course.errors import UsageError
@@ -50,7 +50,7 @@ def report(
     console, here = current(), Here.load()
     work = chosen_work(here, *asked_for(here, exercise))
     chosen = work.exercise
-    say_which(console, here, work)
+    report_source_file(console, here, work)
     with console.working(f"Running {work.name}"):
         made = report_of(chosen, here.catalog, work.submission)
     folder = _folder(here, chosen.place, out)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from course.cli.frame.replies import FileReply
-    from course.cli.work.chosen import Work
+    from course.cli.work.chosen import StudentWork
 
 __all__ = ["FORMAT_VERSION", "archive", "submit"]
 
@@ -116,7 +116,7 @@ def archive(
     return buffer.getvalue()
 
 
-def _packed(here: Here, works: Sequence[Work], quiz: Sequence[Mapping[str, object]]) -> bytes:
+def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str, object]]) -> bytes:
     """The archive's bytes; refused if no grading run would take them."""
     data = archive(
         here.catalog.course_id,
@@ -150,7 +150,7 @@ def _target(here: Here, output: Path | None) -> Path:
     return path
 
 
-def _describe(here: Here, work: Work) -> SubmitFile:
+def _describe(here: Here, work: StudentWork) -> SubmitFile:
     try:
         last = here.history(work.exercise).last_graded
     except CourseError:
@@ -206,7 +206,7 @@ def _show(
         console.line(f"Left out: {item.path} ({item.action}).")
 
 
-def _syntax_note(work: Work) -> str:
+def _syntax_note(work: StudentWork) -> str:
     """A warning about a file that Python cannot read; it goes in all the same."""
     try:
         with warnings.catch_warnings():

@@ -252,7 +252,7 @@ class Watcher:
                 return True
             seconds = time.perf_counter() - noticed
             checking.record_verdict(self.here, self.exercise, work.source, verdict, seconds)
-            problem = checking.unlike_verdict(verdict)
+            problem = checking.error_without_checks(verdict)
             if problem is not None:
                 raise problem
         except CourseError as error:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.extras import require
-from course.grading.cluster.coordinator import Lost, grade_on
+from course.grading.cluster.coordinator import LostBatch, grade_on
 from course.grading.cluster.reach import check_scheduler
 from course.grading.cluster.worker import grade_batch
 from course.grading.running.snapshot import in_use
@@ -228,7 +228,7 @@ def _outcome(future: Any, *, connected: bool) -> Outcome:
     try:
         if future.status in {"cancelled", "lost"}:
             # Lost beside a scheduler that is there: its worker died before the answers were fetched.
-            return Lost() if connected and future.status == "lost" else _scheduler_gone()
+            return LostBatch() if connected and future.status == "lost" else _scheduler_gone()
         error = future.exception() if future.status == "error" else None
         if error is None:
             reply = future.result()
@@ -236,7 +236,7 @@ def _outcome(future: Any, *, connected: bool) -> Outcome:
     except (CancelledError, DaskCancelledError, OSError, TimeoutError, RuntimeError):
         return _scheduler_gone()
     if isinstance(error, KilledWorker):
-        return Lost(int(getattr(error, "allowed_failures", 0)) + 1)
+        return LostBatch(int(getattr(error, "allowed_failures", 0)) + 1)
     cause = next((e for e in _chain(error) if isinstance(e, ImportError | AttributeError)), None)
     if cause is not None:
         return MissingCapabilityError(

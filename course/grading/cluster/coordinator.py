@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from course.grading.intake.students import Entry
     from course.scoring.judging.terms import Terms
 
-__all__ = ["Lost", "Outcome", "Workers", "grade_on"]
+__all__ = ["LostBatch", "Outcome", "Workers", "grade_on"]
 
 #: Submissions in a batch, at first and at most. In between, so many as take a worker about ``_BATCH_S`` wall
 #: seconds: sending a batch costs all processes together some 20 ms, and results are seen batch by batch.
@@ -44,7 +44,7 @@ _PATIENCE_S = 600.0
 
 
 @dataclass(frozen=True)
-class Lost:
+class LostBatch:
     """A batch did not come back: its worker died.
 
     Attributes:
@@ -55,7 +55,7 @@ class Lost:
 
 
 #: What became of a batch: the answers, its loss, or why none can be given at all.
-Outcome: TypeAlias = "bytes | Lost | CourseError"
+Outcome: TypeAlias = "bytes | LostBatch | CourseError"
 
 
 class Workers(Protocol):
@@ -209,7 +209,7 @@ class _Coordinator:
         except queue.Empty:
             return
         batch = self._flying.pop(number)
-        if isinstance(outcome, Lost):
+        if isinstance(outcome, LostBatch):
             self._lost(batch, outcome)
         elif isinstance(outcome, bytes):
             self._answered(batch, decode_answers(outcome))
@@ -235,7 +235,7 @@ class _Coordinator:
                 self._failure = as_error(said, answer.exit_code)
                 return
             if not answer.is_about(work.job):
-                self._lost([work], Lost())
+                self._lost([work], LostBatch())
             elif answer.verdict is None:
                 self._blame(work, killed_its_grader())
             else:
@@ -243,7 +243,7 @@ class _Coordinator:
         if len(reply.answers) < len(batch):
             raise InternalError(f"The worker on {reply.host} left submissions out.")
 
-    def _lost(self, batch: list[_Work], loss: Lost) -> None:
+    def _lost(self, batch: list[_Work], loss: LostBatch) -> None:
         if len(batch) > 1:
             self._again += batch
             return

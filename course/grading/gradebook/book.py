@@ -35,10 +35,10 @@ from course.grading.gradebook.file import (
 )
 from course.grading.gradebook.records import (
     Decision,
-    FromDownload,
     GradedExercise,
     Key,
     Override,
+    PlatformIdentity,
     Result,
     Run,
     SubmittedAt,
@@ -159,7 +159,7 @@ class Gradebook:
 
     # -- students -------------------------------------------------------------------------------------
 
-    def set_students(self, students: Mapping[str, FromDownload]) -> None:
+    def set_students(self, students: Mapping[str, PlatformIdentity]) -> None:
         """Note who students are to the system they were downloaded from."""
         with self._transaction():
             self._db.executemany(
@@ -167,11 +167,11 @@ class Gradebook:
                 [(name, msgspec.json.encode(who).decode()) for name, who in students.items()],
             )
 
-    def students(self) -> dict[str, FromDownload]:
+    def students(self) -> dict[str, PlatformIdentity]:
         """The students' identities in the system they were downloaded from; empty for plain folders."""
         with explained(self.path):
             rows = self._db.execute("SELECT student, identity FROM students").fetchall()
-        return {student: msgspec.json.decode(text, type=FromDownload) for student, text in rows}
+        return {student: msgspec.json.decode(text, type=PlatformIdentity) for student, text in rows}
 
     def add_times(self, times: Iterable[SubmittedAt], *, replace: bool = False) -> None:
         """Note when things were handed in. Of one witness's times for one content the earliest stays."""

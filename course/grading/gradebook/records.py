@@ -11,7 +11,14 @@ if TYPE_CHECKING:
     from course.scoring.verdict import Verdict
 
 __all__ = [
-    "Decision", "FromDownload", "GradedExercise", "Key", "Override", "Result", "Run", "SubmittedAt",
+    "Decision",
+    "GradedExercise",
+    "Key",
+    "Override",
+    "PlatformIdentity",
+    "Result",
+    "Run",
+    "SubmittedAt",
 ]  # fmt: skip
 
 
@@ -53,7 +60,7 @@ class GradedExercise(msgspec.Struct, frozen=True):
     position: int
 
 
-class FromDownload(msgspec.Struct, frozen=True):
+class PlatformIdentity(msgspec.Struct, frozen=True):
     """Who a student is to the system a class was downloaded from.
 
     Attributes:

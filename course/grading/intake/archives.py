@@ -27,7 +27,15 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise
 
-__all__ = ["MAX_FILE", "Held", "RefusedError", "manifest_of", "member_of", "module_in", "outline_of"]
+__all__ = [
+    "MAX_FILE",
+    "ArchiveContent",
+    "RefusedError",
+    "manifest_of",
+    "member_of",
+    "module_in",
+    "outline_of",
+]
 
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
@@ -59,7 +67,7 @@ def manifest_of(path: Path) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Held:
+class ArchiveContent:
     """What an archive holds for an exercise.
 
     Attributes:
@@ -74,14 +82,14 @@ class Held:
     copies: tuple[str, ...] = ()
 
 
-def module_in(path: Path, exercise: Exercise) -> Held | None:
+def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     """What a zip holds for an exercise, its module or a notebook; None if there is neither.
 
     Raises:
         RefusedError: the archive is one that must not be opened further, or is damaged, or holds several.
     """
 
-    def read(archive: zipfile.ZipFile, members: Members) -> Held | None:
+    def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
         manifest = _manifest(path, archive, members)
         wanted = _wanted(members, exercise)
         if not wanted:
@@ -101,7 +109,7 @@ def module_in(path: Path, exercise: Exercise) -> Held | None:
             )
         raw = members[name].filename
         notes = tuple(one_line(note) for note in _notes(path, name, raw, wanted, exercise))
-        return Held(raw, content, notes, tuple(members[other].filename for other in wanted))
+        return ArchiveContent(raw, content, notes, tuple(members[other].filename for other in wanted))
 
     return _opened(path, read)
 

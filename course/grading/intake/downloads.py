@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from course import extras
 from course.errors import NotFoundError, UsageError
-from course.grading.gradebook.records import FromDownload
+from course.grading.gradebook.records import PlatformIdentity
 from course.grading.intake.names import is_meant
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ class Student:
 
     name: str
     place: Place
-    identity: FromDownload | None = None
+    identity: PlatformIdentity | None = None
     submitted_at: float | None = None
     flagged_late: bool = False
     typed: tuple[str, ...] = ()
@@ -230,7 +230,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
     found = ClassList("moodle")
     owned: dict[str, Path] = {}
     shared: dict[str, list[tuple[str, Path]]] = {}
-    people: dict[str, FromDownload] = {}
+    people: dict[str, PlatformIdentity] = {}
     typed: dict[str, list[str]] = {}
     for raw in names:
         match = _MOODLE.fullmatch(raw)
@@ -238,7 +238,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
             found.unrecognised.append(f"{_text(raw)}: not a name that Moodle gives")
             continue
         student = _text(f"{match['name']}_{match['key']}")
-        people[student] = FromDownload("moodle", match["key"], _text(match["name"]))
+        people[student] = PlatformIdentity("moodle", match["key"], _text(match["name"]))
         if match["plugin"] != "file":
             typed.setdefault(student, []).append(_text(raw))
             continue  # text typed into the platform, comments: no files of the student's
@@ -284,7 +284,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
             )
             continue
         name = next(iter(spelled[key]))
-        identity = FromDownload("canvas", key, name)
+        identity = PlatformIdentity("canvas", key, name)
         place = Place(folder, tuple(items))
         words = tuple(typed.get(key, ()))
         found.students.append(
@@ -343,14 +343,14 @@ def _metadata(path: Path) -> dict[str, Any]:
     return content
 
 
-def _submitters(about: Any) -> list[FromDownload]:
+def _submitters(about: Any) -> list[PlatformIdentity]:
     listed = about.get(":submitters") if isinstance(about, dict) else None
     found = []
     for item in listed if isinstance(listed, list) else ():
         facts = item if isinstance(item, dict) else {}
         name, sid, email = (str(facts.get(f":{field}") or "").strip() for field in ("name", "sid", "email"))
         if name or sid or email:
-            found.append(FromDownload("gradescope", sid or email, name, email, sid))
+            found.append(PlatformIdentity("gradescope", sid or email, name, email, sid))
     return found
 
 

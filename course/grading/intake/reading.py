@@ -26,7 +26,7 @@ import msgspec
 
 from course.errors import InternalError, UngradableError
 from course.grading.intake.archives import (
-    Held,
+    ArchiveContent,
     RefusedError,
     manifest_of,
     member_of,
@@ -55,7 +55,7 @@ MEMORY = 1 << 30
 MAX_ANSWER = 4 << 20
 
 
-class _Ask(msgspec.Struct, frozen=True):
+class _Request(msgspec.Struct, frozen=True):
     """One file to read, and what is looked for in it.
 
     Attributes:
@@ -81,7 +81,7 @@ class _Ask(msgspec.Struct, frozen=True):
 Outline = tuple[str, str, tuple[str, ...], int]
 
 
-class _Told(msgspec.Struct, frozen=True):
+class _Reply(msgspec.Struct, frozen=True):
     """What was found: a file by its name and content, or why there is none; both None if it is not there."""
 
     problem: Problem | None = None
@@ -113,19 +113,19 @@ class Reader:
         Raises:
             RefusedError: it is none that can be graded.
         """
-        told = self._ask(_Ask("notebook", one_line(name), content=content, **_wanted(exercise)))
+        told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
-    def module_in(self, path: Path, exercise: Exercise) -> Held | None:
+    def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
         """What an archive holds for an exercise; None if nothing.
 
         Raises:
             RefusedError: it must not be opened, or is damaged.
         """
         told = self._ask(
-            _Ask("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
+            _Request("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
         )
-        return None if told.name is None else Held(told.name, told.content, told.notes, told.copies)
+        return None if told.name is None else ArchiveContent(told.name, told.content, told.notes, told.copies)
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
         """Which functions a module or a notebook defines, or each of an archive.
@@ -138,7 +138,7 @@ class Reader:
             RefusedError: it cannot be read.
         """
         where = os.fsencode(path.absolute())
-        ask = _Ask("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
+        ask = _Request("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
         return self._ask(ask).outlines
 
     def member(self, path: Path, name: str) -> bytes:
@@ -147,7 +147,7 @@ class Reader:
         Raises:
             RefusedError: there is none, or the archive must not be opened.
         """
-        ask = _Ask("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
+        ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
         return self._ask(ask).content
 
     def quiz_in(self, path: Path) -> Any:
@@ -156,7 +156,7 @@ class Reader:
         Raises:
             RefusedError: it must not be opened, or is damaged.
         """
-        told = self._ask(_Ask("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
+        told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
         return json.loads(told.content)
 
     def close(self) -> None:
@@ -171,7 +171,7 @@ class Reader:
                 if stream is not None:
                     stream.close()
 
-    def _ask(self, ask: _Ask) -> _Told:
+    def _ask(self, ask: _Request) -> _Reply:
         process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None
@@ -191,7 +191,7 @@ class Reader:
                 f"{ask.name} takes more time or memory to read than any honest file.",
                 "Hand in the .py file, or a notebook of ordinary size.",
             )
-        told = msgspec.msgpack.decode(frame, type=_Told)
+        told = msgspec.msgpack.decode(frame, type=_Reply)
         if told.problem is not None:
             problem = told.problem
             raise RefusedError(problem.code, problem.message, problem.help)
@@ -242,21 +242,21 @@ def main() -> None:
     write_frame(sink, None)
     while (frame := read_frame(source)) is not None:
         limit_cpu(cpu_s)
-        ask = msgspec.msgpack.decode(frame, type=_Ask)
+        ask = msgspec.msgpack.decode(frame, type=_Request)
         try:
             told = _answer(ask)
         except RefusedError as refused:
-            told = _Told(problem=refused.problem)
+            told = _Reply(problem=refused.problem)
         except UngradableError as error:
-            told = _Told(problem=Problem(error.code, error.message, error.help))
+            told = _Reply(problem=Problem(error.code, error.message, error.help))
         except OSError as error:
-            told = _Told(problem=Problem("unreadable", f"{ask.name} cannot be read: {error.strerror}.", ""))
+            told = _Reply(problem=Problem("unreadable", f"{ask.name} cannot be read: {error.strerror}.", ""))
         except MemoryError:
             os._exit(1)  # whoever asked takes it from there
         write_frame(sink, told)
 
 
-def _answer(ask: _Ask) -> _Told:
+def _answer(ask: _Request) -> _Reply:
     # What it is looked for by, of an exercise; the course's content is not needed to read a file.
     exercise: Any = SimpleNamespace(
         id=ask.exercise,
@@ -266,18 +266,18 @@ def _answer(ask: _Ask) -> _Told:
     )
     if ask.kind == "notebook":
         module = notebook_source(ask.content, exercise, ask.name)
-        return _Told(name=ask.name, content=module.source, record=module.record())
+        return _Reply(name=ask.name, content=module.source, record=module.record())
     path = Path(os.fsdecode(ask.path))
     if ask.kind == "outline":
-        return _Told(outlines=tuple(_outlines(path, ask.skip, ask.tasks)))
+        return _Reply(outlines=tuple(_outlines(path, ask.skip, ask.tasks)))
     if ask.kind == "member":
-        return _Told(content=member_of(path, ask.skip[0]))
+        return _Reply(content=member_of(path, ask.skip[0]))
     if ask.kind == "quiz":
-        return _Told(content=json.dumps(checked_record(manifest_of(path).get("quiz"))).encode())
+        return _Reply(content=json.dumps(checked_record(manifest_of(path).get("quiz"))).encode())
     found = module_in(path, exercise)
     if found is None:
-        return _Told()
-    return _Told(name=found.name, content=found.content, notes=found.notes, copies=found.copies)
+        return _Reply()
+    return _Reply(name=found.name, content=found.content, notes=found.notes, copies=found.copies)
 
 
 def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:

@@ -24,9 +24,9 @@ from typing import TYPE_CHECKING, Any
 
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.intake.archives import MAX_FILE, Held, RefusedError
+from course.grading.intake.archives import MAX_FILE, ArchiveContent, RefusedError
 from course.grading.intake.reading import reader
-from course.grading.intake.triage import Candidate, Found, found_for, said_of, survey
+from course.grading.intake.triage import Candidate, Found, described, found_for, survey
 from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
@@ -119,7 +119,7 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
         for exercise in exercises:
             yield Entry(name, exercise, problem=Problem("unreadable", message, _PERMISSIONS))
         return
-    taken: list[tuple[Exercise, _Taken | RefusedError | None]] = []
+    taken: list[tuple[Exercise, _FoundWork | RefusedError | None]] = []
     for exercise in exercises:
         try:
             taken.append((exercise, _find(place, archives, exercise)))
@@ -128,10 +128,10 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
         except (OSError, ValueError) as error:
             problem = _unforeseen(error)
             taken.append((exercise, RefusedError(problem.code, problem.message, problem.help)))
-    used = {at for _, item in taken if isinstance(item, _Taken) for at in item.used}
+    used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}
     left = survey(place, used, exercises)
     for exercise, item in taken:
-        if isinstance(item, _Taken):
+        if isinstance(item, _FoundWork):
             times = witnesses(student, exercise.id, item.submission.sha256, item.path)
             notes = (*item.notes, *_beside(exercise, item, left))
             yield Entry(name, exercise, item.submission, times=times, notes=notes)
@@ -139,14 +139,14 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
             yield _without(student, exercise, item, left, required=required)
 
 
-def _beside(exercise: Exercise, taken: _Taken, left: list[Candidate]) -> list[str]:
+def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
     """What lies beside a submission and has functions of the same exercise: never passed over in silence."""
     others = [
         one
         for one in found_for(exercise, left, asked=False)
         if one.defines and one.sha256 not in taken.contents
     ]
-    return [f"Also there, and not graded: {said_of(others)}."] if others else []
+    return [f"Also there, and not graded: {described(others)}."] if others else []
 
 
 def _without(
@@ -197,7 +197,7 @@ _FOR_TRIAGE = {"no_file", "ambiguous_files"}
 def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str, ...]) -> Problem:
     message = f"There is no {exercise.module} for {exercise.id}."
     if found:
-        message += f" There is {said_of(found)}."
+        message += f" There is {described(found)}."
     if typed:
         message += f" The text typed into the platform is not a file: {', '.join(map(one_line, typed))}."
     return Problem(
@@ -209,7 +209,7 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
 
 
 @dataclass(frozen=True)
-class _Taken:
+class _FoundWork:
     """What was found for an exercise by its name.
 
     Attributes:
@@ -225,7 +225,7 @@ class _Taken:
     notes: tuple[str, ...] = ()
 
 
-def _find(place: Place, archives: list[Path], exercise: Exercise) -> _Taken | None:
+def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | None:
     """The one candidate for an exercise, None if there is none; copies of one file are one.
 
     Raises:
@@ -234,7 +234,7 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _Taken | No
     notebook = Path(exercise.module).with_suffix(".ipynb").name
     plain = place.find(exercise.module, exercise.place)
     notebooks = place.find(notebook, exercise.place)
-    packed: list[tuple[Path, Held]] = []
+    packed: list[tuple[Path, ArchiveContent]] = []
     for archive in archives:
         held = reader.module_in(archive, exercise)
         if held is not None:
@@ -264,7 +264,7 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _Taken | No
     if len(candidates) > 1:
         notes.append(f"These are the same file: {one_line(names)}.")
     digests = frozenset({hashlib.sha256(contents[0]).hexdigest()})
-    return _Taken(_submission(exercise, called, contents[0]), path, tuple(used), digests, tuple(notes))
+    return _FoundWork(_submission(exercise, called, contents[0]), path, tuple(used), digests, tuple(notes))
 
 
 def _content(place: Place, path: Path, *, notebook: bool) -> bytes:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.grading.intake.downloads import Place
 
-__all__ = ["Candidate", "Found", "found_for", "said_of", "survey"]
+__all__ = ["Candidate", "Found", "described", "found_for", "survey"]
 
 _KINDS = (".py", ".ipynb", ".zip")
 #: How far one student's folder is searched: folders deep, entries looked at, files read, and files that took
@@ -176,7 +176,7 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
     )
 
 
-def said_of(candidates: Sequence[Candidate]) -> str:
+def described(candidates: Sequence[Candidate]) -> str:
     """Files and what they define, in a sentence's words."""
     told = []
     for one in candidates[:_SHOWN]:

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
     from course.grading.gradebook.book import Gradebook
 
-__all__ = ["Moved", "Recording", "counting", "recorded"]
+__all__ = ["Recording", "ScoreChange", "counting", "recorded"]
 
 Scores = dict[tuple[str, str], float | None]
 
 
-class Moved(msgspec.Struct, frozen=True):
+class ScoreChange(msgspec.Struct, frozen=True):
     """A score that counts otherwise than before; None where none counts."""
 
     student: str
@@ -34,7 +34,7 @@ class Moved(msgspec.Struct, frozen=True):
 class Recording:
     """What a decision moved, once it is made."""
 
-    moved: list[Moved] = field(default_factory=list)
+    moved: list[ScoreChange] = field(default_factory=list)
 
 
 def counting(results: Results) -> Scores:
@@ -54,7 +54,7 @@ def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
     yield told
     after = counting(Results(book))
     told.moved = [
-        Moved(*key, before.get(key), after.get(key))
+        ScoreChange(*key, before.get(key), after.get(key))
         for key in sorted({*before, *after})
         if before.get(key) != after.get(key)
     ]

@@ -33,7 +33,7 @@ from course.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from course.grading.gradebook.records import FromDownload
+    from course.grading.gradebook.records import PlatformIdentity
 
 __all__ = ["COLUMNS", "Person", "Roster", "moodle_key", "read_roster", "read_text"]
 
@@ -80,7 +80,7 @@ class Roster:
                 if value:
                     self._by.setdefault((kind, value), []).append(person)
 
-    def find(self, student: str, download: FromDownload | None = None) -> Person | None:
+    def find(self, student: str, download: PlatformIdentity | None = None) -> Person | None:
         """The one row about a student of the gradebook; None if there is none, or more than one."""
         for kind, value in _keys(student, download):
             found = self._by.get((kind, value), []) if value else []
@@ -89,7 +89,7 @@ class Roster:
         return None
 
     def match(
-        self, students: Iterable[str], downloads: Mapping[str, FromDownload]
+        self, students: Iterable[str], downloads: Mapping[str, PlatformIdentity]
     ) -> tuple[dict[str, Person], list[str]]:
         """Rows for students of a gradebook, and the students without exactly one of their own."""
         found: dict[str, Person] = {}
@@ -120,7 +120,7 @@ class Roster:
         return cls(msgspec.json.decode(text, type=tuple[Person, ...]))
 
 
-def _keys(student: str, download: FromDownload | None) -> list[tuple[str, str]]:
+def _keys(student: str, download: PlatformIdentity | None) -> list[tuple[str, str]]:
     keys = [("student", _composed(student))]
     if download is not None and download.source == "canvas":
         keys += [("canvas", download.key)]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective
     from course.grading.running.batch import Graded
     from course.grading.running.run import GradeAll
-    from course.grading.running.snapshot import Frozen
+    from course.grading.running.snapshot import Unpacked
 
 __all__ = ["Assigned", "Assignment", "Unsettled", "assign", "named", "proposals", "unsettled"]
 
@@ -205,7 +205,7 @@ def assign(
     return done
 
 
-def _entry(one: Assignment, graders: Frozen) -> Entry:
+def _entry(one: Assignment, graders: Unpacked) -> Entry:
     exercise = graders.catalog.exercise(one.exercise)
     try:
         return Entry(one.student, exercise, submission_from(exercise, one.path, one.member))

@@ -29,19 +29,19 @@ BOOK = "gradebook.sqlite"
 
 
 @dataclass
-class Taken:
+class ClaimedName:
     """A name for the results that is taken. ``graded``: whether any grader could work."""
 
     graded: bool = False
 
 
 @contextlib.contextmanager
-def taken_back(out: Path) -> Iterator[Taken]:
+def taken_back(out: Path) -> Iterator[ClaimedName]:
     """Give the name of a new folder back if the run is refused before anything was graded in it.
 
     The next command is the same one, corrected, and must not find its own folder in the way.
     """
-    new, taken = not out.exists(), Taken()
+    new, taken = not out.exists(), ClaimedName()
     try:
         yield taken
     except BaseException:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.grading.results.effective import Effective, Results
     from course.grading.running.run import GradeAll
-    from course.grading.running.snapshot import Frozen
+    from course.grading.running.snapshot import Unpacked
     from course.scoring.verdict import Verdict
 
 __all__ = ["Change", "CheckChange", "Regraded", "RerunOptions", "rerun"]
@@ -178,7 +178,7 @@ def _graders(results: Results, catalog: Catalog, against: str) -> tuple[Snapshot
 
 class _Rerun:
     def __init__(
-        self, results: Results, graders: Frozen, recorded: dict[str, Any], options: RerunOptions
+        self, results: Results, graders: Unpacked, recorded: dict[str, Any], options: RerunOptions
     ) -> None:
         self._results = results
         self._graders = graders

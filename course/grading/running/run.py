@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective
     from course.grading.results.roster import Roster
     from course.grading.running.batch import Graded
-    from course.grading.running.snapshot import Frozen
+    from course.grading.running.snapshot import Unpacked
 
     #: What turns entries into verdicts: processes on this machine, or anything else that does the same.
     GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
@@ -164,7 +164,7 @@ class _Run:
     def __init__(
         self,
         students: Sequence[Student],
-        graders: Frozen,
+        graders: Unpacked,
         folder: Path,
         options: RunOptions,
         book: Gradebook,

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from course.grading.gradebook.book import Gradebook
 
-__all__ = ["Frozen", "Snapshot", "among_graders", "frozen", "in_use", "kept"]
+__all__ = ["Snapshot", "Unpacked", "among_graders", "frozen", "in_use", "kept"]
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 #: Of this package, what a grader process imports, and what checks may.
@@ -155,7 +155,7 @@ def _damaged(sha256: str) -> IntegrityError:
 
 
 @dataclass(frozen=True)
-class Frozen:
+class Unpacked:
     """A snapshot that is unpacked.
 
     Attributes:
@@ -177,16 +177,16 @@ class Frozen:
 
 
 #: The unpacked snapshots of this process, by digest: what ``Terms.graders`` names.
-_in_use: dict[str, Frozen] = {}
+_in_use: dict[str, Unpacked] = {}
 
 
-def in_use(sha256: str) -> Frozen | None:
+def in_use(sha256: str) -> Unpacked | None:
     """The snapshot of that digest, if it is unpacked here."""
     return _in_use.get(sha256)
 
 
 @contextlib.contextmanager
-def frozen(snapshot: Snapshot) -> Iterator[Frozen]:
+def frozen(snapshot: Snapshot) -> Iterator[Unpacked]:
     """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms."""
     known = _in_use.get(snapshot.sha256)
     if known is not None:
@@ -195,7 +195,7 @@ def frozen(snapshot: Snapshot) -> Iterator[Frozen]:
     folder = private_folder()
     try:
         _unpack(snapshot.packed, folder)
-        it = _in_use[snapshot.sha256] = Frozen(snapshot, folder, Catalog(chosen(folder / "content")))
+        it = _in_use[snapshot.sha256] = Unpacked(snapshot, folder, Catalog(chosen(folder / "content")))
         yield it
     finally:
         _in_use.pop(snapshot.sha256, None)

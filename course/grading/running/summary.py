@@ -13,10 +13,10 @@ from course.scoring.failures import OURS
 if TYPE_CHECKING:
     from course.grading.results.effective import Results
 
-__all__ = ["Summary", "Trouble"]
+__all__ = ["Summary", "Ungraded"]
 
 
-class Trouble(msgspec.Struct, frozen=True):
+class Ungraded(msgspec.Struct, frozen=True):
     """One submission without a grade."""
 
     student: str
@@ -48,7 +48,7 @@ class Summary:
 
     states: Counter[str] = field(default_factory=Counter)
     passed: int = 0
-    troubled: list[Trouble] = field(default_factory=list)
+    troubled: list[Ungraded] = field(default_factory=list)
     not_submitted: int = 0
     missing: list[str] = field(default_factory=list)
     strangers: list[str] = field(default_factory=list)
@@ -89,5 +89,5 @@ class Summary:
             if verdict.error is not None and not settled:
                 error = verdict.error
                 self.troubled.append(
-                    Trouble(effective.student, effective.exercise, verdict.state, error.code, error.message)
+                    Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
                 )

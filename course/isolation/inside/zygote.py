@@ -94,7 +94,7 @@ def _end_with_grader(sock: socket.socket) -> None:
     os._exit(1)
 
 
-class _Newborn(NamedTuple):
+class _ForkSetup(NamedTuple):
     """What a fork needs to become a worker."""
 
     descriptors: list[int]
@@ -103,7 +103,7 @@ class _Newborn(NamedTuple):
     program: bytes
 
 
-def _fork_on_request(config: dict[str, Any]) -> _Newborn:
+def _fork_on_request(config: dict[str, Any]) -> _ForkSetup:
     """Fork for each request until the grader goes away; returns in the forks alone.
 
     A fork inherits every object of this process and could walk its frames. So it returns from here before a
@@ -132,7 +132,7 @@ def _fork_on_request(config: dict[str, Any]) -> _Newborn:
     while True:
         newborn = _answer(control, own_namespace)
         if newborn is not None:
-            return _Newborn(*newborn, rules, program)
+            return _ForkSetup(*newborn, rules, program)
 
 
 def _answer(control: socket.socket, own_namespace: int) -> tuple[list[int], str] | None:
@@ -178,7 +178,7 @@ def _reap(control: socket.socket, pid: int) -> None:
     ctypes.memset(_ended, 0, ctypes.sizeof(_ended))
 
 
-def _become_worker(config: dict[str, Any], newborn: _Newborn) -> socket.socket:
+def _become_worker(config: dict[str, Any], newborn: _ForkSetup) -> socket.socket:
     """In the fork: keep one socket and one output file, and give everything else up."""
     from course_worker.isolation.inside import lockdown
 

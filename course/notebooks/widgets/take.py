@@ -9,10 +9,10 @@ from typing import Any
 from course.notebooks.quiz import Marks
 from course.notebooks.widgets.form import Form
 
-__all__ = ["Take"]
+__all__ = ["QuizForm"]
 
 
-class Take(Form):
+class QuizForm(Form):
     """An attempt at the quiz.
 
     Args:

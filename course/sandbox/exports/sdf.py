@@ -17,7 +17,7 @@ from course.sandbox.exports.common import DEPTH, checked_parts, gravity_of, mome
 from course.sandbox.exports.sdf_joints import assemblies
 
 if TYPE_CHECKING:
-    from course.sandbox.exports.sdf_joints import Assembly, Held, LightLink
+    from course.sandbox.exports.sdf_joints import Assembly, LightLink, SdfJoint
     from course.sandbox.scene.loading import Chosen
     from course.sandbox.scene.parts import Part
 
@@ -136,7 +136,7 @@ def _add_inertial(link: ET.Element, mass: float, moments: tuple[float, float, fl
         _text(inertia, tag, "0")
 
 
-def _add_joint(model: ET.Element, held: Held) -> None:
+def _add_joint(model: ET.Element, held: SdfJoint) -> None:
     joint = ET.SubElement(model, "joint", name=held.name, type=held.kind)
     _text(joint, "pose", f"{number(held.place[0])} 0 {number(held.place[1])} 0 0 0")
     _text(joint, "parent", held.parent)

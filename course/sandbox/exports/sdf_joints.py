@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from course.sandbox.scene.model import Joint
     from course.sandbox.scene.parts import Part
 
-__all__ = ["Assembly", "Held", "LightLink", "assemblies"]
+__all__ = ["Assembly", "LightLink", "SdfJoint", "assemblies"]
 
 #: Mass of a rail and of a rod, as shares of what they carry: the motion changes by as much at most, and a
 #: double still has ten digits of the sum.
@@ -45,7 +45,7 @@ class LightLink:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class SdfJoint:
     """One joint of SDF.
 
     Attributes:
@@ -71,7 +71,7 @@ class Assembly:
 
     bodies: list[Part] = field(default_factory=list)
     light: list[LightLink] = field(default_factory=list)
-    held: list[Held] = field(default_factory=list)
+    held: list[SdfJoint] = field(default_factory=list)
 
 
 def assemblies(parts: Sequence[Part], joints: Sequence[Joint]) -> Iterator[Assembly]:
@@ -140,7 +140,7 @@ def _on_rails(made: Assembly, body: Part) -> None:
     if turns:
         joints.append(("turn", "revolute", (0, -1, 0), body.spin))
     made.held += [
-        Held(f"{body.name}-{name}", kind, parent, child, axis, speed=speed)
+        SdfJoint(f"{body.name}-{name}", kind, parent, child, axis, speed=speed)
         for (name, kind, axis, speed), parent, child in zip(joints, chain, chain[1:], strict=False)
     ]
 
@@ -154,7 +154,7 @@ def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> N
     parent, rate = ("world", 0.0) if other.fixed else (other.name, other.spin)
     name, turn = f"{other.name}-{body.name}", (0, -1, 0)
     if joint.kind == "pivot":
-        made.held.append(Held(name, "revolute", parent, body.name, turn, near, body.spin - rate))
+        made.held.append(SdfJoint(name, "revolute", parent, body.name, turn, near, body.spin - rate))
         return
     (ax, az), (avx, avz) = _point(other, far)
     (bx, bz), (bvx, bvz) = _point(body, near)
@@ -167,8 +167,8 @@ def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> N
         LightLink(rod, (ax + bx) / 2, (az + bz) / 2, math.atan2(dx, dz), mass, mass * length**2 / 12)
     )
     made.held += [
-        Held(f"{rod}-top", "revolute", parent, rod, turn, (0.0, -length / 2), swing - rate),
-        Held(f"{rod}-end", "revolute", rod, body.name, turn, near, body.spin - swing),
+        SdfJoint(f"{rod}-top", "revolute", parent, rod, turn, (0.0, -length / 2), swing - rate),
+        SdfJoint(f"{rod}-end", "revolute", rod, body.name, turn, near, body.spin - swing),
     ]
 
 

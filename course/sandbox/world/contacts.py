@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from course.sandbox.world.engine import Space
     from course.sandbox.world.ledger import Block, Floats, Ledger
 
-__all__ = ["MINOR", "LiveContacts", "contact_events"]
+__all__ = ["MINOR", "ContactCollector", "contact_events"]
 
 #: Contacts softer than this, in m/s, are what resting and rolling are made of.
 MINOR = 0.05
@@ -87,7 +87,7 @@ def _event(block: Block, parts: Sequence[Part], row: tuple[Any, ...]) -> Event:
     )
 
 
-class LiveContacts:
+class ContactCollector:
     """Collects contacts while they begin; cheap as long as few do."""
 
     def __init__(self, space: Space, clock: Callable[[], Clock], report: Callable[[Event], None]) -> None:

@@ -20,7 +20,7 @@ from course.sandbox.scene.model import Material
 from course.sandbox.scene.parts import layout, spawned
 from course.sandbox.scene.settings import SETTINGS, checked, number
 from course.sandbox.world.accounts import BLOCK, Accounts, Clock, History
-from course.sandbox.world.contacts import LiveContacts, contact_events
+from course.sandbox.world.contacts import ContactCollector, contact_events
 from course.sandbox.world.engine import Space
 from course.sandbox.world.events import Event
 from course.sandbox.world.pushes import Hand
@@ -134,7 +134,7 @@ class World:
         )
         self._space.space.gravity = self._gravity()
         if not self._with_receipt:
-            self._space.on_contact(LiveContacts(self._space, self._clock_now, self._report).begin)
+            self._space.on_contact(ContactCollector(self._space, self._clock_now, self._report).begin)
         self._clock = Clock(self.settings["step"])
         self._accounts = Accounts(self._space, self._gravity(), self._clock, joints=bool(scene.joint))
         self._watch = Watch(scene.view)

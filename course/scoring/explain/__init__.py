@@ -8,7 +8,7 @@ words are data (``words``).
 """
 
 from course.scoring.explain.fingerprint import Answers, fingerprint
-from course.scoring.explain.story import Failure, Story, tell
+from course.scoring.explain.story import Failure, Story, story_of
 from course.scoring.explain.table import Row, Table, matching, read_table
 from course.scoring.explain.words import Diagnosis, Words, read_words
 
@@ -24,5 +24,5 @@ __all__ = [
     "matching",
     "read_table",
     "read_words",
-    "tell",
+    "story_of",
 ]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from course.scoring.explain.table import Row
     from course.scoring.explain.words import Words
 
-__all__ = ["Failure", "Story", "tell"]
+__all__ = ["Failure", "Story", "story_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Story:
     own: frozenset[str]
 
 
-def tell(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
+def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
     """The story of a task.
 
     A program that fits decides. Where none does, the probes speak: where a nan comes from before all else,
@@ -63,7 +63,7 @@ def tell(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Stor
     guesses = [failure.guess for failure in left if failure.guess]
     shared = common(fits, [guess.code for guess in guesses])
     if shared:
-        return Story(told(shared, words), True, own)
+        return Story(merged(shared, words), True, own)
     if not all(failure.finite for failure in left):
         return Story(_origin(left, words), False, own)
     for kind in ("cause", "nan", "consequence"):
@@ -88,7 +88,7 @@ def common(fits: Sequence[Row], guesses: Sequence[str] = ()) -> tuple[str, ...]:
     return tuple(dict.fromkeys(code for code in fits[0].codes if code in shared))
 
 
-def told(codes: Sequence[str], words: Words) -> Diagnosis:
+def merged(codes: Sequence[str], words: Words) -> Diagnosis:
     """One diagnosis of several mistakes, under the code of the first."""
     parts = [words(code) for code in codes]
     if len(parts) == 1:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
-from course.scoring.explain import Failure, Story, fingerprint, read_table, read_words, tell
+from course.scoring.explain import Failure, Story, fingerprint, read_table, read_words, story_of
 from course.scoring.explain.calls import calls_between
 from course.scoring.explain.fingerprint import in_range, read
 from course.scoring.explain.table import FILE as TABLE
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from course.scoring.explain import Diagnosis, Table, Words
     from course.scoring.remote import RemoteSubmission
 
-__all__ = ["CASCADE", "Explainer", "answers", "asked", "tasks_asked"]
+__all__ = ["CASCADE", "Explainer", "answer_numbers", "answers", "tasks_asked"]
 
 #: Diagnosis of a function that calls another one of the exercise's which is wrong itself.
 CASCADE = "CALLS_A_WRONG_FUNCTION"
@@ -41,9 +41,9 @@ class Explainer:
 
     Args:
         folder: of the exercise.
-        questions: its ``questions.py``; see ``asked``. ``PARTS`` names, for checks of a function that answers
-            for several things, which thing each is about: what is wrong with one says nothing of another, so
-            each has a story of its own.
+        questions: its ``questions.py``; see ``answer_numbers``. Where one function returns several things,
+            ``PARTS`` names the thing that each check is about. A mistake in one thing says nothing about
+            another, so each thing has its own story.
     """
 
     def __init__(self, folder: Path, questions: ModuleType) -> None:
@@ -71,7 +71,7 @@ class Explainer:
                 continue
             gone = any(result.status in _GONE for result in of_task)
             names = frozenset(self._parts.get(check.id, task) for check in checks)
-            said = {} if gone else self._asked(task, remote, names)
+            said = {} if gone else self._answer_sums(task, remote, names)
             culprit = next((name for name in callers.get(task, ()) if name in wrong), None)
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
                 part = [check for check in checks if self._parts.get(check.id, task) == name]
@@ -80,13 +80,15 @@ class Explainer:
                     if check.id not in story.own:
                         results[check.id] = _retold(check, failed[check.id], story, task, culprit)
 
-    def _asked(
+    def _answer_sums(
         self, task: str, remote: RemoteSubmission, names: frozenset[str]
     ) -> dict[str, tuple[float, ...]]:
         remote.begin_check(task)
         within = self._table.within.get(task)
         try:
-            return asked(self._questions, task, lambda calls: answers(remote, task, calls), within, names)
+            return answer_numbers(
+                self._questions, task, lambda calls: answers(remote, task, calls), within, names
+            )
         except _STRANGE:
             return {}
 
@@ -94,7 +96,7 @@ class Explainer:
         failures = [
             Failure(check, failure.guess, _finite(failure.finding)) for check, failure in failed.items()
         ]
-        return tell(failures, self._fits(name, sums) if sums else (), self._words)
+        return story_of(failures, self._fits(name, sums) if sums else (), self._words)
 
     def _fits(self, name: str, sums: tuple[float, ...]) -> tuple[Row, ...]:
         return () if is_right(self._table, name, sums) else matching(self._table, name, sums)
@@ -105,7 +107,7 @@ def tasks_asked(questions: ModuleType) -> frozenset[str]:
     return frozenset(questions.QUESTIONS) | frozenset(getattr(questions, "ASK", {}))
 
 
-def asked(
+def answer_numbers(
     questions: ModuleType,
     task: str,
     answer: Callable[[Calls], list[Any]],

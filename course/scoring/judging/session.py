@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.isolation.levels import Spawner
 
-__all__ = ["GradingSession", "Scope", "Submission", "check_files", "kept_on"]
+__all__ = ["GradingSession", "Scope", "Submission", "check_files", "pinned_to"]
 
 Scope = Literal["public", "full"]
 T = TypeVar("T")
@@ -98,7 +98,7 @@ class GradingSession:
         self._explainer = _explainer(exercise)
         self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
         self._checks = CollectedChecks(check_files(exercise, catalog, scope), draws=scope == "full")
-        with kept_on(self._processor):  # the workers inherit it
+        with pinned_to(self._processor):  # the workers inherit it
             self._spawner = _open(exercise.imports, terms)
         self.level: str = self._spawner.level.value
         self._remote: RemoteSubmission | None = None
@@ -140,7 +140,7 @@ class GradingSession:
 
         Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
         """
-        with kept_on(self._processor):
+        with pinned_to(self._processor):
             verdict = self._grade(submission, only)
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
 
@@ -174,7 +174,7 @@ class GradingSession:
             UngradableError: it cannot be loaded.
             InternalError: the sandbox broke.
         """
-        with kept_on(self._processor):
+        with pinned_to(self._processor):
             try:
                 remote = self._load(submission)
             except LoadRefusedError as refused:
@@ -388,7 +388,7 @@ def _choose(processor: int | None) -> int | None:
 
 
 @contextlib.contextmanager
-def kept_on(processor: int | None) -> Iterator[None]:
+def pinned_to(processor: int | None) -> Iterator[None]:
     """Keep this thread, and the processes it starts, on one processor meanwhile.
 
     Grader and worker take turns and never run at once. On one processor a callback costs about a third of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course.engines.base import AS_IT_COMES, EngineDivergedError, Motion, NotApplicableError, Tuning
-from course.engines.worker import Desk
+from course.engines.worker import EngineServer
 
 JOB = {"do": "measure", "scenario": "free-fall", "setting": "default", "dt": 1 / 240, "quick": False}
 
@@ -46,7 +46,7 @@ class Engine:
 
 
 def desk(engine, tuned=AS_IT_COMES):
-    return Desk(engine, lambda _scenario: tuned)
+    return EngineServer(engine, lambda _scenario: tuned)
 
 
 def test_a_measurement_holds_value_and_details():

@@ -15,7 +15,14 @@ import pytest
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import _SEALED, _digest
-from course.grading.gradebook.records import FromDownload, GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import (
+    GradedExercise,
+    Key,
+    Override,
+    PlatformIdentity,
+    Result,
+    SubmittedAt,
+)
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -271,7 +278,7 @@ def full(path: Path) -> None:
         book.set_meta(seed="7", roster="[]")
         book.begin_run("run", {"timeout": 10.0})
         book.set_exercises([GradedExercise("doubling", "Doubling", 10.0, 0.7, 1)])
-        book.set_students({"ada": FromDownload("canvas", "1", "ada")})
+        book.set_students({"ada": PlatformIdentity("canvas", "1", "ada")})
         book.add(Result(key(), verdict()), {"doubling.py": b"x"})
         book.add_times([SubmittedAt("ada", "doubling", "a", "mtime", 200.0)])
         book.add_override(Override("ada", "doubling", 5.0, "first"))
@@ -378,5 +385,5 @@ def test_exercises_and_students_are_noted(tmp_path: Path) -> None:
         two = [GradedExercise("b", "B", 2.0, 0.7, 2), GradedExercise("a", "A", 3.0, 0.5, 3)]
         book.set_exercises(two)
         assert list(book.exercises()) == two
-        book.set_students({"ada_1": FromDownload("canvas", "1", "ada")})
-        assert book.students() == {"ada_1": FromDownload("canvas", "1", "ada")}
+        book.set_students({"ada_1": PlatformIdentity("canvas", "1", "ada")})
+        assert book.students() == {"ada_1": PlatformIdentity("canvas", "1", "ada")}

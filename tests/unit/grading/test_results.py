@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook.records import FromDownload, Result, SubmittedAt
+from course.grading.gradebook.records import PlatformIdentity, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.late import Policy, lateness, parse_policy, read_policy, unknown_names
 from course.grading.results.override import lift, override
@@ -281,11 +281,11 @@ def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
         "a1,Ada  LOVELACE,ada@x.org,11,s1,m1\nb1,Bob,b@x.org,12,s2,m2\nb2,Bob,c@x.org,13,s3,m3\n",
     )
     downloads = {
-        "lovelace_11": FromDownload("canvas", "11", "lovelace"),
-        "Ada Lovelace_900": FromDownload("moodle", "900", "Ada Lovelace"),
-        "Bob_901": FromDownload("moodle", "901", "Bob"),
-        "s2": FromDownload("gradescope", "s2", "Bob", "", "s2"),
-        "Bob": FromDownload("gradescope", "c@x.org", "Bob", "C@x.org", ""),
+        "lovelace_11": PlatformIdentity("canvas", "11", "lovelace"),
+        "Ada Lovelace_900": PlatformIdentity("moodle", "900", "Ada Lovelace"),
+        "Bob_901": PlatformIdentity("moodle", "901", "Bob"),
+        "s2": PlatformIdentity("gradescope", "s2", "Bob", "", "s2"),
+        "Bob": PlatformIdentity("gradescope", "c@x.org", "Bob", "C@x.org", ""),
     }
     assert roster.find("a1").student == "a1"  # type: ignore[union-attr]
     assert roster.find("Ada Lovelace") is None
@@ -297,7 +297,7 @@ def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
 
 def test_two_folders_that_claim_one_row_are_both_unmatched(tmp_path: Path) -> None:
     roster = roster_of(tmp_path, "student,canvas_id\nada,11\nbob,12\n")
-    downloads = {"x_11": FromDownload("canvas", "11", "x")}
+    downloads = {"x_11": PlatformIdentity("canvas", "11", "x")}
     found, unmatched = roster.match(["ada", "bob", "x_11", "eve"], downloads)
     assert list(found) == ["bob"]
     assert unmatched == ["ada", "eve", "x_11"]

@@ -12,7 +12,7 @@ import pytest
 from course.errors import UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.records import FromDownload, Override
+from course.grading.gradebook.records import Override, PlatformIdentity
 from course.grading.intake.downloads import class_list
 from course.grading.results.override import override
 from course.grading.results.roster import Person, read_roster
@@ -235,7 +235,7 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
     path.write_text(MOODLE, "utf-8")
     found = read_roster(path)
     assert found.people[0] == Person("Ada Lovelace_101", "Ada Lovelace", "ada@x.org", moodle_key="101")
-    assert found.find("whatever", FromDownload("moodle", "103", "?")) == found.people[2]
+    assert found.find("whatever", PlatformIdentity("moodle", "103", "?")) == found.people[2]
     path.write_text(GRADESCOPE, "utf-8")
     assert [person.student for person in read_roster(path).people] == ["S1", "S2", "S3"]
     path.write_text("Name,Email\nAda Lovelace,ada@x.org\n", "utf-8")

@@ -14,9 +14,9 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.pages import raw_rows
 from course.grading.gradebook.records import (
     Decision,
-    FromDownload,
     GradedExercise,
     Override,
+    PlatformIdentity,
     Result,
     SubmittedAt,
 )
@@ -39,7 +39,7 @@ def small_book(path: Path) -> None:
         book.set_exercises([GradedExercise("doubling", "Doubling", 10.0, 0.7, 1)])
         for number in range(STUDENTS):
             name = f"student {number}"
-            book.set_students({name: FromDownload("canvas", str(number), name)})
+            book.set_students({name: PlatformIdentity("canvas", str(number), name)})
             book.add(
                 Result(key(name, f"{number:064}"), verdict(number % 11)), {"doubling.py": b"%d" % number}
             )

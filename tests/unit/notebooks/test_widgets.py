@@ -15,12 +15,12 @@ pytest.importorskip("anywidget")
 from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import NotFoundError
-from course.notebooks.predicting import Asked, predict
+from course.notebooks.predicting import LessonPrediction, predict
 from course.notebooks.sandbox import Film, play
-from course.notebooks.taking import Taken, take
+from course.notebooks.taking import OngoingAttempt, take
 from course.notebooks.widgets.predict import Predict
 from course.notebooks.widgets.sandbox import Sandbox
-from course.notebooks.widgets.take import Take
+from course.notebooks.widgets.take import QuizForm
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
 from course.reading.record import InProgress
@@ -113,7 +113,7 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
     assert said.text == "it *grows*"
     assert len(workspace.store.events("prediction", "accuracy")) == 1
 
-    asked = Asked("numerical-integration", 1)
+    asked = LessonPrediction("numerical-integration", 1)
     asked.say("\ud83d and " + "x" * 10**6)  # whatever a page sends
     assert asked.said is not None
     assert asked.said.startswith("? and xx")
@@ -151,10 +151,10 @@ def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
     sent: list[dict[str, Any]] = []
     shown: list[bool] = []
 
-    async def cell(letters: dict[str, str]) -> Take:
+    async def cell(letters: dict[str, str]) -> QuizForm:
         shown.clear()
         widget = take()
-        assert isinstance(widget, Take)
+        assert isinstance(widget, QuizForm)
         widget.send = sent.append
         widget._open = lambda *, update=True: shown.append(update)
         said_by_a_page(widget, {"kind": "hello"})
@@ -182,7 +182,7 @@ def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
     assert attempt["score"] == len(asked)
 
     name = asked[0]["id"]
-    second = Taken()
+    second = OngoingAttempt()
     assert second.attempt.seed != first.taken.attempt.seed  # other questions, as in a terminal
     wrong = next(choice for choice in second.posed[0].choices if not choice.right)
     asyncio.run(cell({name: wrong.letter}))  # it goes on with the attempt that was begun

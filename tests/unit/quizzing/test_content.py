@@ -15,7 +15,7 @@ from course.physics import integrators as steppers
 from course.physics.contact.models import Constraint, drop
 from course.physics.systems import FreeFall, Oscillator
 from course.quizzing.attempt import mark
-from course.quizzing.bank import Bank, Posed, pose_case, same_answer
+from course.quizzing.bank import Bank, PosedQuestion, pose_case, same_answer
 
 SEEDS = range(1000)
 
@@ -26,7 +26,7 @@ def bank() -> Bank:
 
 
 @pytest.fixture(scope="module")
-def posed(bank: Bank) -> list[tuple[Posed, ...]]:
+def posed(bank: Bank) -> list[tuple[PosedQuestion, ...]]:
     return [bank.pose(seed) for seed in SEEDS]
 
 
@@ -59,14 +59,14 @@ def test_the_audit_finds_nothing() -> None:
     assert findings.sorted() == ()
 
 
-def test_no_two_options_are_equal_in_a_thousand_seeds(posed: list[tuple[Posed, ...]]) -> None:
+def test_no_two_options_are_equal_in_a_thousand_seeds(posed: list[tuple[PosedQuestion, ...]]) -> None:
     for questions in posed:
         for question in questions:
             texts = [choice.text for choice in question.choices]
             assert not any(same_answer(a, b) for i, a in enumerate(texts) for b in texts[:i])
 
 
-def test_the_key_is_never_ambiguous_in_a_thousand_seeds(posed: list[tuple[Posed, ...]]) -> None:
+def test_the_key_is_never_ambiguous_in_a_thousand_seeds(posed: list[tuple[PosedQuestion, ...]]) -> None:
     for questions in posed:
         assert all(sum(choice.right for choice in question.choices) == 1 for question in questions)
         assert mark(questions, {q.question: q.key.letter for q in questions}).score == 5
@@ -74,7 +74,7 @@ def test_the_key_is_never_ambiguous_in_a_thousand_seeds(posed: list[tuple[Posed,
 
 
 def test_every_variant_and_every_place_is_reached_in_a_thousand_seeds(
-    bank: Bank, posed: list[tuple[Posed, ...]]
+    bank: Bank, posed: list[tuple[PosedQuestion, ...]]
 ) -> None:
     reached = Counter((q.question, q.variant) for questions in posed for q in questions)
     for document in bank.documents:

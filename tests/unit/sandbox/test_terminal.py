@@ -12,7 +12,7 @@ from course.errors import MissingCapabilityError
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
-from course.sandbox.views.terminal.asking import Ask, PageOverlay
+from course.sandbox.views.terminal.asking import PageOverlay, QuestionOverlay
 from course.sandbox.world.world import World
 
 if TYPE_CHECKING:
@@ -237,15 +237,15 @@ def test_tab_hides_what_stands_beside_and_shows_it_again():
 
 def test_the_question_comes_first_and_the_comparison_after_and_both_can_be_left():
     async def script(app: Played, pilot: Pilot[None]) -> None:
-        assert isinstance(app.screen, Ask)
+        assert isinstance(app.screen, QuestionOverlay)
         app.frames(5)
         assert app.world.steps == 0
         app.screen.query_one(Input).value = "two"
         await pilot.press("enter")
-        assert isinstance(app.screen, Ask)
+        assert isinstance(app.screen, QuestionOverlay)
         app.screen.query_one(Input).value = "2,0"
         await pilot.press("enter")
-        assert not isinstance(app.screen, Ask)
+        assert not isinstance(app.screen, QuestionOverlay)
         app.frames(90)
         await pilot.pause()
         assert app.world.t == pytest.approx(2.0, abs=1 / 240)

@@ -13,10 +13,10 @@ import pytest
 from course.errors import ContentError
 from course.scoring.explain.calls import calls_between
 from course.scoring.explain.fingerprint import SAME, fingerprint, read
-from course.scoring.explain.story import Failure, common, tell
+from course.scoring.explain.story import Failure, common, story_of
 from course.scoring.explain.table import Row, Table, is_right, matching, read_table, write_table
 from course.scoring.explain.words import Diagnosis, Entry, Words, read_words
-from course.scoring.judging.explaining import asked, tasks_asked
+from course.scoring.judging.explaining import answer_numbers, tasks_asked
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,7 +41,7 @@ def failures(*codes: str | None, finite: bool = True) -> list[Failure]:
 
 
 def told(*codes: str | None, fits: tuple[Row, ...] = (), finite: bool = True) -> str | None:
-    found = tell(failures(*codes, finite=finite), fits, WORDS).diagnosis
+    found = story_of(failures(*codes, finite=finite), fits, WORDS).diagnosis
     return found and found.code
 
 
@@ -92,11 +92,11 @@ def test_an_exercise_may_ask_by_itself_and_give_numbers_for_each_part_of_a_task(
         return [x / 2 for (x,) in calls]
 
     assert tasks_asked(module) == {"half", "quarter", "report"}  # type: ignore[arg-type]
-    assert asked(module, "half", answer) == {"half": fingerprint([3.0, 4.0])}  # type: ignore[arg-type]
-    assert asked(module, "half", answer, within=0.1) == {"half": (3.0, 4.0)}  # type: ignore[arg-type]
-    assert asked(module, "quarter", answer) == {}  # type: ignore[arg-type]
+    assert answer_numbers(module, "half", answer) == {"half": fingerprint([3.0, 4.0])}  # type: ignore[arg-type]
+    assert answer_numbers(module, "half", answer, within=0.1) == {"half": (3.0, 4.0)}  # type: ignore[arg-type]
+    assert answer_numbers(module, "quarter", answer) == {}  # type: ignore[arg-type]
     names = frozenset({"report.a", "report.b"})
-    assert asked(module, "report", answer, names=names) == {"report.a": (4.0,), "report.b": (4.0,)}  # type: ignore[arg-type]
+    assert answer_numbers(module, "report", answer, names=names) == {"report.a": (4.0,), "report.b": (4.0,)}  # type: ignore[arg-type]
 
 
 # -- the table --------------------------------------------------------------------------------------------
@@ -155,7 +155,7 @@ def test_programs_that_answer_alike_are_one_and_a_probe_chooses_the_name() -> No
 def test_of_programs_with_two_mistakes_what_they_share_is_named() -> None:
     fits = Row(("SIGN_FLIPPED", "MASS_SWAPPED"), (0.0,)), Row(("ENERGY_GROWS", "MASS_SWAPPED"), (0.0,))
     assert common(fits) == ("MASS_SWAPPED",)
-    both = tell(failures(None), fits[:1], WORDS).diagnosis
+    both = story_of(failures(None), fits[:1], WORDS).diagnosis
     assert both is not None
     assert "Two mistakes at once" in both.looks_like
     assert WORDS.entries["MASS_SWAPPED"].looks_like in both.looks_like
@@ -179,7 +179,7 @@ def test_where_a_value_is_nan_only_what_makes_it_nan_is_told() -> None:
 
 
 def test_a_check_that_saw_a_fact_keeps_it() -> None:
-    story = tell(failures("CHANGED_IN_PLACE", "SIGN_FLIPPED"), (), WORDS)
+    story = story_of(failures("CHANGED_IN_PLACE", "SIGN_FLIPPED"), (), WORDS)
     assert story.own == {"check_0"}
     assert story.diagnosis is not None
     assert story.diagnosis.code == "SIGN_FLIPPED"

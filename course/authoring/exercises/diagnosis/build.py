@@ -21,7 +21,7 @@ from course.grading import kit
 from course.scoring.checks.companions import words
 from course.scoring.explain.table import FILE, Row, Table, is_right, write_table
 from course.scoring.explain.words import FILE as WORDS
-from course.scoring.judging.explaining import answers, asked, tasks_asked
+from course.scoring.judging.explaining import answer_numbers, answers, tasks_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -110,7 +110,7 @@ def _sums(questions: ModuleType, task: str, function: Callable[..., Any]) -> dic
     local: Any = LocalSubmission("", replaced={task: function})
     within = getattr(questions, "WITHIN", {}).get(task)
     found, again = (
-        asked(questions, task, lambda calls: answers(local, task, calls), within) for _ in range(2)
+        answer_numbers(questions, task, lambda calls: answers(local, task, calls), within) for _ in range(2)
     )
     return {
         name: numbers if within is None else tuple(float(f"{number:.5g}") for number in numbers)

@@ -8,7 +8,7 @@ from textual.binding import Binding
 
 from course.cli.reading.screen.doing import TasksApp
 from course.cli.reading.screen.telling import contents, keys_table
-from course.full_screen import Tell
+from course.full_screen import TextOverlay
 from course.reading.pages import Place
 from course.reading.record import InProgress
 
@@ -209,12 +209,12 @@ class ReaderApp(TasksApp):
 
     def action_contents(self) -> None:
         """The sections of this lesson, and the other lessons, with what is done."""
-        from course.cli.reading.screen.asking import Choose
+        from course.cli.reading.screen.asking import ChoiceOverlay
 
         self.keep_place()
         here = (self.page.place() or Place()).block
         options, at = contents(self.catalog, self.progress, here, self._is_read, self._practice)
-        self.push_screen(Choose(self.progress.script.lesson.title, options, at), self._chosen)
+        self.push_screen(ChoiceOverlay(self.progress.script.lesson.title, options, at), self._chosen)
 
     def _is_read(self, name: str) -> bool:
         opened = self._opened.get(name)
@@ -269,4 +269,4 @@ class ReaderApp(TasksApp):
 
     def action_help(self) -> None:
         """All keys."""
-        self.push_screen(Tell("Keys", [keys_table(self._width)]))
+        self.push_screen(TextOverlay("Keys", [keys_table(self._width)]))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from textual.app import ComposeResult
 
-__all__ = ["Choose", "Edit", "Find", "Predict"]
+__all__ = ["ChoiceOverlay", "Edit", "Find", "Predict"]
 
 
 class Predict(Overlay[str]):
@@ -48,7 +48,7 @@ class Predict(Overlay[str]):
             self.close(event.value.strip())
 
 
-class Choose(Overlay[str]):
+class ChoiceOverlay(Overlay[str]):
     """A list to choose from. Dismissed with the key of what was chosen, or None."""
 
     BINDINGS: ClassVar[list[Any]] = [

@@ -14,7 +14,7 @@ from course.reading.pages import Place
 
 if TYPE_CHECKING:
     from course.cli.reading.screen.printing import Item
-    from course.reading.cells import Gave
+    from course.reading.cells import CellOutput
     from course.reading.parts import Cell
     from course.reading.record import InProgress
 
@@ -128,14 +128,14 @@ class CellsApp(LessonApp):
         if self._bench is None:
             progress = self.progress
 
-            def done(cell: Cell, source: str, gave: Gave) -> None:
+            def done(cell: Cell, source: str, gave: CellOutput) -> None:
                 with contextlib.suppress(RuntimeError):  # the reader is gone
                     self.call_from_thread(self._took, progress, cell, source, gave)
 
             self._bench = Bench(progress, done, self._clock)
         return self._bench
 
-    def _took(self, progress: InProgress, cell: Cell, source: str, gave: Gave) -> None:
+    def _took(self, progress: InProgress, cell: Cell, source: str, gave: CellOutput) -> None:
         progress.ran(cell, source, gave.printed, gave.error, gave.seconds)
         if progress is self.progress:
             question = next((q for q in progress.script.questions if q.index < cell.index < q.end), None)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from concurrent.futures import ThreadPoolExecutor
 
-    from course.reading.cells import CellRunner, Gave
+    from course.reading.cells import CellOutput, CellRunner
     from course.reading.parts import Cell
     from course.reading.record import InProgress
 
@@ -29,7 +29,7 @@ class Bench:
     def __init__(
         self,
         progress: InProgress,
-        done: Callable[[Cell, str, Gave], None],
+        done: Callable[[Cell, str, CellOutput], None],
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         self._progress = progress
@@ -106,14 +106,14 @@ class Bench:
 
     def _run(self, cell: Cell, source: str) -> None:
         from course.isolation.failures import IsolationError
-        from course.reading.cells import STOPPED, Gave
+        from course.reading.cells import STOPPED, CellOutput
 
         try:
             runner = self._made()
             runner.prepare()
             # Whoever stops a cell while its process still starts means the cell.
-            gave = Gave("", STOPPED, 0.0) if self._stopped else runner.run(cell)
+            gave = CellOutput("", STOPPED, 0.0) if self._stopped else runner.run(cell)
         except IsolationError as error:
-            gave = Gave("", f"The cell could not be run: {error}.", 0.0)
+            gave = CellOutput("", f"The cell could not be run: {error}.", 0.0)
         self.cell = None
         self._done(cell, source, gave)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from course.cli.frame.here import Here
     from course.cli.frame.terminal.console import Console
-    from course.cli.work.chosen import Work
+    from course.cli.work.chosen import StudentWork
     from course.errors import CourseError
     from course.scoring.verdict import CheckResult, Verdict
 
@@ -40,7 +40,7 @@ def known_format(name: str) -> str:
     return name
 
 
-def annotate(console: Console, here: Here, work: Work, verdict: Verdict, form: str) -> None:
+def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, form: str) -> None:
     """One line for each thing that keeps a check from passing; what is true of several is said once."""
     said = set()
     for check in verdict.checks:
@@ -55,7 +55,7 @@ def annotate(console: Console, here: Here, work: Work, verdict: Verdict, form: s
         console.raw(_shown(form, level, _path(here, work, form), line, title, "\n".join(_words(check))))
 
 
-def annotate_error(console: Console, here: Here, work: Work, error: CourseError, form: str) -> None:
+def annotate_error(console: Console, here: Here, work: StudentWork, error: CourseError, form: str) -> None:
     """One line for what keeps the whole file from being checked."""
     text = f"{error.message}\n{error.help}".strip()
     line = unread_line(work.source) if work.notebook is None else 1
@@ -107,7 +107,7 @@ def unread_line(source: bytes | str) -> int:
     return 1
 
 
-def _line_of(work: Work, check: CheckResult) -> int:
+def _line_of(work: StudentWork, check: CheckResult) -> int:
     text = work.data.decode("utf-8", "replace")
     return line_of(text, check, traced=work.notebook is None)
 
@@ -127,7 +127,7 @@ def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:
     return text.count("\n", 0, found[-1]) + 1 if found else 1
 
 
-def _path(here: Here, work: Work, form: str) -> str:
+def _path(here: Here, work: StudentWork, form: str) -> str:
     """From the folder that the reader of the lines starts at, with slashes on every system."""
     path = here.workspace.path(work.exercise.place, work.name)
     top = os.environ.get("GITHUB_WORKSPACE") if form == "github" else None

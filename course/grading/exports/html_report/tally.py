@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from course.grading.gradebook.records import GradedExercise
     from course.grading.results.effective import Effective
 
-__all__ = ["CheckTally", "DiagnosisTally", "ExerciseTally", "Listed", "Tally", "TaskTally"]
+__all__ = ["CappedList", "CheckTally", "DiagnosisTally", "ExerciseTally", "Tally", "TaskTally"]
 
 #: Rows of a list on the class page; the tables of numbers have everybody.
 MOST_ROWS = 200
@@ -170,7 +170,7 @@ class ExerciseTally:
                 tally.advice[advice] += 1
 
 
-class Listed:
+class CappedList:
     """A list that shows so many and counts all.
 
     Args:
@@ -217,10 +217,10 @@ class Tally:
         self.students = 0
         self.levels: Counter[str] = Counter()
         self.versions: Counter[tuple[str, str]] = Counter()
-        self.troubled = Listed()
+        self.troubled = CappedList()
         self.reasons: Counter[tuple[str, str, str]] = Counter()
-        self.overrides = Listed()
-        self.late = Listed(_LATEST, by=lambda effective: effective.late or 0.0)
+        self.overrides = CappedList()
+        self.late = CappedList(_LATEST, by=lambda effective: effective.late or 0.0)
         self.penalised = 0
         self.untimed = 0
         self.flagged = 0

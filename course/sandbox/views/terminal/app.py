@@ -13,7 +13,7 @@ from course.errors import UsageError
 from course.full_screen import FullScreenApp
 from course.sandbox.scene.settings import SETTINGS
 from course.sandbox.views.story import Experiment, Narrator
-from course.sandbox.views.terminal.asking import Ask, PageOverlay, comparison, help_pages
+from course.sandbox.views.terminal.asking import PageOverlay, QuestionOverlay, comparison, help_pages
 from course.sandbox.views.terminal.hand import Pointer
 from course.sandbox.views.terminal.lines import Canvas, Lines
 from course.sandbox.views.terminal.pace import Pacer, speed_in_words
@@ -267,7 +267,7 @@ class SandboxApp(FullScreenApp):
                 self.say(f"Your guess: {guess:g} {'' if asked.unit == '1' else asked.unit}")
 
         self.push_screen(
-            Ask(self.chosen.scene, self.experiment.question, asked.unit, calm=self.calm), answered
+            QuestionOverlay(self.chosen.scene, self.experiment.question, asked.unit, calm=self.calm), answered
         )
 
     def compare(self) -> None:

@@ -12,7 +12,7 @@ from textual.binding import Binding
 from textual.containers import VerticalScroll
 from textual.widgets import Input, Static
 
-from course.full_screen import Overlay, Tell
+from course.full_screen import Overlay, TextOverlay
 from course.sandbox.views.terminal.words import KEYS, clean
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from course.sandbox.scene.model import Scene
 
-__all__ = ["Ask", "Page", "PageOverlay", "comparison", "guess_of", "help_pages"]
+__all__ = ["Page", "PageOverlay", "QuestionOverlay", "comparison", "guess_of", "help_pages"]
 
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
@@ -35,7 +35,7 @@ def guess_of(text: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
-class Ask(Overlay[float]):
+class QuestionOverlay(Overlay[float]):
     """The scene's question. Dismissed with the guess, or None to run without one."""
 
     DEFAULT_CSS = "Ask #wrong { height: auto; }"
@@ -72,7 +72,7 @@ class Ask(Overlay[float]):
         self.close(guess)
 
 
-class PageOverlay(Tell):
+class PageOverlay(TextOverlay):
     """A page to read."""
 
     BINDINGS: ClassVar[list[Any]] = [Binding("l", "leave", show=False)]

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.records import FromDownload, SubmittedAt
+from course.grading.gradebook.records import PlatformIdentity, SubmittedAt
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 
@@ -156,7 +156,7 @@ def test_lines_of_json_are_printed_where_json_is_asked_for(course, out: Path) ->
 
 def test_a_student_from_a_download_is_found_by_the_platforms_number(course, out: Path) -> None:
     with Gradebook(out / "gradebook.sqlite", writing=True) as book:
-        book.set_students({"dan": FromDownload("canvas", "12", "d")})
+        book.set_students({"dan": PlatformIdentity("canvas", "12", "d")})
     roster = out.parent / "roster.csv"
     roster.write_text("student,canvas_id\nada,11\nb2,12\n", "utf-8")
     ran = course("grade", "export", "out", "--roster", "roster.csv", "--partial", "--json")

@@ -20,7 +20,7 @@ from course.catalog.load import Catalog
 from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.cluster import connect, coordinator, worker
-from course.grading.cluster.coordinator import Lost, grade_on
+from course.grading.cluster.coordinator import LostBatch, grade_on
 from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, decode_batch, encode
 from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
@@ -121,7 +121,7 @@ class FakeWorkers:
         dead = [self._deadly(batch) for batch, _ in now]
         for (batch, done), mine in zip(now, dead, strict=True):
             if mine or (self._together and any(dead)):
-                done(Lost(self._deaths))
+                done(LostBatch(self._deaths))
             elif self._lacking and not batch.graders:
                 done(encode(Answers(FORMAT, "there", (), 0.0, wanting=True)))
             else:
@@ -353,7 +353,7 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -
         Future("error", absent), Future("error", ZeroDivisionError("1/0")),
     ):  # fmt: skip
         connect.DaskWorkers(client).send(b"", seen.append)
-    assert seen[:3] == [b"x", Lost(4), Lost(1)]
+    assert seen[:3] == [b"x", LostBatch(4), LostBatch(1)]
     codes = [error.code for error in seen[3:]]
     assert codes == ["no_scheduler", "version_mismatch", "internal"]
     client.future, client.status = Future("lost"), "connecting"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.gradebook.records import FromDownload
+from course.grading.gradebook.records import PlatformIdentity
 from course.grading.intake.downloads import ClassList, class_list
 from course.grading.intake.students import read_student
 from tests.unit.grading.intake.test_intake import archive
@@ -64,7 +64,7 @@ def test_a_canvas_download_is_a_class(tmp_path: Path, doubling) -> None:
     by_name = {student.name: student for student in found.students}
     assert by_name["hopper_102"].flagged_late
     assert not by_name["zipped_105"].flagged_late
-    assert by_name["lovelaceada_101"].identity == FromDownload("canvas", "101", "lovelaceada")
+    assert by_name["lovelaceada_101"].identity == PlatformIdentity("canvas", "101", "lovelaceada")
 
 
 def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
@@ -90,7 +90,7 @@ def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> 
         "Ada Lovelace_12": b"Ada Lovelace_12_assignsubmission_file_/doubling/doubling.py",
         "Group A-漢 字_13": "no_file",
     }
-    assert found.students[0].identity == FromDownload("moodle", "11", "Ada Lovelace")
+    assert found.students[0].identity == PlatformIdentity("moodle", "11", "Ada Lovelace")
 
 
 def test_a_moodle_download_without_folders_is_a_class_and_file_names_forge_nobody(

@@ -11,7 +11,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from course.errors import InternalError, UsageError
+from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.ids import WARM_UPS
 
 __all__ = ["ENVIRONMENT_VARIABLE", "Content", "chosen", "content"]
@@ -39,6 +39,21 @@ class Content:
     def is_checkout(self) -> bool:
         """True where the instructor's side is present, hidden graders above all."""
         return self.graders is not None
+
+    def instructors(self) -> tuple[Path, Path]:
+        """The folders of solutions and of hidden graders.
+
+        Raises:
+            MissingCapabilityError: this installation is a student's and lacks one of them.
+        """
+        if self.solutions is None or self.graders is None:
+            raise MissingCapabilityError(
+                "This installation is a student's: it has no hidden graders and no model solutions.",
+                help="Use a checkout of the course, which has them in solutions/ and tests/graders/. Whoever "
+                "handed out this installation has one.",
+                code="needs_checkout",
+            )
+        return self.solutions, self.graders
 
     @property
     def syllabus(self) -> Path:

@@ -112,7 +112,7 @@ def test_the_whole_way_from_init_to_submit(course, tmp_path):
     module.write_text(RIGHT)
     passed = course("check", cwd=root)
     assert passed.returncode == 0
-    assert "All 2 public checks pass; 2 hidden checks run when you submit." in passed.stdout
+    assert "All 2 public checks pass; 2 hidden checks run when it is graded." in passed.stdout
     assert course("solution", cwd=root).returncode == 5
     step = _next(passed)
     assert step == ["submit"]

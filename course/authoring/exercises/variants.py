@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.catalog.reading import read_text
-from course.errors import ContentError, MissingCapabilityError
+from course.errors import ContentError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,14 +34,7 @@ def instructors(catalog: Catalog) -> tuple[Path, Path]:
     Raises:
         MissingCapabilityError: this installation is a student's and has none.
     """
-    content = catalog.content
-    if content.solutions is None or content.graders is None:
-        raise MissingCapabilityError(
-            "This needs the instructor's files: solutions and hidden graders.",
-            help="Run it in a checkout of the course; an installed package is the student's part.",
-            code="needs_checkout",
-        )
-    return content.solutions, content.graders
+    return catalog.content.instructors()
 
 
 def solutions_folder(catalog: Catalog, exercise: Exercise) -> Path:

@@ -86,9 +86,10 @@ def run(
     _only_one_way(jobs, local_cluster, scheduler)
     level, at_least = levels(isolation)
     terms = Terms(level, at_least, timeout)
+    catalog = load_catalog()
+    catalog.content.instructors()  # before a roster is read, and perhaps mended, for nothing
     people = read_roster(roster) if roster else None
     options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
-    catalog = load_catalog()
     with (
         _graders(catalog, jobs, local_cluster, scheduler) as grade,
         _progress(console, catalog.ref) as report,

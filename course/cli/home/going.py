@@ -68,7 +68,8 @@ def go() -> int:
             left = "" if words[0] == "lesson" else f"Not finished yet: {step}. "  # a lesson says it itself
             console.note(f"{left}`course go` goes on from here.")
             return code
-        if not console.go_on(f"Next: {step} ({_why(here, step)})."):
+        console.note((f"Next: course {shlex.join(_as_run(console, step))}", "bold"), f"  {_why(here, step)}")
+        if not console.go_on(""):
             return 0
 
 

@@ -61,8 +61,9 @@ def menu(
             raise UsageError("--list stands alone.", help="Try `course sandbox --list`.")
         return None
     console = current()
-    _list(console, None)
-    if list_ or not console.interactive or not console.fancy:
+    asks = console.interactive and console.fancy and not list_
+    _list(console, None, asks=asks)
+    if not asks:
         return 0
     answer = console.ask("Which one? A number or a name, Enter for none: ")
     if not answer:
@@ -218,16 +219,16 @@ def export(
     return 0
 
 
-def _list(console: Console, name: str | None) -> tuple[Scene, ...]:
+def _list(console: Console, name: str | None, *, asks: bool = False) -> tuple[Scene, ...]:
     found = scenes() if name is None else (choose(name).scene,)
     if not found:
         raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
     for place, scene in enumerate(found, 1):
         _describe(console, scene, place, whole=name is not None)
     example = name or found[0].id
-    console.note(
-        ("Next: " + (f"course sandbox play {example}" if name else f"course sandbox list {example}"), "bold")
-    )
+    if not asks:
+        step = f"course sandbox play {example}" if name else f"course sandbox list {example}"
+        console.note((f"Next: {step}", "bold"))
     console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
     return found
 

@@ -204,6 +204,10 @@ def _show(
         )
     for item in left_out:
         console.line(f"Left out: {item.path} ({item.action}).")
+    known = {Path(path).parent.name for path in (*(f.path for f in files), *(i.path for i in left_out))}
+    missing = [name for name in here.catalog.exercise_ids() if name not in known]
+    if files and missing:
+        console.line(f"Not started, so not in it: {', '.join(missing)}.")
 
 
 def _syntax_note(work: StudentWork) -> str:

@@ -12,7 +12,6 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.errors import MissingCapabilityError
 from course.extras import CONTAINER, requirement_of
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.selection import Written
@@ -88,12 +87,7 @@ def write_autograder(
         MissingCapabilityError: this installation has no hidden graders or no model solutions, or the file
             cannot be written.
     """
-    if catalog.content.graders is None or catalog.content.solutions is None:
-        raise MissingCapabilityError(
-            "This installation has no hidden graders: it is a student's.",
-            help="Export from a checkout of the course.",
-            code="needs_checkout",
-        )
+    catalog.content.instructors()
     config = {
         "exercises": [exercise.id for exercise in exercises],
         "required": asked,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.catalog.questions import read_questions
-from course.errors import ContentError, MissingCapabilityError, UngradableError, UsageError
+from course.errors import ContentError, UngradableError, UsageError
 from course.grading.gradebook.backup import back_up
 from course.grading.gradebook.records import GradedExercise, Key, Result, SubmittedAt
 from course.grading.intake.downloads import class_list
@@ -102,12 +102,7 @@ def grade_class(
         NotFoundError: no such folder, exercise or student.
         UsageError: ``out`` exists, is in use, or lies among the submissions.
     """
-    if catalog.content.graders is None:
-        raise MissingCapabilityError(
-            "This installation has no hidden graders: it is a student's.",
-            help="Grade from a checkout of the course.",
-            code="needs_checkout",
-        )
+    catalog.content.instructors()
     _exercises(catalog, options.exercises)
     members = _members(folder, options)
     if among_graders(folder, catalog.content):

@@ -27,7 +27,7 @@ notebook and hand it in with `course submit`, or check the whole file from a ter
 _LAST = """\
 ## All of it
 
-All public checks at once; the hidden ones run when you hand it in."""
+All public checks at once; the hidden ones run when it is graded."""
 #: A link of the course's own, which a notebook that may lie anywhere cannot follow.
 _LINK = re.compile(r"\[([^\]]+)\]\((lesson|exercise):([a-z0-9-]+)[^)]*\)")
 _REPORT = """\

@@ -97,17 +97,19 @@ def momentum(done: Run) -> list[str]:
 
 
 def _contact(event: Event) -> str:
+    a, b = _the(event.a), _the(event.b)
     if event.approach < -MINOR:
-        return (
-            f"{_the(event.a)} is found inside {_the(event.b)} and moves apart at {-event.approach:.2f} m/s."
-        )
-    text = f"{_the(event.a)} meets {_the(event.b)} at {event.approach:.2f} m/s"
+        way = "they move" if event.shared else "moves"
+        return f"{a} is found inside {b} and {way} apart at {-event.approach:.2f} m/s."
+    # Both speeds are relative: of two bodies that can move, neither is said to be the one that leaves.
+    text = f"{a} and {b} meet" if event.shared else f"{a} meets {b}"
+    text += f" at {event.approach:.2f} m/s"
     if event.leave is None:
         return f"{text}."
     if event.leave > 0.01:
-        text += f" and leaves at {event.leave:.2f}"
+        text += f" and {'part' if event.shared else 'leaves'} at {event.leave:.2f}"
     else:
-        text += " and stays with it"
+        text += " and stay together" if event.shared else " and stays with it"
     share = event.lost
     if share is None or event.before is None or event.before < 1e-9:
         return f"{text}."

@@ -340,20 +340,8 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
     """
     files = [(exercise.checks_path, Visibility.PUBLIC)]
     if scope == "full":
-        graders = catalog.content.grader_folder(exercise.id)
-        if graders is None:
-            raise MissingCapabilityError(
-                "This installation has no hidden graders: it is a student's.",
-                help="Grade from a checkout of the course.",
-                code="needs_checkout",
-            )
-        if catalog.content.solutions is None:
-            raise MissingCapabilityError(
-                "This installation has no model solutions, and hidden checks take right answers from them.",
-                help="Grade from a checkout of the course.",
-                code="needs_checkout",
-            )
-        hidden = graders / "checks.py"
+        _, graders = catalog.content.instructors()
+        hidden = graders / catalog.content.place_of(exercise.id) / "checks.py"
         if hidden.is_file():
             files.append((hidden, Visibility.HIDDEN))
     return files

@@ -132,8 +132,8 @@ def test_error_is_taken_at_one_moment(submission):
             quantity="error",
             units="m",
             input={"omega": omega, "samples": n + 1},
-            message="Exact positions are said to have an error.",
-            help="The first position belongs to t = 0. To which time does the last of four belong?",
+            message="Positions that are exact are said to have an error.",
+            help=f"The first of the {n + 1} positions belongs to t = 0. To which time does the last belong?",
         )
     kit.expect_close(
         submission.call("error_at_end", [1.0, math.cos(0.02) + 0.25], 2.0),

@@ -199,7 +199,7 @@ def test_a_pack_that_is_not_there_is_not_found(tmp_path: Path) -> None:
         pack.read_pack(tmp_path)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, len(packed()) - 1), st.integers(1, 255))
 def test_a_damaged_byte_is_noticed_or_changes_nothing(tmp_path: Path, position: int, flip: int) -> None:
     data = bytearray(packed())

@@ -285,7 +285,7 @@ def test_right_solutions_that_were_written_differently_are_not_alike(monkeypatch
 BLOCK = "".join(f"    a{n} = b{n}[{n}] + c(d, {n})\n" for n in range(12))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.sampled_from(["x = 1", "y += f(x)", "if x: pass", "z = [q for q in x]"]), max_size=12))
 def test_a_long_shared_passage_is_never_missed(before: list[str]) -> None:
     """Winnowing's promise: any passage of RUN + WINDOW - 1 nodes leaves a common mark."""

@@ -190,7 +190,7 @@ def test_a_damaged_frame_gives_a_value_or_a_wire_error(value: Any, data: st.Data
 
 
 @pytest.mark.soak
-@settings(max_examples=20_000, deadline=None)
+@settings(max_examples=20_000)
 @given(
     st.binary(max_size=2000)
     | st.lists(

@@ -20,7 +20,7 @@ from course.physics.state import RigidBodyState
 if TYPE_CHECKING:
     from course.physics.recording import Recording
 
-few = settings(max_examples=15, deadline=None)
+few = settings(max_examples=15)
 
 
 def ball(position: object, velocity: object = (0, 0, 0), **options: object) -> Body:
@@ -174,7 +174,7 @@ def test_what_sticks_on_a_slope_does_not_creep(method: str) -> None:
     assert np.max(np.abs(record.position - record.position[0])) < 1e-12
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.floats(5, 60), st.floats(0.0, 1.5), st.booleans())
 def test_on_a_slope_a_body_stays_slides_or_rolls_as_the_closed_form_says(
     angle_deg: float, mu: float, spins: bool

@@ -114,7 +114,7 @@ def test_a_file_that_cannot_be_read_says_why(tmp_path: Path, bank: Bank) -> None
     assert "larger than" in refused(tmp_path / "big.toml", bank).message
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     text=st.text(max_size=60)
     | st.text('{}[]":,=\n ansuwermcolos1_', max_size=80).map(lambda tail: f"seed = 1\n[answers]\n{tail}"),

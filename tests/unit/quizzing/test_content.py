@@ -111,14 +111,16 @@ def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank: Bank
 
 
 def test_the_key_cannot_be_told_by_its_length(bank: Bank) -> None:
-    """Of the variants whose options differ in length, the key is the longest of four in under half."""
+    """The key is the longest of four, or the shortest, hardly more often than by chance; in a first attempt,
+    which asks the first variants, whoever takes the longest gets no more than one of five."""
     ranks = []
     for document in bank.documents:
-        for index in range(len(document.value.variant)):
-            shown = pose_case(document, index, 0)
-            ranks.append(sum(len(choice.text) < len(shown.key.text) for choice in shown.choices))
-    assert ranks.count(3) < 0.4 * len(ranks)
-    assert ranks.count(0) < 0.5 * len(ranks)
+        rows = [pose_case(document, index, 0) for index in range(len(document.value.variant))]
+        ranks.append([sum(len(c.text) < len(shown.key.text) for c in shown.choices) for shown in rows])
+    every = [rank for rows in ranks for rank in rows]
+    assert every.count(3) < 0.3 * len(every)
+    assert every.count(0) < 0.5 * len(every)
+    assert [rows[0] for rows in ranks].count(3) <= 1
 
 
 def test_whoever_picks_ode_reads_the_claim_and_what_its_manual_says(bank: Bank) -> None:

@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from course.authoring.quiz_audit import audit_quiz
@@ -246,7 +246,6 @@ JSON = st.recursive(
 )
 
 
-@settings(deadline=None)
 @given(data=st.data())
 def test_whatever_a_record_is_it_is_scored_or_refused(data: st.DataObject) -> None:
     record = data.draw(JSON)
@@ -257,7 +256,6 @@ def test_whatever_a_record_is_it_is_scored_or_refused(data: st.DataObject) -> No
         score_record(Bank(()), record)
 
 
-@settings(deadline=None)
 @given(data=st.data())
 def test_an_honest_record_with_anything_in_one_place_is_scored_or_refused(bank_kept: Bank, data) -> None:
     record = attempt(bank_kept, data.draw(st.integers(0, MAX_SEED)), data.draw(st.integers(0, 2)))

@@ -24,6 +24,11 @@ def test_a_contact_tells_speeds_and_the_share_of_energy_that_is_gone() -> None:
     assert "found inside" in sentence(contact(approach=-100.0))
 
 
+def test_of_two_bodies_that_can_move_neither_is_said_to_leave() -> None:
+    assert "the ball and the floor meet at 4.09 m/s and part at 3.27;" in sentence(contact(shared=True))
+    assert "meet at 4.09 m/s and stay together;" in sentence(contact(shared=True, leave=0.0))
+
+
 def test_soft_touches_and_chatter_are_counted_and_not_told() -> None:
     events = [contact(), contact(t=0.43), contact(t=0.6, approach=0.01, minor=True), contact(t=0.9)]
     told = list(sentences(events))

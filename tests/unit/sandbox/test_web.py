@@ -209,7 +209,7 @@ def test_there_is_nothing_to_send_to(client, method: str) -> None:
     assert client.request(method, f"/{TOKEN}/").status_code == 405
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     headers=st.lists(
         st.tuples(

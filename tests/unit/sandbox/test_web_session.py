@@ -362,7 +362,7 @@ NEARLY = st.one_of(
 ANYTHING = st.one_of(SHAPED, NEARLY, st.text(max_size=60), st.binary(max_size=60), st.just("[" * 900))
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(messages=st.lists(ANYTHING, max_size=12))
 def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> None:
     made, page = make("head-on")
@@ -389,7 +389,7 @@ def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> Non
     assert made.world.ticks > 0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(data=st.one_of(st.binary(max_size=200), st.text(max_size=200)))
 def test_what_is_no_request_is_answered_once_and_does_nothing(data: str | bytes) -> None:
     made, page = make("head-on")

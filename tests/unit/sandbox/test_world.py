@@ -117,7 +117,7 @@ def test_time_is_a_count_of_steps_and_never_drifts() -> None:
 # -- books -----------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     masses=st.tuples(st.floats(0.01, 100), st.floats(0.01, 100)),
     speeds=st.tuples(st.floats(0.5, 10), st.floats(-10, 0)),
@@ -135,7 +135,7 @@ def test_two_bodies_keep_their_momentum_to_nine_digits(masses, speeds, offset, e
     assert world.momentum[:2] == pytest.approx(before[:2], abs=1e-9 * size)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(masses=st.tuples(st.floats(0.01, 100), st.floats(0.01, 100)), e=st.floats(0, 1))
 def test_two_bodies_lose_the_energy_that_restitution_says(masses, e) -> None:
     a, b = masses

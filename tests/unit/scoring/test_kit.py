@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -64,7 +64,6 @@ READERS = [
 ]
 
 
-@settings(deadline=None)
 @given(value=plain_values)
 def test_any_plain_value_is_read_or_becomes_a_finding_that_can_be_written_down(value):
     for reader in READERS:

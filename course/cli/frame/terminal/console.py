@@ -352,11 +352,15 @@ class Console:
         return answer.strip() if answer else None
 
     def go_on(self, where: str) -> bool:
-        """Wait for Enter; q, n, or the end of the input, means no."""
-        self._out.write(f"{where} Enter goes on, q stops: ")
-        self._out.flush()
-        answer = sys.stdin.readline()
-        return bool(answer) and answer.strip().lower() not in {"q", "quit", "n", "no"}
+        """Wait for Enter; q, n, or the end of the input, means no. Anything else is asked about again."""
+        question = f"{where} Enter goes on, q stops: ".lstrip()
+        while True:
+            answer = self.ask(question)
+            if answer is None or answer.lower() in {"q", "quit", "n", "no"}:
+                return False
+            if answer.lower() in {"", "y", "yes"}:
+                return True
+            question = f"{answer[:20]!r} was not run: this is not the shell yet. Enter goes on, q stops: "
 
     def pause(self, where: str) -> bool:
         """Wait for Enter on a terminal that a person reads; elsewhere there is nothing to wait for."""

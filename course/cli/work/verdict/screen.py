@@ -28,6 +28,8 @@ _LABEL_WIDTH = 9
 _BESIDE = _DETAIL_INDENT + _LABEL_WIDTH + 2
 #: Lines that a number may take where details are brief: the message must stay on the screen.
 _SHORT = 2
+#: Columns of a usual window.
+_USUAL = 80
 _UNWRITTEN = "NOT_IMPLEMENTED"
 
 
@@ -87,7 +89,7 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
     hidden = exercise.hidden_checks
     later = ""
     if hidden:
-        later = f"; {hidden} hidden {'check runs' if hidden == 1 else 'checks run'} when you submit"
+        later = f"; {hidden} hidden {'check runs' if hidden == 1 else 'checks run'} when it is graded"
     if verdict.all_pass:
         everything = "The one public check passes" if total == 1 else f"All {total} public checks pass"
         return [f"{everything}{later}.", _capital(f"{score}.")]
@@ -184,7 +186,8 @@ class _Page:
         if passing:
             self._label("pass", _number_of(passing))
         for check in failing[1:]:
-            self._label(check.status, check.title, "" if check.status == "skip" else f"  [{check.id}]")
+            why = f"  runs once {check.blocked_by} passes" if check.blocked_by else ""
+            self._label(check.status, check.title, why if check.status == "skip" else f"  [{check.id}]")
         for check in failing[:1]:
             self.check(check)
 
@@ -244,7 +247,8 @@ class _Page:
         if check.help and check.help not in self._said:
             self._text(check.help)
         for label, text in numbers_of(check):
-            if self._brief and not self._verbose and len(text) > _SHORT * (self._console.width - _BESIDE):
+            row = max(self._console.width, _USUAL) - _BESIDE  # a narrow window must not hide two numbers
+            if self._brief and not self._verbose and len(text) > _SHORT * row:
                 self._shortened = True
             elif label != "diagnosis" or check.help not in self._said:
                 self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)

@@ -154,6 +154,14 @@ def test_a_person_is_asked_whether_to_go_on(monkeypatch, answer, on):
     assert console.go_on("Page 1 of 2.") is on
 
 
+@pytest.mark.parametrize(("then", "on"), [("\n", True), ("q\n", False), ("", False)])
+def test_a_command_typed_where_enter_is_asked_for_does_not_go_on(monkeypatch, then, on):
+    console, out, _ = _console()
+    monkeypatch.setattr("sys.stdin", io.StringIO("course check spring\n" + then))
+    assert console.go_on("Page 1 of 2.") is on
+    assert "'course check spring' was not run: this is not the shell yet." in out.getvalue()
+
+
 @pytest.mark.parametrize("indent", [0, 4])
 def test_an_address_longer_than_a_line_stays_in_one_piece(monkeypatch, indent):
     monkeypatch.setenv("COLUMNS", "60")

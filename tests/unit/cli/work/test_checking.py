@@ -16,7 +16,7 @@ def test_check_says_message_then_advice_then_numbers(course, write):
     ]
     places = [ran.out.index(text) for text in order]
     assert places == sorted(places)
-    assert "1 of 2 public checks passes; 2 hidden checks run when you submit." in ran.out
+    assert "1 of 2 public checks passes; 2 hidden checks run when it is graded." in ran.out
     assert "Score 2/4; the pass mark, 2.8 (70%), is not reached yet." in ran.out
     assert "Next: course hint doubling" in ran.out
     assert "\x1b" not in ran.out
@@ -26,7 +26,7 @@ def test_check_of_everything_right_says_what_is_still_to_come(course, write):
     write("RIGHT", "RIGHT")
     ran = course("check", "doubling")
     assert ran.code == 0
-    assert "All 2 public checks pass; 2 hidden checks run when you submit." in ran.out
+    assert "All 2 public checks pass; 2 hidden checks run when it is graded." in ran.out
     assert "Next: course submit" in ran.out
 
 

@@ -79,7 +79,7 @@ def test_checks_stand_under_their_task_with_its_points():
         "  pass: c works",
         "Velocity Verlet: 2/2 points",
         "  pass: b works",
-        "All 3 public checks pass; 7 hidden checks run when you submit.",
+        "All 3 public checks pass; 7 hidden checks run when it is graded.",
         "Score 6/6.",
     ]
 

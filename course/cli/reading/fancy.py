@@ -225,6 +225,8 @@ class FancyPrinter:
                     text.append(words.replace(" ", KEEP) if len(words) <= _SHORT else words)
                 case b.Span(style, children):
                     inner = self._text(children)
+                    if style == "code" and self._console.no_color:  # a name that is an English word, too
+                        inner = Text.assemble("`", inner, "`")
                     inner.stylize(_SPANS[style])
                     text.append_text(inner)
                 case b.Link(target=target, children=children):

@@ -173,10 +173,10 @@ def _said(before: _Motion, after: _Motion) -> str:
     """What the picture shows, with its numbers."""
     low, high = before.energy
     return (
-        f"Over {STEP * STEPS:g} s of the same spring, the mistaken function keeps the energy between "
-        f"{low:.2f} and {high:.2f} times its start; the mended one lets it grow to {after.energy[1]:.2f} "
-        "times, as explicit Euler does. A comparison of methods made with the first would have praised Euler "
-        "for what another method did."
+        f"Explicit Euler is supposed to gain energy: over {STEP * STEPS:g} s of this spring, the mended "
+        f"function's grows to {after.energy[1]:.2f} times its start. The mistaken one's stays between "
+        f"{low:.2f} and {high:.2f} times, because it is another method. Whoever had compared methods with it "
+        "would have praised Euler for what Euler cannot do."
     )
 
 
@@ -201,8 +201,14 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
     from course.figures.drawing.described import Panel, Plot, Series
 
+    # Each with the other in grey: the two then have the same axes, and the growth is seen.
     panels = tuple(
-        Panel("position / m", "velocity / (m/s)", (Series("", motion.x, motion.v),), title=title)
-        for title, motion in (("before", before), ("after", after))
+        Panel(
+            "position / m",
+            "velocity / (m/s)",
+            (Series("", other.x, other.v, quiet=True), Series("", motion.x, motion.v)),
+            title=title,
+        )
+        for title, motion, other in (("before", before, after), ("after", after, before))
     )
     return Plot("", panels, columns=2 if wide else 1)

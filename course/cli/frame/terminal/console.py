@@ -39,6 +39,8 @@ __all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
 #: Long lines of prose are hard to read however wide the window is.
 MAX_WIDTH = 100
 #: Work that takes less than this shows nothing while it runs. In s.
+#: Columns below which a table folds its cells until nobody can read them.
+_NARROW = 60
 PATIENCE = 0.5
 
 #: Colour repeats what a word already says; it never says anything alone.
@@ -231,7 +233,7 @@ class Console:
         self.rich().print(Padding(grid, (0, 0, 0, indent)))
 
     def table(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
-        """Rows under headings; plain output writes each row as one line of "heading: value" facts."""
+        """Rows under headings; facts under a row's name in a narrow window, one line each in plain output."""
         if not self.fancy:
             for row in rows:
                 facts = [
@@ -239,13 +241,15 @@ class Console:
                 ]
                 self._fact("; ".join(facts), hanging=2)
             return
+        if self.width < _NARROW:
+            self._facts(headers, rows)
+            return
         from rich import box
         from rich.table import Table
 
         table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
         for index, head in enumerate(headers):
-            # The first column is an id that people copy: it folds rather than lose its end.
-            table.add_column(head, overflow="fold", no_wrap=index == 0 and self.width >= 60)
+            table.add_column(head, overflow="fold", no_wrap=index == 0)  # the first is an id that people copy
         for row in rows:
             table.add_row(*(_text((cell,)) for cell in row))
         self.rich().print(table)
@@ -255,10 +259,15 @@ class Console:
         width = sum(max(map(len, column)) + 3 for column in zip(headers, *rows, strict=True))
         if self.plain or width <= self.width:
             self.table(headers, rows)
-            return
+        else:
+            self._facts(headers, rows)
+
+    def _facts(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
         for first, *rest in rows:
             self.line(first)
-            facts = [f"{head} {cell}" for head, cell in zip(headers[1:], rest, strict=True) if cell]
+            facts = [
+                f"{head} {_bare(cell)}" for head, cell in zip(headers[1:], rest, strict=True) if _bare(cell)
+            ]
             self.line(", ".join(facts), indent=2)
 
     def figure(self, make: Builder) -> None:

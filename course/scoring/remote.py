@@ -39,6 +39,7 @@ class RemoteSubmission:
         seed: seed of the grading run.
         places: how its lines are told; failures carry it.
         home: a worker that does not answer is asked where it is.
+        patience: seconds of CPU time for loading, if that is to have less than a check.
 
     Attributes:
         returned: name and value of the last function of the student's that returned in this check.
@@ -59,6 +60,7 @@ class RemoteSubmission:
         seed: int,
         places: Places | None = None,
         home: bool = False,
+        patience: float | None = None,
     ) -> None:
         self._home = home
         self._places = places or Places(module=main)
@@ -68,7 +70,7 @@ class RemoteSubmission:
         self._main = main
         self._timeout = timeout
         self._cpu_left, self._wall_left = BUDGET_S, WALL * BUDGET_S
-        self._deadline = Deadline(min(timeout, self._cpu_left))
+        self._deadline = Deadline(min(timeout, self._cpu_left, timeout if patience is None else patience))
         self._printed_before = 0
         self._task = ""
         self.returned: tuple[str, Any] | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from course.isolation.hanging import LOOP
 from course.scoring.values import kind_of, plain
 from course.scoring.verdict import CheckResult, Finding, Problem, Status
 
@@ -87,9 +88,11 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
     if refused.stage == "syntax":
         return Problem("syntax_error", *_unreadable(refused, where))
     if refused.stage == "timeout":
-        message = f"{where}: it did not finish loading in time."
+        loop = " The loop that begins on that line was still running." if failure.type == LOOP else ""
         return Problem(
-            "import_timeout", message, "Move work out of the top level of the file, into functions."
+            "import_timeout",
+            f"{where}: it did not finish loading in time.{loop}",
+            "Move work out of the top level of the file, into functions.",
         )
     if refused.stage == "import" and failure.type == "ImportNotDeclaredError":
         return Problem(

@@ -196,7 +196,7 @@ class GradingSession:
         return RemoteSubmission(
             self._spawner, submission.files, self.exercise.module,
             timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
-            home=self._terms.home,
+            home=self._terms.home, patience=self.exercise.patience() if self._terms.home else None,
         )  # fmt: skip
 
     def _places(self, submission: Submission) -> Places:

@@ -16,8 +16,8 @@ class Terms(msgspec.Struct, frozen=True):
         timeout: seconds of CPU time per check.
         seed: of the run, for checks that draw their inputs.
         graders: digest of the snapshot that judges; empty for the course as it is here.
-        home: a student checks their own file: a check that hangs has the patience of ``Exercise.patience``,
-            and is told by its line.
+        home: a student checks their own file: a check that hangs, or the file itself while it is loaded, has
+            the patience of ``Exercise.patience``, and is told by its line.
     """
 
     level: str | None = None

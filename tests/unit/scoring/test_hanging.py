@@ -101,7 +101,28 @@ def test_a_grading_run_waits_its_time_and_asks_nothing() -> None:
 def test_a_module_that_hangs_while_it_loads_is_named_by_its_line(home: GradingSession) -> None:
     error = home.grade(Submission({"doubling.py": b"x = 1\nwhile x:\n    x += 1\n"})).error
     assert error is not None
-    assert (error.code, error.message.split(":")[0]) == ("import_timeout", "doubling.py, line 2")
+    assert error.code == "import_timeout"
+    assert error.message.startswith("doubling.py, line 2: ")
+    assert "The loop that begins on that line was still running." in error.message
+
+
+@pytest.mark.parametrize(("terms", "allowed"), [(Terms(home=True), 20 * QUICK), (Terms(timeout=7.0), 7.0)])
+def test_at_home_a_file_may_load_for_as_long_as_a_quick_check_may_run(
+    terms: Terms, allowed: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[float] = []
+
+    class Noted(Deadline):
+        def __init__(self, seconds: float, wall: float | None = None) -> None:
+            made.append(seconds)
+            super().__init__(seconds, wall)
+
+    monkeypatch.setattr("course.scoring.remote.Deadline", Noted)
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+    catalog = Catalog()
+    with GradingSession(catalog.exercise("doubling"), catalog, terms=terms) as session:
+        session.grade(Submission({"doubling.py": SOLUTION.encode()}))
+    assert made[0] == allowed
 
 
 @pytest.mark.parametrize("level", list(Level))

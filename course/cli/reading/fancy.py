@@ -13,11 +13,11 @@ from rich.console import Group
 from rich.padding import Padding
 from rich.segment import Segment
 from rich.style import Style
-from rich.syntax import Syntax
 from rich.table import Table
 from rich.text import Text
 
 from course.catalog import blocks as b
+from course.cli.frame.terminal.code import Code
 from course.cli.frame.terminal.pictures import picture, protocol_of
 from course.cli.reading.words import LABELS, link_words, value_text
 
@@ -174,8 +174,7 @@ class FancyPrinter:
         return shown
 
     def _code(self, cell: b.CodeCell) -> RenderableType:
-        code = Syntax(cell.source, "python", theme="ansi_dark", background_color="default", word_wrap=True)
-        shown: list[RenderableType] = [self._rule("Python"), code]
+        shown: list[RenderableType] = [self._rule("Python"), Code(cell.source)]
         if cell.output is not None:
             shown += [self._rule("prints"), Text(cell.output)]
         return Group(*shown, self._rule(""))

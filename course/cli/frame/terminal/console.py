@@ -292,15 +292,11 @@ class Console:
                 self._human.write(" " * indent + row + "\n")
             return
         from rich.padding import Padding
-        from rich.syntax import Syntax
         from rich.text import Text
 
-        shown = (
-            Syntax(text, language, theme="ansi_dark", background_color="default", word_wrap=True)
-            if language
-            else Text(text)
-        )
-        self.rich().print(Padding(shown, (0, 0, 0, indent)))
+        from course.cli.frame.terminal.code import Code
+
+        self.rich().print(Padding(Code(text, language) if language else Text(text), (0, 0, 0, indent)))
 
     def note(self, *pieces: Piece, indent: int = 0) -> None:
         """Advice and next steps; ``--quiet`` drops it."""

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Literal
 from rich.console import Group
 from rich.segment import Segment
 from rich.style import Style
-from rich.syntax import Syntax
 from rich.table import Table
 from rich.text import Text
 
 from course.catalog import blocks as b
+from course.cli.frame.terminal.code import Code
 from course.cli.reading.fancy import KEEP, FancyPrinter
 from course.cli.reading.screen.practice import Standing
 from course.cli.reading.screen.tasks import standing_lines
@@ -297,7 +297,7 @@ class ScreenPrinter(FancyPrinter):
         changed = ", changed" if state.source != cell.source else ""
         shown: list[RenderableType] = [
             self._rule(f"Python, cell {cell.number}{changed}"),
-            Syntax(state.source, "python", theme="ansi_dark", background_color="default", word_wrap=True),
+            Code(state.source),
         ]
         busy, words = self._busy()
         if busy == cell.key:

@@ -26,6 +26,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from course.errors import CourseError
+from course.figures.drawing.curves import plot_of, read_curve
 from course.figures.drawing.plots import draw
 from course.figures.drawing.style import house_style
 from course.figures.registry import build, png
@@ -265,7 +266,11 @@ def _plain(text: str) -> str:
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
     if request.get("png"):
         return {"png": base64.b64encode(png(request["figure"])).decode("ascii")}
-    figure = terminal_figure(request["figure"], request["columns"], request["rows"])
+    size = request["columns"], request["rows"]
+    if "curve" in request:
+        figure = terminal_plot(plot_of(read_curve(request["curve"])), *size)
+    else:
+        figure = terminal_figure(request["figure"], *size)
     return {
         "pixels": base64.b64encode(figure.pixels.tobytes()).decode("ascii"),
         "labels": [[one.column, one.row, one.text, one.ink, one.bold] for one in figure.labels],

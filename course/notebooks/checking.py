@@ -60,7 +60,7 @@ def checked(
 
     begin = time.perf_counter()
     with GradingSession(exercise, catalog, scope="public", terms=Terms(home=True)) as session:
-        verdict = session.grade(submission)
+        verdict, curves = session.grade(submission), session.curves
     seconds = time.perf_counter() - begin
     source, known = submission.files[exercise.module], [one.id for one in exercise.task]
     only = task if task is not None and not defines_all(source, known) else ""
@@ -69,7 +69,7 @@ def checked(
         verdict = _of_task(verdict, exercise, only)
     note = _recorded(catalog, exercise, verdict, source, seconds, only=only)
     printed = session.printed if prints else ""
-    return CheckTable(verdict, task, note, printed=printed, scored=not exercise.is_warm_up)
+    return CheckTable(verdict, task, note, printed=printed, scored=not exercise.is_warm_up, curves=curves)
 
 
 # -- what was written ------------------------------------------------------------------------------------

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from html import escape
 from typing import TYPE_CHECKING
 
 from course.scoring.numbers import format_points, numbers_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from course.figures.drawing.curves import Curve
     from course.notebooks.page import ReportPage
     from course.scoring.verdict import CheckResult, Verdict
 
@@ -32,6 +36,7 @@ class CheckTable:
         note: what else there is to say, as a sentence.
         printed: by the code while it was loaded.
         scored: points are shown; a warm-up has none.
+        curves: by id of a failed check, the student's curve and the right one; the first is drawn.
 
     Attributes:
         report: what the code does on public data, shown below; None if there is none.
@@ -45,6 +50,7 @@ class CheckTable:
         *,
         printed: str = "",
         scored: bool = True,
+        curves: Mapping[str, Curve] | None = None,
     ) -> None:
         self.report: ReportPage | None = None
         self._printed = _first_lines(printed)
@@ -53,6 +59,7 @@ class CheckTable:
         self.note = note
         self.checks = tuple(check for check in verdict.checks if task in (None, check.task))
         self._task = task
+        self._curve = next((curves[check.id] for check in self.checks if curves and check.id in curves), None)
 
     @property
     def passed(self) -> bool:
@@ -78,7 +85,9 @@ class CheckTable:
 
     def __repr__(self) -> str:
         lines = [*self._printed]
-        below = [text for text in (self.note, repr(self.report) if self.report is not None else "") if text]
+        curve = self._curve.description if self._curve is not None else ""
+        report = repr(self.report) if self.report is not None else ""
+        below = [text for text in (curve, self.note, report) if text]
         for check in self.checks:
             lines.append(f"{_MARKS.get(check.status, '✗')} {check.title}: {check.status}")
             lines += [f"    {text}" for text in _words(check)]
@@ -90,7 +99,18 @@ class CheckTable:
         note = f"<p>{escape(self.note)}</p>" if self.note else ""
         printed = f"<pre>{escape(chr(10).join(self._printed))}</pre>" if self._printed else ""
         report = self.report._repr_html_() if self.report is not None else ""
-        return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{note}{report}"
+        return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{self._drawn()}{note}{report}"
+
+    def _drawn(self) -> str:
+        """The first curve, and where it parts from the right one."""
+        if self._curve is None:
+            return ""
+        from course.figures.drawing.curves import plot_of
+        from course.notebooks.page import image_of
+
+        # The words stand below it, and are not to be read twice.
+        image = image_of(replace(plot_of(self._curve), description="Your curve over the right one."))
+        return f"{image}<p><small>{escape(self._curve.description)}</small></p>"
 
 
 def _row(check: CheckResult, *, scored: bool) -> str:

@@ -7,9 +7,10 @@ from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from course.figures.drawing.described import Plot
     from course.scoring.report import Report, Section
 
-__all__ = ["ReportPage"]
+__all__ = ["ReportPage", "image_of"]
 
 
 class ReportPage:
@@ -45,9 +46,14 @@ def _section(section: Section) -> str:
         body = "".join(f"<tr>{row}</tr>" for row in rows)
         parts.append(f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>")
     if section.plot is not None:
-        from course.figures.drawing.plots import render
-
-        picture = base64.b64encode(render(section.plot)).decode()
-        described = escape(section.plot.description or section.plot.title)
-        parts.append(f'<img alt="{described}" style="max-width:100%" src="data:image/png;base64,{picture}">')
+        parts.append(image_of(section.plot))
     return "".join(parts)
+
+
+def image_of(plot: Plot) -> str:
+    """A figure as HTML, with its description for who does not see it."""
+    from course.figures.drawing.plots import render
+
+    picture = base64.b64encode(render(plot)).decode()
+    described = escape(plot.description or plot.title)
+    return f'<img alt="{described}" style="max-width:100%" src="data:image/png;base64,{picture}">'

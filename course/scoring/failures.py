@@ -10,7 +10,7 @@ from __future__ import annotations
 import builtins
 import traceback
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from course.isolation.failures import FailureKind, StudentFailure
 from course.isolation.hanging import LOOP
@@ -19,10 +19,19 @@ from course.scoring.explain.words import Diagnosis
 from course.scoring.places import Places
 from course.scoring.verdict import Finding
 
-if TYPE_CHECKING:
-    from course.scoring.curves import Curve
+#: What was compared along time: its times, the student's values, the right ones, quantity and units.
+Comparison = tuple[Any, Any, Any, str, str]
 
-__all__ = ["OURS", "CheckFailed", "Diagnosis", "FailureKind", "StudentFailure", "broke_at", "finding_of"]
+__all__ = [
+    "OURS",
+    "CheckFailed",
+    "Comparison",
+    "Diagnosis",
+    "FailureKind",
+    "StudentFailure",
+    "broke_at",
+    "finding_of",
+]
 
 
 class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
@@ -32,7 +41,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: message and advice of the check itself, without what its probe thinks.
         guess: the mistake that its probe thinks it is.
         broke: where the probe raised, for the check's author; empty if it did not.
-        curve: what was compared along time, if there is something to be seen in it.
+        comparison: what was compared along time, if something was.
     """
 
     def __init__(
@@ -41,14 +50,14 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         broke: str = "",
         bare: tuple[str, str] | None = None,
         guess: Diagnosis | None = None,
-        curve: Curve | None = None,
+        comparison: Comparison | None = None,
     ) -> None:
         super().__init__(finding.message)
         self.finding = finding
         self.bare = bare or (finding.message, finding.help)
         self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
         self.broke = broke
-        self.curve = curve
+        self.comparison = comparison
 
 
 #: Begins the traceback of a result whose check, or its search for the mistake, raised on a student's value.

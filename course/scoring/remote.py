@@ -17,9 +17,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from course.isolation.spawn import Spawner
-    from course.scoring.curves import March
 
 T = TypeVar("T")
+#: A step's name, the system that was marched along, and its times and states: t, (q, v).
+March = tuple[str, Any, Any, Any]
 
 __all__ = ["BUDGET_S", "RemoteSubmission"]
 

@@ -14,7 +14,7 @@ from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
 from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import next_step
 from course.cli.work.chosen import asked_for, chosen_work, worked_on
-from course.cli.work.curves import show_curve
+from course.cli.work.curves import curve_replies, show_curve
 from course.cli.work.replies import Check, CheckAll
 from course.cli.work.verdict.annotations import FORMATS, annotate, annotate_error, known_format
 from course.cli.work.verdict.prints import show_loading
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import CourseRef, Exercise
     from course.cli.work.chosen import StudentWork
+    from course.cli.work.replies import CurveReply
     from course.scoring.judging.session import GradingSession, Submission
     from course.scoring.verdict import Verdict
 
@@ -148,11 +149,18 @@ def record_verdict(
     here.record("check", exercise.id, data)
 
 
-def reply_to(course: CourseRef, verdict: Verdict, step: str = "", printed: str = "") -> Check:
+def reply_to(
+    course: CourseRef,
+    verdict: Verdict,
+    step: str = "",
+    printed: str = "",
+    curves: tuple[CurveReply, ...] = (),
+) -> Check:
     """The answer that ``--json`` prints for a verdict.
 
     Args:
         printed: by the file while it was loaded.
+        curves: of its failed checks.
     """
     return Check(
         ok=verdict.all_pass,
@@ -167,6 +175,7 @@ def reply_to(course: CourseRef, verdict: Verdict, step: str = "", printed: str =
         next=NextStep(step) if step else None,
         warnings=verdict.warnings,
         printed=printed,
+        curves=curves,
     )
 
 
@@ -206,7 +215,8 @@ def _check_one(
     else:
         annotate(console, here, work, verdict, form)
     step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""
-    return reply_to(here.course, verdict, step or f"course check {exercise.id}", printed)
+    curves = curve_replies(exercise, verdict, session)
+    return reply_to(here.course, verdict, step or f"course check {exercise.id}", printed, curves)
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:

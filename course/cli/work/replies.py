@@ -15,6 +15,7 @@ __all__ = [
     "Check",
     "CheckAll",
     "CheckOrError",
+    "CurveReply",
     "Diff",
     "Hint",
     "Reflect",
@@ -32,11 +33,36 @@ __all__ = [
 ]
 
 
+class CurveReply(msgspec.Struct, frozen=True):
+    """What a failed check compared along time, in at most 200 points: the student's curve and the right one.
+
+    Attributes:
+        check: its id.
+        quantity, units: of both curves.
+        right_is: what the right one is: "right", or the method that the step is named for.
+        parts_at: when the student's curve leaves the right one, in s.
+        description: the same as a sentence.
+        t: times, in s.
+        yours, right: values at these times.
+    """
+
+    check: str
+    quantity: str
+    units: str
+    right_is: str
+    parts_at: float
+    description: str
+    t: tuple[float, ...]
+    yours: tuple[Any, ...]
+    right: tuple[float, ...]
+
+
 class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
     """The verdict on one exercise. ``ok`` is "every check passes", ``passed`` is "reaches the pass mark".
 
     Attributes:
         printed: by the file while it was loaded; what a check made it print is in its ``stdout``.
+        curves: of failed checks that compared a motion along time, in the order of the tasks.
     """
 
     course: CourseRef
@@ -49,6 +75,7 @@ class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
     next: NextStep | None = None
     warnings: tuple[str, ...] = ()
     printed: str = ""
+    curves: tuple[CurveReply, ...] = ()
 
 
 #: What a check ended in. JSON tells the two apart by their fields, msgspec does not.

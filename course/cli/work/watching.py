@@ -23,7 +23,7 @@ from course.cli.frame.terminal.console import PATIENCE, Console, current
 from course.cli.home.advice import hint_is_due, next_step
 from course.cli.work import checking
 from course.cli.work.chosen import asked_for, chosen_work
-from course.cli.work.curves import show_curve
+from course.cli.work.curves import curve_replies, show_curve
 from course.cli.work.hinting import give_hint
 from course.cli.work.keys import keys_of_terminal
 from course.cli.work.replies import Watch, WatchRun
@@ -268,7 +268,8 @@ class Watcher:
         step = next_step(self.here, self.exercise, verdict, work.source)
         if step != f"course watch {self.exercise.id}":
             self.console.note(f"Next: {step}")
-        self.last = checking.reply_to(self.here.course, verdict, step, self._printed)
+        curves = curve_replies(self.exercise, verdict, session)
+        self.last = checking.reply_to(self.here.course, verdict, step, self._printed, curves)
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._flush_warnings()
         return False

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal, Self, TypeVar
 import msgspec
 
 from course.errors import InternalError, MissingCapabilityError, UngradableError
+from course.figures.drawing.curves import compared, marched
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.launch import keep_private
 from course.isolation.probe import open_spawner
@@ -23,7 +24,6 @@ from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.checks.companions import companion
-from course.scoring.curves import Curve, marched
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.judging.explaining import Explainer
 from course.scoring.judging.outcomes import found, load_problem, no_functions, result, skipped, unjudged
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.figures.drawing.curves import Curve
     from course.isolation.levels import Spawner
 
 __all__ = ["GradingSession", "Scope", "Submission", "check_files", "pinned_to"]
@@ -264,7 +265,9 @@ class GradingSession:
     def _keep_curve(self, check: Check, failed: CheckFailed, remote: RemoteSubmission) -> None:
         if not self._terms.home:
             return
-        curve = failed.curve or (marched(remote.marched) if remote.marched else None)
+        curve = compared(*failed.comparison) if failed.comparison else None
+        if curve is None and remote.marched:
+            curve = marched(*remote.marched)
         if curve is not None:
             self.curves[check.id] = curve
 

@@ -22,7 +22,6 @@ import numpy as np
 
 from course.isolation.failures import IsolationError
 from course.physics.invariants import convergence_order
-from course.scoring.curves import compared
 from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, broke_at
 from course.scoring.values import as_array, as_list, as_number, as_vector, plain
 from course.scoring.verdict import Divergence, Finding, Tolerance
@@ -30,7 +29,7 @@ from course.scoring.verdict import Divergence, Finding, Tolerance
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from course.scoring.curves import Curve
+    from course.scoring.failures import Comparison
     from course.scoring.values import Inspected
 
 __all__ = [
@@ -77,7 +76,7 @@ def fail(
     units: str = "",
     tolerance: Tolerance | None = None,
     first_divergence: Divergence | None = None,
-    curve: Curve | None = None,
+    comparison: Comparison | None = None,
 ) -> NoReturn:
     """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
     found, broke = _explained(diagnose)
@@ -104,7 +103,7 @@ def fail(
         broke,
         bare,
         found if isinstance(found, Diagnosis) else None,
-        curve,
+        comparison,
     )
 
 
@@ -220,7 +219,7 @@ def expect_array(
     label = quantity + "".join(f"[{i}]" for i in (first if t is None else first[1:]))
     if t is not None:
         column: Any = (slice(None), *first[1:])
-        finding["curve"] = compared(t, array[column], wanted[column], label, units)
+        finding["comparison"] = np.asarray(t, dtype=float), array[column], wanted[column], label, units
         finding.setdefault(
             "first_divergence", Divergence(t=float(t[first[0]]), step=first[0], quantity=label)
         )

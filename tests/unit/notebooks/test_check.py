@@ -210,3 +210,19 @@ def test_a_warm_up_has_no_points(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     wrong = magic.check_cell(source.replace("h * v", "h * a"), "one-step-ahead")
     assert "your code printed:" in repr(wrong)
     assert "here" in wrong._repr_html_()
+
+
+def test_the_curve_of_a_failed_check_is_drawn_and_said(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    head = "def explicit_euler_step(accel, t, q, v, h):\n"
+    step = f"{head}    v = v + h * accel(t, q, v)\n    return q + h * v, v\n"
+    table = check("integrators", "explicit_euler_step", source=[step])
+    said = "Your curve leaves that of explicit Euler at "
+    page = table._repr_html_()
+    assert said in repr(table)
+    assert page.count(said) == 1
+    assert page.count('src="data:image/png;base64,') == 1
+    mended = f"{head}    return q + h * v, v + h * accel(t, q, v)\n"
+    assert "<img" not in check("integrators", "explicit_euler_step", source=[mended])._repr_html_()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import hashlib
 import json
 import subprocess
 import sys
@@ -29,6 +30,8 @@ __all__ = ["Drawer"]
 _LOW = 0.26
 _CAPTION = 5
 _LEAST = 8
+#: Lines of a finding with its hint.
+_FINDING = 11
 
 
 class Drawer:
@@ -51,7 +54,25 @@ class Drawer:
             drawn: called with the figure's id once it is there, from another thread.
         """
         rows = max(_LEAST, min(round(columns * _LOW), room - _CAPTION))
-        key = (figure, columns, rows)
+        return self._rows((figure, columns, rows), {"figure": figure}, lambda: drawn(figure))
+
+    def curve_rows(
+        self, task: str, reply: dict[str, Any], columns: int, room: int, drawn: Callable[[str], None]
+    ) -> list[Text]:
+        """The lines of a failed check's curve over the right one, so few that its finding fits below them.
+
+        Args:
+            task: whose check it is; ``drawn`` is called with it.
+            reply: a curve of ``course check --json``.
+        """
+        rows = max(_LEAST, min(round(columns * _LOW), room - _FINDING))
+        name = hashlib.sha256(json.dumps(reply).encode()).hexdigest()
+        return self._rows((name, columns, rows), {"curve": reply}, lambda: drawn(task))
+
+    def _rows(
+        self, key: tuple[str, int, int], request: dict[str, Any], drawn: Callable[[], None]
+    ) -> list[Text]:
+        _, columns, rows = key
         if key not in self._drawn and key not in self._asked:
             self._asked.add(key)
 
@@ -62,9 +83,9 @@ class Drawer:
                     )
                 else:
                     self._drawn[key] = []  # it stays described
-                drawn(figure)
+                drawn()
 
-            self._ask({"figure": figure, "columns": columns, "rows": rows}, take)
+            self._ask({**request, "columns": columns, "rows": rows}, take)
         return self._drawn.get(key, [Text()] * rows)
 
     def open(self, figure: str, say: Callable[[str], None]) -> None:

@@ -7,7 +7,7 @@ they gave here, and links can be followed.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.console import Group
 from rich.segment import Segment
@@ -83,6 +83,7 @@ class ScreenPrinter(FancyPrinter):
         busy: the key of the cell that runs, with what to say of it; empty if none does.
         picture: a figure's lines for a width: blank while it is being drawn, none if it stays described.
         practice: how far the student is with warm-ups and exercises; None where there is nothing to work in.
+        curve: the lines of a failed check's curve, for a task, what its check said of the curve, and a width.
     """
 
     def __init__(
@@ -94,6 +95,7 @@ class ScreenPrinter(FancyPrinter):
         busy: Callable[[], tuple[str, str]] = lambda: ("", ""),
         picture: Callable[[str, int], list[Text]] = lambda *_: [],
         practice: Practice | None = None,
+        curve: Callable[[str, dict[str, Any], int], list[Text]] = lambda *_: [],
     ) -> None:
         script = progress.script
         figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
@@ -104,6 +106,7 @@ class ScreenPrinter(FancyPrinter):
         self._busy = busy
         self._picture = picture
         self._practice = practice
+        self._curve = curve
         self._index = -1
         self._links = 0
 
@@ -237,7 +240,17 @@ class ScreenPrinter(FancyPrinter):
             made = self._block(block)
             shown += [Text(""), made] if made is not None else []
         possible = self._practice is not None and self._practice.possible
-        return Group(*shown, Text(""), *standing_lines(now, task.id, possible=possible), self._rule(""))
+        standing = standing_lines(now, task.id, possible=possible)
+        # The finding comes last: it is what must be in sight.
+        return Group(*shown, Text(""), *self._curve_lines(now, task.id), *standing, self._rule(""))
+
+    def _curve_lines(self, now: Standing, task: str) -> list[Text]:
+        """The first curve of the last check, drawn where there are pictures, and in words."""
+        curves = (now.reply or {}).get("curves") or ()
+        if not curves or now.busy:
+            return []
+        words = Text(curves[0]["description"], style="dim")
+        return [*self._curve(task, curves[0], self._prose), words, Text("")]
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
         if kind == "predict":

@@ -182,6 +182,7 @@ class LessonApp(FullScreenApp):
             self._busy,
             self._picture,
             self._practice,
+            self._curve,
         )
         script = self.progress.script
         book = Book(
@@ -324,14 +325,19 @@ class LessonApp(FullScreenApp):
             return []
         return self._pictures.rows(figure_id, width, self.page.room, self._drawn)
 
-    def _drawn(self, figure_id: str) -> None:
-        """A picture has arrived (from another thread)."""
-        with contextlib.suppress(RuntimeError):  # the reader is gone
-            self.call_from_thread(self._take_picture, figure_id)
+    def _curve(self, task: str, reply: dict[str, Any], width: int) -> list[Text]:
+        if self._pictures is None:
+            return []
+        return self._pictures.curve_rows(task, reply, width, self.page.room, self._drawn)
 
-    def _take_picture(self, figure_id: str) -> None:
+    def _drawn(self, name: str) -> None:
+        """The picture of a figure or a task has arrived (from another thread)."""
+        with contextlib.suppress(RuntimeError):  # the reader is gone
+            self.call_from_thread(self._take_picture, name)
+
+    def _take_picture(self, name: str) -> None:
         for index, block in enumerate(self.progress.script.blocks):
-            if any(isinstance(one, b.Figure) and one.id == figure_id for one in b.walk_blocks((block,))):
+            if any(isinstance(one, b.Figure | b.Task) and one.id == name for one in b.walk_blocks((block,))):
                 self._rebuild(index)
 
     # -- moving --------------------------------------------------------------------------------------

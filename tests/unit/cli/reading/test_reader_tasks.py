@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -10,6 +11,7 @@ from course.authoring.exercises.variants import solution_path
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.drawing import Drawer
 from course.cli.reading.screen.practice import Practice
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 LESSON, TASK = "numerical-integration", "which-line-first"
+CHECK = {
+    "id": "euler", "title": "It grows", "task": TASK, "status": "fail", "visibility": "public",
+    "points": 0.0, "max_points": 1.0, "message": "Not as it should be.",
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -33,11 +39,14 @@ def workspace(tmp_path: Path, catalog: Catalog) -> Workspace:
 
 
 def doing(
-    catalog: Catalog, workspace: Workspace | None, journey: Callable[[ReaderApp, Any], Awaitable[None]]
+    catalog: Catalog,
+    workspace: Workspace | None,
+    journey: Callable[[ReaderApp, Any], Awaitable[None]],
+    pictures: Drawer | None = None,
 ) -> ReaderApp:
     """Open the lesson at its warm-up, do what ``journey`` does, leave."""
     practice = Practice(catalog, workspace)
-    app = ReaderApp(catalog, LESSON, practice=practice)
+    app = ReaderApp(catalog, LESSON, practice=practice, pictures=pictures)
 
     async def there(app: ReaderApp, pilot: Any) -> None:
         blocks = app.progress.script.blocks
@@ -199,3 +208,28 @@ def test_a_hint_is_offered_once_one_is_due_and_a_task_that_was_done_says_so_when
 
     doing(catalog, workspace, journey)
     doing(catalog, workspace, again)
+
+
+def test_the_curve_of_a_failed_check_stands_above_its_finding(catalog: Catalog, workspace: Workspace) -> None:
+    """An exercise's, put where a warm-up is: a reply is a reply."""
+    words = {"quantity": "q", "units": "m", "right_is": "RK4", "description": "Your curve leaves it."}
+    numbers = {"t": list(range(40)), "yours": [2 * i for i in range(40)], "right": list(range(40))}
+    reply = {"ok": False, "checks": [CHECK], "curves": [words | numbers]}
+
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        practice = app._practice
+        practice.start(TASK)
+        practice._standings[TASK] = replace(practice.of(TASK), reply=reply)
+        app._show_answer(TASK)
+        for _ in range(1500):
+            await pilot.pause(0.02)
+            if "q over time" in screen(app):
+                break
+        shown = screen(app)
+        places = [
+            shown.index(words) for words in ("q over time", "Your curve leaves it.", "Not as it should be.")
+        ]
+        assert places == sorted(places)
+        assert sum("▀" in line for line in shown.splitlines()) >= 8
+
+    doing(catalog, workspace, journey, pictures=Drawer())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 
 def test_check_says_message_then_advice_then_numbers(course, write):
     write("wrong", "RIGHT")
@@ -167,11 +169,13 @@ def test_quiet_leaves_the_summary(course, write):
     assert [line.split()[0] for line in lines] == ["1", "Score"]
 
 
-def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, monkeypatch):
+@pytest.fixture
+def curved(monkeypatch):
+    """A session in which a check has left a curve."""
     import numpy as np
 
     from course.cli.work import checking
-    from course.scoring.curves import compared
+    from course.figures.drawing.curves import compared
     from tests.unit.cli.conftest import FakeSession
 
     def opened(exercise, catalog):
@@ -181,7 +185,28 @@ def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, monk
         return session
 
     monkeypatch.setattr(checking, "open_session", opened)
+
+
+def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, curved):
     write("RIGHT", "wrong")
     said = "doublings_works: x over time. Your curve leaves what it should be at 1 s; at the end, at 4 s,"
     assert said in course("check").out
     assert said in course("check", "--plain").out
+
+
+def test_the_reply_tells_where_the_curves_part(course, write, curved):
+    write("RIGHT", "wrong")
+    (curve,) = course("check", "--json").json["curves"]
+    assert (curve["check"], curve["parts_at"], curve["right_is"]) == ("doublings_works", 1.0, "right")
+    assert (curve["t"], curve["yours"][-1], curve["right"][-1]) == ([0.0, 1.0, 2.0, 3.0, 4.0], 12.0, 8.0)
+    assert curve["description"] in course("check").out
+
+
+def test_an_empty_line_parts_the_score_from_the_curve_below_it(course, write, curved, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+    write("RIGHT", "wrong")
+    lines = [line.strip() for line in course("check").out.splitlines()]
+    said = next(at for at, line in enumerate(lines) if "doublings_works: x over time" in line)
+    assert lines[said - 1] == ""
+    assert "Score" in lines[said - 2]

@@ -9,9 +9,9 @@ import pytest
 
 from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
+from course.figures.drawing.curves import compared, marched, plot_of, read_curve, thinned
 from course.figures.drawing.plots import render
 from course.physics.systems import Oscillator
-from course.scoring.curves import compared, marched, plot_of
 from course.scoring.judging.session import GradingSession, Submission
 from course.scoring.judging.terms import Terms
 
@@ -39,15 +39,36 @@ def test_whatever_a_curve_holds_it_can_be_drawn_and_said(wrong: float) -> None:
         assert f"yours is at {wrong:.3g} m" in plot.description
 
 
+def test_where_curves_part_is_a_time_of_theirs() -> None:
+    curve = compared(T, np.where(T > 0.99, RIGHT + 1.0, RIGHT), RIGHT, "x", "m")
+    assert curve is not None
+    assert curve.parts_at == pytest.approx(1.0)
+    assert "leaves what it should be at 1 s" in curve.description
+
+
+def test_a_curve_is_handed_on_in_few_points_with_both_ends() -> None:
+    t = np.linspace(0.0, 9.0, 4001)
+    long = compared(t, np.where(t > 5.0, np.nan, t), 2 * t, "x", "m")
+    assert long is not None
+    few = thinned(long)
+    assert len(few.t) == 200
+    assert (few.t[0], few.t[-1]) == (0.0, 9.0)
+    assert thinned(few) is few
+    told = {"t": few.t, "yours": ["nan" if np.isnan(one) else one for one in few.yours], "right": few.right}
+    back = read_curve({**told, "quantity": "x", "units": "m", "right_is": "right"})
+    assert np.array_equal(back.yours, few.yours, equal_nan=True)
+    assert plot_of(back).description == few.description
+
+
 def test_a_step_is_laid_over_the_method_that_it_is_named_for() -> None:
     q = RIGHT[:, None] * 1.2 ** T[:, None]
     march = "rk4_step", Oscillator(2.0), T, (q, -2 * np.sin(2 * T)[:, None])
-    curve = marched(march)
+    curve = marched(*march)
     assert curve is not None
     assert curve.right_is == "RK4"
     assert np.allclose(curve.right, RIGHT * 1.0, atol=1e-3)
-    assert marched(("my_step", *march[1:])) is None
-    assert marched((march[0], march[1], T, (RIGHT[:, None], march[3][1]))) is None
+    assert marched("my_step", *march[1:]) is None
+    assert marched(march[0], march[1], T, (RIGHT[:, None], march[3][1])) is None
 
 
 @pytest.fixture(scope="module", params=["integrators", "collisions"])

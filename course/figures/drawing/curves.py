@@ -6,7 +6,7 @@ over what that method makes of the same march.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,11 +14,13 @@ import numpy as np
 from course.figures.drawing.described import Panel, Plot, Series
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
 
-__all__ = ["Curve", "March", "compared", "marched", "plot_of"]
+__all__ = ["Curve", "compared", "marched", "plot_of", "read_curve", "thinned"]
 
 #: Curves nearer than this share of the right one's range are one curve: a picture of fifteen lines has about
 #: twenty-five half blocks for it.
@@ -27,6 +29,8 @@ _SEEN = 0.04
 _PAPER = 1.5
 _HEIGHT_IN = 2.6  # about fifteen lines of eighty columns
 _MOST = 2000  # points that are drawn
+#: Points that are handed on: more than a terminal has columns.
+_FEW = 200
 
 _METHODS = {
     "explicit_euler": "explicit Euler",
@@ -34,9 +38,6 @@ _METHODS = {
     "velocity_verlet": "velocity Verlet",
     "rk4": "RK4",
 }
-
-March = tuple[str, Any, Any, Any]
-"""A step's name, the system that was marched along, and its times and states: t, (q, v)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,37 @@ class Curve:
     units: str
     right_is: str = "right"
 
+    @property
+    def parts_at(self) -> float:
+        """When the student's curve leaves the right one, in s."""
+        with np.errstate(all="ignore"):
+            off = ~(np.abs(self.yours - self.right) <= _SEEN * _range(self))
+        return float(self.t[np.argmax(off)])
+
+    @property
+    def description(self) -> str:
+        """Where the curves part, and where they end."""
+        unit = f" {self.units}" if self.units not in {"", "1"} else ""
+        return (
+            f"{self.quantity} over time. Your curve leaves {_as_noun(self)} at {self.parts_at:.3g} s; at the "
+            f"end, at {self.t[-1]:.3g} s, yours is at {self.yours[-1]:.3g}{unit}, the right one at "
+            f"{self.right[-1]:.3g}{unit}."
+        )
+
+
+def thinned(curve: Curve) -> Curve:
+    """The curve with so few points that it can be handed on; the last one stays."""
+    if len(curve.t) <= _FEW:
+        return curve
+    kept = np.unique(np.linspace(0, len(curve.t) - 1, _FEW).round().astype(int))
+    return replace(curve, t=curve.t[kept], yours=curve.yours[kept], right=curve.right[kept])
+
+
+def read_curve(reply: Mapping[str, Any]) -> Curve:
+    """The curve that a reply of ``course check --json`` tells of."""
+    t, yours, right = (np.array([float(one) for one in reply[name]]) for name in ("t", "yours", "right"))
+    return Curve(t, yours, right, reply["quantity"], reply["units"], reply["right_is"])
+
 
 def compared(t: Any, yours: Array, right: Array, quantity: str, units: str) -> Curve | None:
     """The curves of a comparison; None if there is nothing to be seen in them."""
@@ -66,11 +98,17 @@ def compared(t: Any, yours: Array, right: Array, quantity: str, units: str) -> C
     return _worth_seeing(Curve(times, np.asarray(yours, dtype=float), right, quantity, units))
 
 
-def marched(march: March) -> Curve | None:
-    """The curves of a step of the student's and of the method that it is named for; None if it is none."""
+def marched(name: str, system: Any, t: Any, states: Any) -> Curve | None:
+    """The curves of a step of the student's and of the method that it is named for; None if it is none.
+
+    Args:
+        name: of the step.
+        system: what was marched along.
+        t, states: the times and (q, v) of the march.
+    """
     from course.physics.integrators import STEPPERS, State, trajectory
 
-    name, system, t, (q, v) = march
+    q, v = states
     stepper = STEPPERS.get(name.removesuffix("_step"))
     if stepper is None or len(t) < 2:
         return None
@@ -112,21 +150,8 @@ def plot_of(curve: Curve) -> Plot:
         ),
     )
     title = f"{curve.quantity} over time: yours, and {_as_noun(curve)}"
-    return Plot(title, (panel,), _described(curve), height_in=_HEIGHT_IN)
+    return Plot(title, (panel,), curve.description, height_in=_HEIGHT_IN)
 
 
 def _as_noun(curve: Curve) -> str:
     return "what it should be" if curve.right_is == "right" else f"that of {curve.right_is}"
-
-
-def _described(curve: Curve) -> str:
-    """Where the curves part, and where they end."""
-    with np.errstate(all="ignore"):
-        off = ~(np.abs(curve.yours - curve.right) <= _SEEN * _range(curve))
-    first = int(np.argmax(off))
-    unit = f" {curve.units}" if curve.units not in {"", "1"} else ""
-    return (
-        f"{curve.quantity} over time. Your curve leaves {_as_noun(curve)} at {curve.t[first]:.3g} s; at the "
-        f"end, at {curve.t[-1]:.3g} s, yours is at {curve.yours[-1]:.3g}{unit}, the right one at "
-        f"{curve.right[-1]:.3g}{unit}."
-    )

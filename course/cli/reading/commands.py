@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import bisect
 import contextlib
 import io
-import itertools
 from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,13 +19,10 @@ from course.cli.reading.replies import LessonReply, Lessons
 from course.errors import CourseError, NotFoundError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from course.catalog.load import Catalog
     from course.catalog.models import Lesson
     from course.cli.frame.here import Here
     from course.cli.reading.lesson import Reader
-    from course.progress.store import Event
     from course.reading.parts import Section
 
 __all__ = ["lesson", "lessons"]
@@ -61,7 +56,8 @@ def lessons() -> int:
 def lesson(
     name: LessonName = None,
     page: Annotated[
-        bool, typer.Option("--page", help="A section at a time; goes on where you stopped.")
+        bool,
+        typer.Option("--page", help="A section at a time, by typed lines; with --plain for a screen reader."),
     ] = False,
     figures: Annotated[
         Path | None, typer.Option("--figures", metavar="DIR", help="Write the figures as PNG files into DIR.")
@@ -77,9 +73,9 @@ def lesson(
     """Read a lesson.
 
     ID#SECTION is one of its sections, such as numerical-integration#swap-two-lines. On a terminal the lesson
-    fills the screen: predict, run its cells, search; ? there lists the keys. With --plain, in a pipe or with
-    --page it is printed. Without an id: the next lesson you have not read. Inside a workspace your place and
-    predictions are kept, and a lesson is read once its end was reached.
+    fills the screen: predict, run its cells, search; ? there lists the keys. With --page you do the same by
+    typed lines. With --plain alone, or in a pipe, it is printed. Without an id: the next lesson you have not
+    read. Inside a workspace your place and predictions are kept, and a lesson is read once you reach its end.
     """
 
     console = current()
@@ -100,7 +96,7 @@ def lesson(
     if section is not None:
         whole = reader.show_section(section)
     else:
-        whole = _read_by_page(console, here, chosen, reader) if paged else _print_all(reader)
+        whole = _read_by_line(console, here, catalog, chosen, reader) if paged else _print_all(reader)
     # A print is no reading: nobody knows whether anybody saw its end.
     if here is not None and whole and paged:
         here.record("lesson", chosen.id, {"version": catalog.version})
@@ -218,62 +214,19 @@ def _print_code(console: Console, chosen: Lesson, number: int) -> int:
     return 0
 
 
+def _read_by_line(
+    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, reader: Reader
+) -> bool:
+    from course.cli.reading.by_line import LineReader
+
+    return LineReader(console, here, catalog, chosen, reader).read()
+
+
 def _print_all(reader: Reader) -> bool:
     """Show everything."""
     for item in reader.pages:
         reader.show(item)
     return True
-
-
-def _read_by_page(console: Console, here: Here | None, chosen: Lesson, reader: Reader) -> bool:
-    """Show a page at a time, from where the reader stopped last time; False if they stop before the end."""
-    from course.reading.pages import Place
-    from course.reading.parts import read_script
-    from course.reading.record import InProgress
-
-    total = len(reader.pages)
-    starts = list(itertools.accumulate((len(page.blocks) for page in reader.pages), initial=0))
-    events = _events(here, chosen)
-
-    def write(kind: str, subject: str, data: Mapping[str, object]) -> None:
-        if here is not None:
-            here.record(kind, subject, dict(data))
-
-    progress = InProgress(read_script(chosen), events, write)
-    first = _page(events, progress.place.block, starts)
-    if first:
-        console.line(f"Going on with page {first + 1} of {total}. Without --page: the whole lesson.")
-    for number in range(first, total):
-        reader.show(reader.pages[number])
-        if number + 1 < total and not console.go_on(f"Page {number + 1} of {total}."):
-            progress.at(Place(starts[number + 1]), starts[number + 1] - 1)
-            return False
-    return True
-
-
-def _events(here: Here | None, chosen: Lesson) -> tuple[Event, ...]:
-    """What is recorded about a lesson; nothing where that cannot be read."""
-    if here is not None:
-        with contextlib.suppress(CourseError):
-            return here.workspace.store.events(subject=chosen.id)
-    return ()
-
-
-def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:
-    """The page to go on with: where this or the reader on the whole screen was left, or the first if the
-    lesson was read since.
-
-    Args:
-        block: the one at the top when the student stopped; below 0 for none.
-        starts: the first block of each page, and after the last one the number of blocks.
-    """
-    last = next((event for event in reversed(events) if event.kind in {"place", "bookmark", "lesson"}), None)
-    if last is None or last.kind == "lesson":
-        return 0
-    if last.kind == "place":  # as version 1.2 kept it
-        page = last.data.get("page", 0)
-        return page if isinstance(page, int) and 0 <= page < len(starts) - 1 else 0
-    return max(0, bisect.bisect_right(starts, block) - 1)
 
 
 def _after(here: Here | None, chosen: Lesson) -> str:

@@ -1,12 +1,13 @@
 """A lesson on a terminal: for eyes, or line by line for a screen reader.
 
-A page ends where a section ends, and after each prediction: the figure that answers it must not be in sight.
+A page ends where a section ends, and after each prediction, since the figure that answers it must not be in
+sight; and after each answer, which is compared with what was predicted.
 """
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise, Lesson
     from course.reading.parts import Section
 
-__all__ = ["Page", "Reader", "lesson_pages"]
+__all__ = ["Page", "Reader", "lesson_pages", "paginate"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,7 @@ def lesson_pages(lesson: Lesson) -> tuple[Page, ...]:
     Raises:
         ContentError: the lesson cannot be read or parsed.
     """
-    return _paginate(read_blocks(Path(lesson.path)))
+    return paginate(read_blocks(Path(lesson.path)))
 
 
 class Reader:
@@ -115,18 +116,29 @@ class Reader:
         self._printer.blocks(read_task(warm_up.readme_path))
 
 
-def _paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:
+def paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:
+    """Blocks as pages; a task has one of its own, and none shows nothing."""
     pages: list[Page] = []
     section, current = "", []  # type: str, list[b.Block]
-    for index, block in enumerate(blocks):
-        if isinstance(block, b.Heading) and block.level == 2:
-            if current:
-                pages.append(Page(section, tuple(current), first=not pages))
-            section, current = b.plain_text(block.inlines), []
-        current.append(block)
-        if isinstance(block, b.Prediction) and index + 1 < len(blocks):
+    for block in blocks:
+        begins = isinstance(block, b.Task) or (isinstance(block, b.Heading) and block.level == 2)
+        if (begins or (current and _ends_page(current[-1]))) and not all(map(_unseen, current)):
             pages.append(Page(section, tuple(current), first=not pages))
             current = []
-    if current:
+        if isinstance(block, b.Heading) and block.level == 2:
+            section = b.plain_text(block.inlines)
+        current.append(block)
+    if pages and all(map(_unseen, current)):
+        pages[-1] = replace(pages[-1], blocks=(*pages[-1].blocks, *current))
+    elif current:
         pages.append(Page(section, tuple(current), first=not pages))
     return tuple(pages)
+
+
+def _ends_page(block: b.Block) -> bool:
+    answers = isinstance(block, b.Callout) and block.kind == "answer"
+    return answers or isinstance(block, b.Prediction | b.Task)
+
+
+def _unseen(block: b.Block) -> bool:
+    return isinstance(block, b.CodeCell) and block.hidden

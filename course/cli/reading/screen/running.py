@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import signal
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -87,7 +88,7 @@ class Bench:
         if self._pool is None:
             from concurrent.futures import ThreadPoolExecutor
 
-            self._pool = ThreadPoolExecutor(1, thread_name_prefix="cells")
+            self._pool = ThreadPoolExecutor(1, thread_name_prefix="cells", initializer=_hear_no_ctrl_c)
         self._pool.submit(what, *arguments)
 
     def _made(self) -> CellRunner:
@@ -117,3 +118,9 @@ class Bench:
             gave = CellOutput("", f"The cell could not be run: {error}.", 0.0)
         self.cell = None
         self._done(cell, source, gave)
+
+
+def _hear_no_ctrl_c() -> None:
+    """Ctrl-C on a terminal reaches every process there; those that this thread starts are not meant."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

@@ -78,6 +78,7 @@ def someone(monkeypatch):
     asked = []
     monkeypatch.setattr(Console, "interactive", property(lambda _: True))
     monkeypatch.setattr(Console, "go_on", lambda _, question: not asked.append(question))
+    monkeypatch.setattr(Console, "ask", lambda *_: "")
     return asked
 
 
@@ -97,7 +98,8 @@ def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_w
         return InProgress(script, store.events(subject="twice-as-much"), store.append)
 
     monkeypatch.setattr(Console, "interactive", property(lambda _: True))
-    monkeypatch.setattr(Console, "go_on", lambda *_: False)
+    typed = ["q", "", "", "", "", ""]
+    monkeypatch.setattr(Console, "ask", lambda *_: typed.pop(0))
     course("lesson", "twice-as-much", "--page")
     second = reader().place
     assert second.block > 0

@@ -1,0 +1,400 @@
+"""A lesson read by lines: a page at a time, and what is typed below it does what keys do on the whole screen.
+
+Each line is written once and stays: nothing is drawn again, so that a screen reader says it once.
+"""
+
+from __future__ import annotations
+
+import bisect
+import contextlib
+import itertools
+import re
+import threading
+from typing import TYPE_CHECKING
+
+from course.catalog import blocks as b
+from course.cli.frame.app import again
+from course.cli.reading.lesson import paginate
+from course.cli.reading.screen.machine import write_new
+from course.cli.reading.screen.running import Bench
+from course.errors import CourseError
+from course.reading.finding import find
+from course.reading.pages import Place
+from course.reading.parts import read_script
+from course.reading.record import JUDGEMENTS, InProgress
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from course.catalog.load import Catalog
+    from course.catalog.models import Exercise, Lesson
+    from course.cli.frame.here import Here
+    from course.cli.frame.terminal.console import Console
+    from course.cli.reading.lesson import Reader
+    from course.progress.store import Event
+    from course.reading.cells import CellOutput
+    from course.reading.parts import Cell, Question
+
+__all__ = ["LineReader"]
+
+_STOP = ("q", "quit", "n", "no")
+_ON = "Enter goes on"
+#: A cell that takes longer says so, in s.
+_PATIENCE = 1.0
+_WORDS = (
+    ("Enter", "the next page"),
+    ("b", "the page before"),
+    ("t", "contents, with the page of each section; g and a number goes to a page"),
+    ("/ and words", "where they are in this lesson"),
+    ("r", "run the cell; r and a number runs that cell"),
+    ("e", "put the cell into a file for your editor; r then runs what the file holds"),
+    ("u", "the lesson's own code again"),
+    ("1, 2, 3", "below an answer: you were right, nearly right, wrong"),
+    ("start, check, hint", "for the warm-up or the exercise of this page"),
+    ("q or Ctrl-C", "stop; your place is kept. While a cell runs, Ctrl-C stops the cell"),
+)
+
+
+class LineReader:
+    """One lesson in progress on a terminal that is written to line by line.
+
+    Args:
+        here: the student's workspace; None outside of one, where nothing is kept.
+        reader: shows its pages.
+    """
+
+    def __init__(
+        self, console: Console, here: Here | None, catalog: Catalog, lesson: Lesson, reader: Reader
+    ) -> None:
+        self._console, self._here, self._catalog, self._reader = console, here, catalog, reader
+        self._script = read_script(lesson, catalog.tasks(lesson.id))
+        self._pages = paginate(self._script.blocks)
+        self._starts = list(itertools.accumulate((len(page.blocks) for page in self._pages), initial=0))
+        self._events = _events(here, lesson)
+        self._progress = InProgress(self._script, self._events, self._write, catalog.version)
+        self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
+        self._bench = Bench(self._progress, self._ran)
+        self._over = threading.Event()
+        self._gave: CellOutput | None = None
+        self._does: dict[str, Callable[[str, int], int | None]] = {
+            "b": lambda _, page: max(0, page - 1),
+            "t": self._contents,
+            "g": self._go,
+            "r": self._on_cell(self._run),
+            "e": self._on_cell(self._edit),
+            "u": self._on_cell(self._undo),
+            "start": self._on_task(lambda one: ["warmup" if one.is_warm_up else "start", one.id]),
+            "check": self._on_task(lambda one: ["check", one.id]),
+            "hint": self._on_task(lambda one: ["hint", one.id]),
+            "?": self._help,
+        }
+
+    def read(self) -> bool:
+        """Read from where it was left; False if the student stops before the end."""
+        number: int | None = _page(self._events, self._progress.place.block, self._starts)
+        if number:
+            self._say(f"Going on with page {number + 1} of {len(self._pages)}.")
+        self._say("What you type below a page does something; ? lists what.")
+        try:
+            while number is not None and number < len(self._pages):
+                number = self._opened(number)
+                self._show(number)
+                number = self._talk(number)
+        finally:
+            self._bench.close()
+        return number is not None
+
+    # -- a page ----------------------------------------------------------------------------------------
+
+    def _opened(self, number: int) -> int:
+        """The page, or the one with the open prediction that it would answer."""
+        question = self._progress.closed_by(self._starts[number])
+        if question is None:
+            return number
+        self._say("Predict first.")
+        return bisect.bisect_right(self._starts, question.index) - 1
+
+    def _show(self, number: int) -> None:
+        task = self._task(number)
+        if task is None:
+            self._reader.show(self._pages[number])
+            if self._cells(number):
+                self._bench.prepare()  # so that the first run need not wait for its process
+            return
+        self._console.blank()
+        what = f"Warm-up, {task.minutes} minutes" if task.is_warm_up else "Exercise"
+        self._say(f"{what}: {task.title} ({task.id})")
+        self._say(task.summary)
+
+    def _talk(self, number: int) -> int | None:
+        """What the student types below a page, until it leads to another one; None to stop."""
+        question = self._asked(number)
+        is_open = question is not None and self._progress.prediction(question) is None
+        following = self._starts[number if is_open else min(number + 1, len(self._pages) - 1)]
+        self._progress.at(Place(following), self._starts[number + 1] - 1)
+        if is_open and question is not None:
+            return self._predict(question, number)
+        self._remind(number)
+        offers = ", ".join(self._offers(number))
+        if offers:
+            self._say(f"Here {offers}.")
+        elif number + 1 == len(self._pages):
+            return number + 1
+        ask = f"Page {number + 1} of {len(self._pages)}. {_ON}, q stops: "
+        while (typed := self._console.ask(ask)) is not None and typed.lower() not in _STOP:
+            if typed.lower() in {"", "y", "yes"}:
+                return number + 1
+            leads = self._do(typed, number)
+            if leads is not None:
+                return leads
+            ask = f"{_ON}: "
+        return None
+
+    def _offers(self, number: int) -> list[str]:
+        """What can be done on a page beside going on."""
+        offers = []
+        if self._unjudged(number) is not None:
+            offers.append("1 2 3 say if you were right")
+        cells = self._cells(number)
+        if cells:
+            offers.append(f"r runs cell {cells[0].number}, e changes it")
+        task = self._task(number)
+        if task is not None and self._here is not None:
+            there = self._here.workspace.path(task.place, task.module).is_file()
+            begun = "check runs its checks, hint gives the hint that is due"
+            offers.append(begun if there else "start puts its file into your workspace")
+        return offers
+
+    def _do(self, typed: str, number: int) -> int | None:
+        """Do what a word asks for; the page that it leads to, if any."""
+        word, _, rest = typed.partition(" ")
+        if typed.startswith("/"):
+            self._search(typed[1:])
+        elif word in {"1", "2", "3"}:
+            self._judge(number, int(word))
+        elif word in self._does:
+            return self._does[word](rest.strip(), number)
+        else:
+            self._say(f"{typed[:20]!r} does nothing here, and this is not the shell; ? lists what does.")
+        return None
+
+    # -- predictions -----------------------------------------------------------------------------------
+
+    def _asked(self, number: int) -> Question | None:
+        """The prediction that a page ends with."""
+        return self._script.question_at(self._starts[number + 1] - 1)
+
+    def _predict(self, question: Question, number: int) -> int | None:
+        ask = "Your prediction; Enter skips it: "
+        while (typed := self._console.ask(ask)) is not None and _leads_elsewhere(typed):
+            leads = self._do(typed, number)
+            if leads is not None:
+                return leads
+        if typed is None or typed.lower() in _STOP[:2]:
+            return None
+        self._progress.predict(question, typed)
+        self._say("Kept." if typed else "Skipped.")
+        return number + 1
+
+    def _remind(self, number: int) -> None:
+        """What was predicted, above the answer or where it was asked."""
+        question = self._asked(number) or self._unjudged(number)
+        said = self._progress.prediction(question) if question is not None else None
+        if said is not None:
+            self._say(f"You said: {said.text}" if said.text else "You skipped it.")
+
+    def _unjudged(self, number: int) -> Question | None:
+        """The prediction that is answered on a page and was not judged yet."""
+        for index in range(self._starts[number], self._starts[number + 1]):
+            question = self._script.answered_at(index)
+            said = self._progress.prediction(question) if question is not None else None
+            if said is not None and not said.skipped and said.judged is None:
+                return question
+        return None
+
+    def _judge(self, number: int, typed: int) -> None:
+        question = self._unjudged(number)
+        if question is None:
+            self._say("No prediction is answered on this page.")
+            return
+        self._progress.judge(question, JUDGEMENTS[typed - 1])
+        self._say(f"Kept: {('right', 'nearly right', 'wrong')[typed - 1]}.")
+
+    # -- cells -----------------------------------------------------------------------------------------
+
+    def _cells(self, number: int) -> list[Cell]:
+        inside = range(self._starts[number], self._starts[number + 1])
+        return [cell for cell in self._script.shown_cells if cell.index in inside]
+
+    def _on_cell(self, act: Callable[[Cell], None]) -> Callable[[str, int], None]:
+        """An action for the cell of a page, or for the one whose number is given."""
+
+        def do(rest: str, number: int) -> None:
+            cells = self._cells(number) if not rest else list(self._script.shown_cells)
+            cell = next((one for one in cells if not rest or str(one.number) == rest), None)
+            if cell is None:
+                self._say(
+                    f"No cell {rest} in this lesson." if rest else "No cell on this page; name its number."
+                )
+            elif self._progress.closed_by(cell.index) is not None:
+                self._say("Predict first.")
+            else:
+                act(cell)
+
+        return do
+
+    def _run(self, cell: Cell) -> None:
+        path = self._files.get(cell.number)
+        if path is not None:
+            try:
+                self._progress.edit(cell, path.read_text("utf-8", "replace").rstrip("\n"))
+            except OSError as error:
+                self._say(f"{path} cannot be read: {error.strerror}.")
+                return
+        self._over.clear()
+        self._bench.start(cell)
+        try:
+            if not self._over.wait(_PATIENCE):
+                self._say(f"Cell {cell.number} runs; Ctrl-C stops it.")
+            self._over.wait()
+        except KeyboardInterrupt:
+            self._bench.interrupt()
+            self._over.wait()
+        if self._gave is not None:
+            self._progress.ran(cell, self._progress.cell(cell).source, self._gave.printed, self._gave.error,
+                               self._gave.seconds)  # fmt: skip
+            self._tell(cell, self._gave)
+
+    def _ran(self, _cell: Cell, _source: str, gave: CellOutput) -> None:
+        """From the cells' thread: it has ended."""
+        self._gave = gave
+        self._over.set()
+
+    def _tell(self, cell: Cell, gave: CellOutput) -> None:
+        if gave.earlier:
+            self._say(f"First ran cell {', '.join(map(str, gave.earlier))}.")
+        if gave.error:
+            self._listing(f"Cell {cell.number} printed", gave.printed)
+            self._listing(f"Cell {cell.number} stopped", gave.error)
+            return
+        ran = f"Cell {cell.number} ran in {gave.seconds:.1f} s"
+        if gave.printed == (cell.output or ""):
+            self._say(f"{ran} and printed the same." if gave.printed else f"{ran}.")
+        elif gave.printed:
+            self._listing(f"{ran} and printed", gave.printed)
+        else:
+            self._say(f"{ran} and printed nothing.")
+
+    def _listing(self, label: str, text: str) -> None:
+        """Text as it is, with its length said before it and its end after it, as in a printed lesson."""
+        rows = len(text.splitlines())
+        if rows:
+            self._say(f"{label}, {rows} line{'s' if rows > 1 else ''}:")
+            self._console.block(text)
+            self._say("End of output")
+
+    def _edit(self, cell: Cell) -> None:
+        if cell.number not in self._files:
+            name = f"{self._script.lesson.id}-{cell.number}.py"
+            try:
+                self._files[cell.number] = write_new(name, self._progress.cell(cell).source + "\n")
+            except CourseError as error:
+                self._console.error(error.message, error.help)
+                return
+        path = self._files[cell.number]
+        self._say(
+            f"Cell {cell.number} is in {path}: change it there. r {cell.number} runs what the file holds."
+        )
+
+    def _undo(self, cell: Cell) -> None:
+        self._files.pop(cell.number, None)
+        self._progress.edit(cell, cell.source)
+        self._say("The lesson's own code again.")
+
+    # -- tasks -----------------------------------------------------------------------------------------
+
+    def _task(self, number: int) -> Exercise | None:
+        block = self._pages[number].blocks[-1]
+        return self._catalog.exercise(block.id) if isinstance(block, b.Task) else None
+
+    def _on_task(self, words: Callable[[Exercise], list[str]]) -> Callable[[str, int], None]:
+        """A command of the course for the warm-up or exercise of a page."""
+
+        def do(_: str, number: int) -> None:
+            task = self._task(number)
+            if task is None:
+                self._say("No warm-up and no exercise on this page.")
+                return
+            if self._here is None:
+                self._say("Make a workspace first: course init my-course")
+                return
+            try:
+                again(words(task))
+            except CourseError as error:
+                self._console.error(error.message, error.help)
+
+        return do
+
+    # -- ways ------------------------------------------------------------------------------------------
+
+    def _contents(self, _rest: str, _number: int) -> None:
+        for section in self._script.sections:
+            if section.level == 2:
+                page = bisect.bisect_right(self._starts, section.start)
+                done = ", done" if self._progress.is_done(section.start, section.end) else ""
+                self._say(f"Page {page}: {section.title}{done}")
+
+    def _go(self, rest: str, _number: int) -> int | None:
+        if rest.isdecimal() and 0 < int(rest) <= len(self._pages):
+            return int(rest) - 1
+        self._say(f"g takes the number of a page, 1 to {len(self._pages)}.")
+        return None
+
+    def _search(self, wanted: str) -> None:
+        hits = list(find(self._progress, wanted))
+        for hit in hits:
+            self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
+        if not hits:
+            self._say("Nothing.")
+
+    def _help(self, _rest: str, _number: int) -> None:
+        for word, what in _WORDS:
+            self._console.item(word, what)
+
+    def _say(self, words: str) -> None:
+        self._console.line(words)
+
+    def _write(self, kind: str, subject: str, data: Mapping[str, object]) -> None:
+        if self._here is not None:
+            self._here.record(kind, subject, dict(data))
+
+
+def _leads_elsewhere(typed: str) -> bool:
+    """Whether it is a word that does something while a prediction is open; all else is the prediction."""
+    return typed in {"?", "b", "t"} or re.fullmatch(r"g \d+|/.+|course .+", typed) is not None
+
+
+def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
+    """What is recorded about a lesson; nothing where that cannot be read."""
+    if here is not None:
+        with contextlib.suppress(CourseError):
+            return here.workspace.store.events(subject=lesson.id)
+    return ()
+
+
+def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:
+    """The page to go on with: where this or the reader on the whole screen was left, or the first if the
+    lesson was read since.
+
+    Args:
+        block: the one at the top when the student stopped; below 0 for none.
+        starts: the first block of each page, and after the last one the number of blocks.
+    """
+    last = next((event for event in reversed(events) if event.kind in {"place", "bookmark", "lesson"}), None)
+    if last is None or last.kind == "lesson":
+        return 0
+    if last.kind == "place":  # as version 1.2 kept it
+        page = last.data.get("page", 0)
+        return page if isinstance(page, int) and 0 <= page < len(starts) - 1 else 0
+    return max(0, bisect.bisect_right(starts, block) - 1)

@@ -1,0 +1,166 @@
+"""A lesson by typed lines: all that can be done on the whole screen, and each fact said once."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.catalog.blocks import Prediction
+from course.catalog.load import Catalog
+from course.cli.frame.here import Here
+from course.cli.frame.terminal.console import Console, Settings, install
+from course.cli.reading.by_line import LineReader
+from course.cli.reading.lesson import Reader, paginate
+from course.progress.workspace import Workspace
+from course.reading.parts import read_script
+from course.reading.predictions import predictions_of
+from tests.unit.cli.reading.test_each_fact_once import repeated
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+CATALOG = Catalog()
+LESSON = "numerical-integration"
+OFFERS = re.compile(r"Here (1 2 3 say|r runs|start puts|check runs)")
+_PAGES = paginate(read_script(CATALOG.lesson(LESSON), CATALOG.tasks(LESSON)).blocks)
+#: The page that ends with the first prediction, 1 for the first page.
+ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page.blocks[-1], Prediction))
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+    made = Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
+    monkeypatch.chdir(made.root)
+    return made
+
+
+class Typed:
+    """A console on which somebody types; what was said and what was asked are kept apart."""
+
+    def __init__(self, answer: Callable[[str], str | None]) -> None:
+        self.out, self.asked = io.StringIO(), list[str]()
+        self._answer = answer
+        self.console = install(Console(Settings(plain=True), stdout=self.out, stderr=self.out))
+        self.console.ask = self._ask  # type: ignore[method-assign]
+
+    def _ask(self, question: str) -> str | None:
+        self.asked.append(question)
+        return self._answer(question)
+
+    def read(self, lesson: str, here: Here | None) -> bool:
+        chosen = CATALOG.lesson(lesson)
+        reader = Reader(CATALOG, chosen, self.console.rich(), plain=True)
+        return LineReader(self.console, here, CATALOG, chosen, reader).read()
+
+    @property
+    def said(self) -> str:
+        return self.out.getvalue()
+
+
+def lines(*typed: str) -> Callable[[str], str | None]:
+    """These lines, one after the other; at their end the input ends."""
+    left: Iterator[str] = iter(typed)
+    return lambda _: next(left, None)
+
+
+@pytest.mark.parametrize("lesson", CATALOG.lesson_ids())
+def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, workspace: Workspace) -> None:
+    someone = Typed(lambda question: "it grows" if question.startswith("Your prediction") else "")
+    assert someone.read(lesson, Here.load())
+    printed = Typed(lambda _: None)
+    chosen = CATALOG.lesson(lesson)
+    reader = Reader(CATALOG, chosen, printed.console.rich(), plain=True)
+    for page in reader.pages:
+        reader.show(page)
+    ours = {"", "Kept.", "You said: it grows", "What you type below a page does something; ? lists what."}
+    said = [line for line in someone.said.splitlines() if line not in ours and not OFFERS.match(line)]
+    tasks = CATALOG.tasks(lesson)
+    assert [line for line in printed.said.splitlines() if line] == [
+        line for line in said if not any(f"({one.id})" in line or line == one.summary for one in tasks)
+    ]
+    assert all(someone.said.count(f"{one.title} ({one.id})") == 1 for one in tasks)
+    assert someone.said.count("Here start puts its file into your workspace.") == len(tasks)
+    asked = len(read_script(chosen).questions)
+    assert sum(question.startswith("Your prediction") for question in someone.asked) == asked
+    assert repeated("\n".join(said)) == []
+    assert "\x1b" not in someone.said
+
+
+def test_a_prediction_comes_before_its_answer_and_is_judged_below_it(workspace: Workspace) -> None:
+    typed = Typed(lines(f"g {ASKED}", "b", "", "it grows", "2", "1", "q"))
+    assert not typed.read(LESSON, Here.load())
+    said = typed.said
+    assert said.index("Predict first: ") < said.index("Kept.") < said.index("Answer: ")
+    assert said.index("Answer: ") < said.index("You said: it grows") < said.index("Kept: nearly right.")
+    assert "No prediction is answered on this page." in said, "it was judged"
+    (one,) = predictions_of(workspace.store.events())
+    assert (one.text, one.judged) == ("it grows", "nearly")
+
+
+def test_no_way_leads_past_an_open_prediction(workspace: Workspace) -> None:
+    typed = Typed(lines("g 999", "g x", f"g {ASKED + 1}", "q"))
+    typed.read(LESSON, Here.load())
+    assert typed.said.count("g takes the number of a page, 1 to ") == 2
+    assert "Predict first.\n" in typed.said
+    assert "Answer: " not in typed.said
+    assert typed.asked[-1].startswith("Your prediction")
+    after = Typed(lines("course check integrators", "r 1", "q"))
+    after.read(LESSON, Here.load())
+    assert f"Going on with page {ASKED} of " in after.said
+    assert "'course check integra' does nothing here, and this is not the shell" in after.said
+    assert predictions_of(workspace.store.events())[0].text == "r 1", "at a prediction it is one"
+
+
+def test_contents_search_and_an_unknown_word(workspace: Workspace) -> None:
+    typed = Typed(lines("t", "/ shadow hamiltonian", "/ compass", "dance", "?", "q"))
+    typed.read(LESSON, Here.load())
+    assert ": Fingerprints\n" in typed.said
+    assert "Nothing.\n" in typed.said
+    assert "compass" in typed.said
+    assert "'dance' does nothing here, and this is not the shell; ? lists what does." in typed.said
+    assert "q or Ctrl-C: stop" in typed.said
+
+
+def test_a_cell_runs_is_changed_in_a_file_and_put_back(workspace: Workspace) -> None:
+    """Beyond its prediction, which is skipped; what a cell prints as recorded is not said again."""
+    cell = read_script(CATALOG.lesson(LESSON)).shown_cells[0]
+    name = f"{LESSON}-1.py"
+
+    def answer(question: str) -> str | None:
+        if question.startswith("Your prediction"):
+            return ""
+        if "r runs cell 1," not in typed.said:
+            return ""
+        step = next(steps, None)
+        if step == "changed":
+            (workspace.root / name).write_text("print('mine')\n", "utf-8")
+            return "r"
+        return step
+
+    steps = iter(["r", "r 999", "e", "changed", "u", "r", "q"])
+    typed = Typed(answer)
+    assert not typed.read(LESSON, Here.load())
+    assert typed.said.count("and printed the same.") == 2
+    assert "No cell 999 in this lesson." in typed.said
+    assert "and printed, 1 line:\nmine\nEnd of output\n" in typed.said
+    assert cell.output is not None
+    assert typed.said.count(cell.output.splitlines()[0]) == 1
+    kinds = [event.data for event in workspace.store.events("cell")]
+    assert [data.get("printed") for data in kinds if "ran" in data][1] == "mine"
+
+
+def test_outside_of_a_workspace_it_reads_and_says_what_a_task_needs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    typed = Typed(lambda question: "start" if "Make a workspace" not in typed.said and at_a_task() else "")
+
+    def at_a_task() -> bool:
+        return typed.said.rstrip().endswith(CATALOG.tasks(LESSON)[0].summary)
+
+    assert typed.read(LESSON, None)
+    assert typed.said.count("Make a workspace first: course init my-course") == 1

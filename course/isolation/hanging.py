@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import ast
 import contextlib
-from time import monotonic, sleep
+from time import sleep
 from typing import TYPE_CHECKING, Any
 
+from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.inside import wire
 from course.isolation.reports import raised
@@ -60,8 +61,9 @@ def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> St
 
 def _answer(handle: Handle, buffer: bytes) -> Any:
     """What the worker says of where its code is; None if nothing comes that can be read as that."""
-    codec, end = wire.Codec(), monotonic() + _ANSWER_S
-    while monotonic() < end and len(buffer) < _MOST:
+    codec, deadline = wire.Codec(), Deadline(_ANSWER_S)
+    deadline.watch(handle)
+    while not deadline.passed() and len(buffer) < _MOST:
         if len(buffer) >= wire.HEADER.size:
             length, kind = wire.HEADER.unpack_from(buffer)
             if not 0 < length < _MOST:
@@ -76,6 +78,8 @@ def _answer(handle: Handle, buffer: bytes) -> Any:
         try:
             received = handle.channel.recv(_RECV)
         except (BlockingIOError, TimeoutError):
+            # On a busy machine several looks may have reached it as one.
+            handle.look()
             continue
         except OSError:
             return None

@@ -97,12 +97,12 @@ def test_the_report_shows_both_sections(growth: Catalog) -> None:
 
 
 def test_no_folder_has_more_modules_than_the_page_says() -> None:
-    assert "No folder of the program has more than seventeen modules." in TEXT
+    assert "No folder of the program has more than fifteen modules." in TEXT
     counts = {
         folder.relative_to(ROOT).as_posix(): len(list(folder.glob("*.py")))
         for folder in (ROOT / "course").rglob("*/")
     }
-    assert max(counts.values()) == 17
+    assert max(counts.values()) == 15
 
 
 def test_every_name_of_the_kit_is_on_the_page() -> None:

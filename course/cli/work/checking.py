@@ -210,8 +210,11 @@ def _check_one(
     if form == "text":
         # A warm-up is small, and one thing at a time is enough of it.
         brief = exercise.is_warm_up and not verbose
+        if console.draws:  # above, so that the finding stays on the screen
+            show_curve(console, exercise, verdict, session)
         show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
-        show_curve(console, exercise, verdict, session)
+        if not console.draws:
+            show_curve(console, exercise, verdict, session, drawn=False)
     else:
         annotate(console, here, work, verdict, form)
     step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""

@@ -44,8 +44,9 @@ def show_curve(
     from course.figures.drawing.curves import plot_of
     from course.figures.drawing.plots import draw
 
-    if drawn and console.fancy:
+    if not drawn and console.fancy:
         console.blank()
+    elif console.fancy:
         console.figure(lambda: draw(plot_of(curve)))
     console.line((f"{check}: {curve.description}", "dim"))
     if console.fancy:

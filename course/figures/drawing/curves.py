@@ -29,6 +29,8 @@ _SEEN = 0.04
 _PAPER = 1.5
 _HEIGHT_IN = 2.6  # about fifteen lines of eighty columns
 _MOST = 2000  # points that are drawn
+#: Turning points of the right curve that are drawn: of more, eighty columns make one grey bar.
+_TURNS = 10
 #: Points that are handed on: more than a terminal has columns.
 _FEW = 200
 
@@ -133,6 +135,7 @@ def _range(curve: Curve) -> float:
 def plot_of(curve: Curve) -> Plot:
     """The figure: the right curve as a line, the student's as points, as far as they stay on the paper."""
     unit = f" / {curve.units}" if curve.units not in {"", "1"} else ""
+    whole, curve = curve, _beginning(curve)
     low, high = float(np.min(curve.right)), float(np.max(curve.right))
     room = _PAPER * _range(curve)
     with np.errstate(all="ignore"):
@@ -150,7 +153,20 @@ def plot_of(curve: Curve) -> Plot:
         ),
     )
     title = f"{curve.quantity} over time: yours, and {_as_noun(curve)}"
-    return Plot(title, (panel,), curve.description, height_in=_HEIGHT_IN)
+    if curve is not whole:
+        title += f", until {curve.t[-1]:.3g} s"
+    return Plot(title, (panel,), whole.description, height_in=_HEIGHT_IN)
+
+
+def _beginning(curve: Curve) -> Curve:
+    """As much of a swinging motion as can be told apart, and two turns after the curves have parted."""
+    rising = np.diff(curve.right) > 0.0
+    turns = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    if len(turns) <= _TURNS:
+        return curve
+    parted = int(np.searchsorted(turns, np.searchsorted(curve.t, curve.parts_at)))
+    end = int(turns[min(max(_TURNS, parted + 2), len(turns)) - 1]) + 1
+    return replace(curve, t=curve.t[:end], yours=curve.yours[:end], right=curve.right[:end])
 
 
 def _as_noun(curve: Curve) -> str:

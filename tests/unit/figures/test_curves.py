@@ -46,6 +46,18 @@ def test_where_curves_part_is_a_time_of_theirs() -> None:
     assert "leaves what it should be at 1 s" in curve.description
 
 
+def test_of_a_long_swing_the_beginning_is_drawn_with_the_place_where_the_curves_part() -> None:
+    t = np.linspace(0.0, 100.0, 4001)
+    right = np.cos(2 * t)  # turns every pi / 2
+    for parts, end in ((0.3, 10 * np.pi / 2), (50.0, 33 * np.pi / 2)):
+        curve = compared(t, np.where(t > parts, 1.5 * right, right), right, "x", "m")
+        assert curve is not None
+        drawn = plot_of(curve)
+        assert np.asarray(drawn.panels[0].series[0].x)[-1] == pytest.approx(end, abs=0.1)
+        assert "until" in drawn.title
+        assert "at the end, at 100 s" in drawn.description
+
+
 def test_a_curve_is_handed_on_in_few_points_with_both_ends() -> None:
     t = np.linspace(0.0, 9.0, 4001)
     long = compared(t, np.where(t > 5.0, np.nan, t), 2 * t, "x", "m")

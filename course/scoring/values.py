@@ -331,8 +331,9 @@ _KINDS = {
     int: "a number",
     float: "a number",
     str: "a str",
-    list: "a list",
-    tuple: "a tuple",
+    # A tuple comes out of the student's process as a list.
+    list: "a list or a tuple",
+    tuple: "a list or a tuple",
     dict: "a dict",
     np.ndarray: "an array",
 }

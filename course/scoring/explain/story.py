@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from course.scoring.explain.words import NOT_FINITE, Diagnosis
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from course.scoring.explain.table import Row
     from course.scoring.explain.words import Words
@@ -40,11 +40,18 @@ class Story:
         diagnosis: the mistake; None if none is recognised.
         certain: True if a known wrong program answers every question as the student's does.
         own: ids of checks that keep what they say themselves: facts that they saw directly.
+        each: where no cause is known, the consequence that each check saw, by id: what one check saw is true
+            of that check, and says nothing of another that failed beside it.
     """
 
     diagnosis: Diagnosis | None
     certain: bool
     own: frozenset[str]
+    each: Mapping[str, Diagnosis] | None = None
+
+    def of(self, check: str) -> Diagnosis | None:
+        """What this check is told."""
+        return self.diagnosis if self.each is None else self.each.get(check)
 
 
 def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
@@ -52,7 +59,7 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> 
 
     A program that fits decides. Where none does, the probes speak: where a nan comes from before all else,
     then causes, then consequences; of several causes the one that most checks name, and none where as many
-    name another.
+    name another. A cause is said of all the checks, a consequence of those that saw it.
 
     Args:
         failures: its failed checks, in order.
@@ -69,7 +76,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> 
     for kind in ("cause", "nan", "consequence"):
         said = [guess for guess in guesses if words.kind(guess.code) == kind]
         if said:
-            return Story(_most_named(said), False, own)
+            seen = {f.check: f.guess for f in left if f.guess and words.kind(f.guess.code) == kind}
+            return Story(_most_named(said), False, own, seen if kind == "consequence" else None)
     return Story(None, False, own)
 
 

@@ -27,7 +27,8 @@ _SPREAD_SOURCE = "five times the scatter of a std from 4000 samples"
 @pytest.mark.points(3)
 def test_encoder_counts(submission):
     """An encoder counts whole steps, over several turns and on both sides of zero"""
-    theta = np.linspace(-9.0, 9.0, 401) + 0.001
+    far = np.linspace(-5000.0, 5000.0, 20) + 0.001  # 51,000 counts either way
+    theta = np.concatenate([np.linspace(-9.0, 9.0, 401) + 0.001, far])
     sensors.expect_counts(submission.call("encoder", theta, 64), theta, 64)
 
 

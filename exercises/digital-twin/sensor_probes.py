@@ -11,6 +11,10 @@ from course.grading import kit
 named = kit.words("digital-twin")
 
 
+#: Counts that sixteen bits tell apart: what does not fit into them is off by a multiple of it.
+_OVERFLOW = 2**16
+
+
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_encoder(counts, wanted):
     """What counts (N,) have in common with the wanted ones: a factor, if each is off by the same."""
@@ -22,6 +26,9 @@ def of_encoder(counts, wanted):
     ratios = counts[far] / wanted[far]
     # Rounded to whole counts, a constant ratio scatters by a count in the far ones.
     within = 2.0 / np.min(np.abs(wanted[far])) * max(1.0, abs(float(np.median(ratios))))
+    off = np.abs(counts - wanted)
+    if np.all(off % _OVERFLOW == 0) and np.any(off):
+        return named("COUNTS_OVERFLOW")
     middle = float(np.median(ratios))
     steady = np.all(np.abs(ratios - middle) <= within) and middle > 0 and abs(middle - 1) > within
     return named("COUNTS_OFF_BY_FACTOR") if steady else None
@@ -252,8 +259,22 @@ def of_bias0(found, cases):
         return named("FIRST_SAMPLE_AS_BIAS")
     if np.all(np.abs(found - [np.mean(case[0]) for case in cases]) < 1e-9):
         return named("WHOLE_MEAN_AS_BIAS")
+    lengths = [_samples_averaged(mean, case) for mean, case in zip(found, cases, strict=True)]
+    if all(lengths):
+        best = [math.sqrt(3) * case[2] / case[3] / case[1] for case in cases]  # samples
+        ratio = np.median(np.array(lengths) / best)
+        if not 1 / 3 < ratio < 3:  # within it a mean is hardly worse than the best one
+            return named("BIAS0_TIME_TOO_SHORT" if ratio < 1 else "BIAS0_TIME_TOO_LONG")
     signless = np.all(found >= 0) and np.median(np.abs(found / np.abs(right) - 1)) < 0.2
     return named("BIAS0_WITHOUT_SIGN") if signless else None
+
+
+def _samples_averaged(mean, case):
+    """Of how many samples from the start a number is the mean; None if it is none."""
+    still = case[0]
+    means = np.cumsum(still) / np.arange(1, len(still) + 1)
+    near = np.flatnonzero(np.abs(means - mean) < 1e-12 * np.max(np.abs(still)))
+    return int(near[0]) + 1 if len(near) else None
 
 
 # -- lidar ----------------------------------------------------------------------------------------------

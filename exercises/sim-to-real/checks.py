@@ -152,6 +152,7 @@ def _expect_tuned(submission, asked, drawn, best):
         source="correct solutions reach 0.97 and more (tests/benchmarks/calibration/sim-to-real.md)",
         quantity="success: best mean settling over own",
         message="With these gains the fleet settles later than it could.",
+        help=judge.LEAST_MEAN,
         input={"kp": gains[0], "kd": gains[1], "box": asked, "best mean settling, s": best},
         diagnose=lambda: probes.of_gains(
             submission, estimate, asked, gains, lambda kp, kd: cart.public_success(kp, kd, drawn)[0]

@@ -280,6 +280,7 @@ def of_gains(submission, estimate, box, gains, success):
     # One kp for most questions, with others better: the grid ends there, or the search never leaves it.
     stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other) >= 3
     prompt, sooner = {**estimate, "latency": [0.001] * 3}, _with(estimate, ("latency", "lag"), 0.4)
+    very_late = _with(estimate, ("latency", "lag"), 4.5)
     # One change may leave the best gains of a coarse search where they are; these lie the other way.
     unloaded = {k: [end / _LOAD.get(k, 1.0) for end in ends] for k, ends in box.items()}
     boxes = (estimate, unloaded), (estimate, {k: [1.0, 1.0] for k in box})
@@ -303,7 +304,11 @@ def of_gains(submission, estimate, box, gains, success):
             "GAINS_BY_FORMULA",
             lambda: same[2] and same[3] and not (same[0] or same[1]) and unmoved((sooner, box), *boxes),
         ),
-        ("DELAY_IGNORED", lambda: same[2] and _is_best(kp, kd, prompt, box) and unmoved((sooner, box))),
+        (
+            "DELAY_IGNORED",
+            # A quarter of a second more changes the best gains so much that no grid is too coarse to show it.
+            lambda: same[2] and _is_best(kp, kd, prompt, box) and unmoved((sooner, box), (very_late, box)),
+        ),
         ("RANDOMIZATION_IGNORED", lambda: same[3] and unmoved(*boxes)),
         ("SEARCH_ENDED_EARLY", lambda: ended_early),
     )

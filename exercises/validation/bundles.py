@@ -148,28 +148,28 @@ def expect_report(submission, case, spec, right, shown):
     sim, real = case.sim, case.real
     inspected = submission.call_inspect("validate", sim, real, spec)
     report = kit.as_record(inspected.value, KEYS, "the report")
-    expect_measures(report, sim, right, shown)
+    expect_measures(report, case, right, shown)
     _expect_conclusion(report, right, spec, shown)
     shared.expect_left_alone(inspected, [sim, real, spec], ["sim", "real", "spec"])
 
 
-def expect_measures(report, sim, right, shown):
+def expect_measures(report, case, right, shown):
     """The runs, the four numbers and their intervals are right."""
-    expect_numbers(report, sim, right, shown)
+    expect_numbers(report, case, right, shown)
     _expect_lag(report, right, shown)
     _expect_intervals(report, right, shown)
 
 
-def expect_numbers(report, sim, right, shown):
+def expect_numbers(report, case, right, shown):
     """The right runs, with the right rmse, bias and coverage."""
     used = [str(item) for item in kit.as_list(report["runs_used"], "runs_used")]
     kit.expect_equal(
         sorted(used),
         sorted(right.used),
-        message="The verdict is based on the wrong runs.",
+        message="`runs_used` does not list the runs that count.",
         help="Use the runs that both lists have, without those on which the simulation was calibrated.",
         input=shown,
-        diagnose=lambda: probes.of_used(used, sim),
+        diagnose=lambda: probes.of_used(used, report, case.sim, right),
     )
     for key in probes.NUMBERS:
         value = kit.as_number(report[key], key)
@@ -183,7 +183,9 @@ def expect_numbers(report, sim, right, shown):
             message=f"`{key}` is wrong.",
             help="Pool the samples of all runs that count, with errors simulated minus real.",
             input=shown,
-            diagnose=lambda key=key, value=value: probes.of_number(key, value, right),
+            diagnose=lambda key=key, value=value: (
+                probes.of_number(key, value, right) or probes.of_pairs(key, value, case.sim, case.real)
+            ),
         )
 
 
@@ -284,7 +286,7 @@ def expect_margins(submission, case, right):
     specs = _specs(right)
     reports = submission.call_each("validate", [(sim, real, spec) for spec in specs])
     found = [reasons_of(kit.as_record(report, KEYS, "the report")) for report in reports]
-    expect_measures(reports[0], sim, right, {"runs": count, "spec": specs[0]})
+    expect_measures(reports[0], case, right, {"runs": count, "spec": specs[0]})
     for spec, report, reasons in zip(specs, reports, found, strict=True):
         expected = right.reasons(spec)
         shown = {"runs": count, "spec": spec}
@@ -322,7 +324,7 @@ def expect_nothing(submission, case, spec, right, shown):
     reasons, used = reasons_of(report), kit.as_list(report["runs_used"], "runs_used")
     single = bool(right.used)
     if single:
-        expect_numbers(report, case.sim, right, shown)
+        expect_numbers(report, case, right, shown)
         _expect_lag(report, right, shown)
     told = report["intervals"] is None and (single or all(report[key] is None for key in probes.MEASURES))
     kit.expect_true(

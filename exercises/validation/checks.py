@@ -93,7 +93,9 @@ def test_consistency_band_table(submission):
                 message="The band is not that of an average of chi-square values.",
                 help="The sum over the runs is chi-square with dof * runs degrees of freedom: take its "
                 "quantiles at alpha/2 and 1 - alpha/2, and divide both by runs.",
-                diagnose=lambda lo=lo, hi=hi, expected=expected: probes.of_band((lo, hi), expected),
+                diagnose=lambda lo=lo, hi=hi, right=expected, given=(dof, count, alpha): probes.of_band(
+                    submission, given, (lo, hi), right
+                ),
             )
 
 
@@ -155,7 +157,7 @@ def test_energy_error_falling(submission):
 def test_contact_force_late(submission):
     """An impact that is late, a little too hard and a little too short"""
     t = 0.001 * np.arange(61)
-    pair = shared.pulse(t, 0.021, 0.016, 88.0), shared.pulse(t, 0.012, 0.02, 80.0), 0.001
+    pair = shared.pulse(t, 0.021, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.02, 80.0, 0.4), 0.001
     shared.expect_forces(submission, [pair])
 
 
@@ -228,3 +230,5 @@ def _expect_by_hand(submission, task, first, second):
     # As many rows as components, where rows and columns are easily taken for each other; and one component.
     shared.expect_normalised(submission, task, err[:2], covariance[:2], (first, second))
     shared.expect_normalised(submission, task, err[:, 1:], covariance[:, 1:, 1:], (first, second))
+    # A single error.
+    shared.expect_normalised(submission, task, err[:1], covariance[:1], (first, second))

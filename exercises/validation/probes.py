@@ -48,10 +48,20 @@ def of_offset(submission, e):
     return named("SINGLE_PRECISION" if off > 1e-10 else "CANCELLATION")
 
 
-def of_band(ends, right):
-    """What the (lo, hi) of a wrong band are beside the right ones."""
-    near = np.allclose(ends, right, rtol=0.2)
-    return named("ROUGH_QUANTILES") if near else None
+def of_band(submission, setting, ends, right):
+    """What the (lo, hi) of a wrong band are beside the right ones, and what they do not depend on.
+
+    setting: (dof, runs, alpha)
+    """
+    dof, runs, alpha = setting
+    other = submission.call("consistency_band", dof, runs, alpha / 2)
+    other = kit.attempt(lambda: kit.as_vector(kit.as_tuple(other, ("lo", "hi")), 2, "(lo, hi)"))
+    if other is not None and np.array_equal(other, ends):
+        return named("ALPHA_IGNORED")
+    # That of a chi-square lies higher by far more than rounding: (2/9 z² - 2/3)/runs and the like.
+    if abs(sum(ends) / 2 - dof) < 1e-9 * dof and ends[0] < ends[1]:
+        return named("NORMAL_BAND")
+    return named("ROUGH_QUANTILES") if np.allclose(ends, right, rtol=0.2) else None
 
 
 # -- bootstrap ------------------------------------------------------------------------------------------
@@ -116,8 +126,11 @@ def of_resamples(found):
         ("NOT_RESAMPLED", not drawn),
         ("RESAMPLE_SIZE", not whole),
         ("NOT_OF_THE_SERIES", not all(np.isin(samples, found.e).all() for samples in drawn)),
-        ("DRAWN_WITHOUT_REPLACEMENT", all(np.array_equal(np.sort(samples), found.e) for samples in drawn)),
+        # Of errors drawn with replacement a third is missing in a resample.
+        ("DRAWN_WITHOUT_REPLACEMENT", all(len(np.unique(samples)) > 0.9 * n for samples in drawn)),
         ("DRAWN_ONCE", all(np.array_equal(samples, drawn[0]) for samples in drawn)),
+        # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
+        ("PART_OF_SERIES", len(drawn) > _BOOT / 2 and len(np.unique(drawn)) < 0.8 * n),
         ("IID_BOOTSTRAP", length < 1.5),
         ("BLOCK_IGNORED", not _BLOCK / BLOCK_FACTOR <= length <= _BLOCK * BLOCK_FACTOR),
         # A basic interval asks about the series itself, once or where it is needed.
@@ -163,6 +176,13 @@ def of_ends(found):
     if any(_quantiles(ends + whole, values, low, high) for _, low, high in levels):
         return "NOT_CENTRED"
     return None
+
+
+def of_chance(submission):
+    """Whether two generators give the very same resamples, so that chance comes from elsewhere."""
+    first, other = (resample(submission, seed) for seed in (1, 2))
+    alike = len(first.asked) == len(other.asked) and all(map(np.array_equal, first.asked, other.asked))
+    return named("FIXED_SEED") if alike else None
 
 
 def _quantiles(ends, values, low, high):
@@ -224,11 +244,11 @@ class Folds:
 
     def fit(self, runs):
         places = [self._place(run, "fit") for run in kit.as_list(runs, "what fit was given")]
-        u = np.concatenate([self.runs[i]["u"] for i in places])
-        y = np.concatenate([self.runs[i]["y"] for i in places])
+        # Before the first run, a fit to no run at all has a model, too: what is wrong is said afterwards.
+        u, y = (np.concatenate([np.empty(0), *(self.runs[i][key] for i in places)]) for key in ("u", "y"))
         self.fitted.append(places)
         self.asked.append([])
-        self._gains.append(float(u @ y / (u @ u)))
+        self._gains.append(float(u @ y / (u @ u)) if places else 0.0)
         return {"model": len(self.fitted) - 1}
 
     def predict(self, model, run):
@@ -299,7 +319,7 @@ class Folds:
 
 def _fits_the_fold(used, everything):
     """Whether each model saw one piece of the list, and no run was seen twice: the fold."""
-    pieces = all(max(fit) - min(fit) + 1 == len(fit) for fit, _ in used)
+    pieces = all(fit and max(fit) - min(fit) + 1 == len(fit) for fit, _ in used)
     once = sorted(i for fit, _ in used for i in fit) == sorted(everything)
     roles = all(set(asked) in (fit, everything - fit) for fit, asked in used)
     return len(used) > 2 and pieces and once and roles

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from course.grading import kit
 
 named = kit.words("validation")
@@ -61,8 +63,12 @@ class Facts:
         return sorted(key.removesuffix("_s") for key, kept in within.items() if not kept)
 
 
-def of_used(used, sim):
-    """Why the wrong runs were used."""
+def of_used(used, report, sim, right):
+    """Why the wrong runs are listed: they were used, too, or the numbers are those of the right ones."""
+    if right.numbers is not None:
+        close = lambda key: math.isclose(kit.as_number(report[key], key), right.numbers[key], rel_tol=1e-6)  # noqa: E731
+        if kit.attempt(lambda: all(close(key) for key in NUMBERS)):
+            return named("OTHER_RUNS_LISTED")
     return named("CALIBRATION_RUNS_SCORED") if set(used) & set(sim["calibrated_on"]) else None
 
 
@@ -70,6 +76,18 @@ def of_number(key, value, right):
     """What a wrong rmse, bias or coverage is, whatever else is wrong."""
     mean = right.means.get(key, math.nan)
     return named("MEAN_OF_RUNS") if math.isclose(value, mean, rel_tol=1e-6) else None
+
+
+def of_pairs(key, value, sim, real):
+    """Whether a wrong rmse or bias is that of runs paired by their place in the two lists."""
+    ids = {run["id"] for run in real["runs"]} - set(sim["calibrated_on"])
+    pairs = [(s, r) for s, r in zip(sim["runs"], real["runs"], strict=False) if s["id"] in ids]
+    alike = all(s["id"] == r["id"] for s, r in pairs)
+    if key == "coverage" or alike or any(len(s["y"]) != len(r["y"]) for s, r in pairs):
+        return None
+    e = np.concatenate([np.asarray(s["y"]) - np.asarray(r["y"]) for s, r in pairs])
+    wrong = np.mean(e) if key == "bias" else np.sqrt(np.mean(e**2))
+    return named("MATCHED_BY_POSITION") if math.isclose(value, wrong, rel_tol=1e-6) else None
 
 
 def of_interval(ends, right):
@@ -96,11 +114,22 @@ def of_lag(value, half, right):
         # A number of samples is recognised only where it cannot be anything else.
         ("LAG_IN_SAMPLES", abs(late) > dt and any(abs(value * h - late) <= 0.6 * h for h in right.steps)),
         ("LAG_AT_THE_END", abs(value) >= 0.19),  # no lag is larger than 0.2 s
+        ("LAG_MIRRORED", _mirrored(value, right)),
         ("LAG_WHOLE_SAMPLES", abs(value - late) < 1.01 * dt and _whole(value, right)),
     ]
     means = any(abs(value - m) <= 0.06 * dt and abs(half - h) <= 0.2 * dt for m, h in right.averages)
     looks.append(("LAG_MEAN_OF_RUNS", means))
     return named(next((code for code, fits in looks if fits), "LAG_NOT_BEST"))
+
+
+def _mirrored(value, right):
+    """Whether it lies as far from the best whole shift as the right one, on the other side."""
+    late = right.numbers["lag_s"]
+    for step in right.steps:
+        whole = step * round(late / step)
+        if abs(late - whole) > 0.15 * step and abs(value + late - 2 * whole) < 0.05 * step:
+            return True
+    return False
 
 
 def _whole(value, right):

@@ -225,7 +225,7 @@ _IDENTIFY = {
         ("PARAMETER_FIXED", _values(lambda v: {**v, "Fc": 0.3})),
         ("INTERVAL_REVERSED", lambda found: {k: [v, h, low] for k, (v, low, h) in found.items()}),
         ("INTERVAL_REVERSED", lambda found: {k: [v, low - v, h - v] for k, (v, low, h) in found.items()}),
-        ("INTERVAL_REVERSED", _widths(lambda k, v, w: 0.0)),
+        ("INTERVAL_WITHOUT_WIDTH", _widths(lambda k, v, w: 0.0)),
         ("INTERVAL_OVERCONFIDENT", _widths(lambda k, v, w: w / 20)),
         ("INTERVAL_WITHOUT_RECORDING", _widths(lambda k, v, w: _FIXED[k] * v)),
         ("INTERVAL_USELESS", _widths(lambda k, v, w: 20 * w)),

@@ -122,6 +122,12 @@ def _normalised(weights=np.linalg.inv, gives=lambda x, P: x):
     return lambda err, P: gives(np.einsum("ni,nij,nj->n", err, np.broadcast_to(weights(P), P.shape), err), P)
 
 
+def _flipped(P):
+    """L^T L of Cholesky's P = L L^T: what the transposed factor belongs to."""
+    L = np.linalg.cholesky(P)
+    return L.transpose(0, 2, 1) @ L
+
+
 def _sided(size):
     """One size for all components."""
     return lambda P: np.eye(P.shape[1]) / size(P)[:, None, None]
@@ -137,6 +143,8 @@ _NEES = {
         ("ONE_COVARIANCE", lambda P: np.linalg.inv(P[-1])),
         ("ONE_COVARIANCE", lambda P: np.linalg.inv(np.mean(P, axis=0))),
         ("INVERTED_TWICE", lambda P: np.linalg.inv(P @ P)),
+        ("SQUARED_BY_ELEMENT", lambda P: np.linalg.inv(P * P)),
+        ("CHOLESKY_TRANSPOSED", lambda P: np.linalg.inv(_flipped(P))),
         ("VARIANCE_MISREAD", lambda P: _scaled(1 / _variances(P) ** 2)),
         ("VARIANCE_MISREAD", lambda P: _scaled(1 / np.sqrt(_variances(P)))),
         ("VARIANCE_MISREAD", lambda P: _scaled(_variances(P))),
@@ -170,8 +178,8 @@ def _exact():
     return functools.cache(lambda n, alpha: held["consistency_band"](n, 1, alpha))
 
 
-def _symmetric(n, alpha):
-    half = NormalDist().inv_cdf(1 - alpha / 2) * math.sqrt(2 * n)
+def _symmetric(n, alpha, variance=None):
+    half = NormalDist().inv_cdf(1 - alpha / 2) * math.sqrt(2 * n if variance is None else variance)
     return [n - half, n + half]
 
 
@@ -217,6 +225,9 @@ _BAND_OTHERS = (
     ("APPROXIMATION_SLIP", lambda n, alpha: _wilson_hilferty(n, alpha, power=1)),
     ("APPROXIMATION_SLIP", lambda n, alpha: _wilson_hilferty(n, alpha, power=2)),
     ("APPROXIMATION_SLIP", lambda n, alpha: _wilson_hilferty(n, alpha, middle=lambda n: 1 + 2 / (9 * n))),
+    ("APPROXIMATION_SLIP", lambda n, alpha: _wilson_hilferty(n, alpha, middle=lambda n: 1.0)),
+    ("ALPHA_IGNORED", lambda n, alpha: _wilson_hilferty(n, 0.05)),
+    ("NORMAL_BAND", lambda n, alpha: _symmetric(n, alpha, variance=n)),
 )
 
 
@@ -256,6 +267,10 @@ def _energy_error(change=lambda e: e - e[0], over=lambda e: abs(e[0]), gives=_sa
         return gives(change(e) / over(e))
 
     return energy_error
+
+
+def _energy_of_swapped(q, v, energy):
+    return _energy_error()(v, q, energy)
 
 
 def _previous(e):
@@ -305,6 +320,11 @@ def _forces(
     return contact_force_error
 
 
+def _until_peak(f, last):
+    """last: the weight of the peak itself, which rules of integration differ in."""
+    return np.sum(f[: np.argmax(f)]) + last * np.max(f)
+
+
 def _in_each(relative):
     """The same for both numbers, and for one of them alone."""
     for keys in (("peak", "impulse"), ("peak",), ("impulse",)):
@@ -323,6 +343,10 @@ _FORCES = {
         ("IMPULSE_OF_ABSOLUTE", lambda s, r, dt: (np.sum(np.abs(s - r)) + np.sum(r), np.sum(r))),
         ("MEAN_FORCE", lambda sim, real, dt: (np.mean(sim[sim > 0]), np.mean(real[real > 0]))),
         ("IMPULSE_OF_SQUARES", lambda sim, real, dt: (np.sum(sim**2), np.sum(real**2))),
+        *(
+            ("IMPULSE_UNTIL_PEAK", lambda s, r, dt, last=last: (_until_peak(s, last), _until_peak(r, last)))
+            for last in (1.0, 0.5, 0.0)
+        ),
         ("IMPULSE_OF_PEAK", lambda sim, real, dt: (np.max(sim) * dt, np.max(real) * dt)),
     ),
     "relative": tuple(
@@ -378,6 +402,7 @@ OTHERS = {
     "energy_error": [
         ("TO_PREVIOUS", _energy_error(lambda e: e - _previous(e), lambda e: np.abs(_previous(e)))),
         ("TO_ANOTHER", _energy_error(change=lambda e: e - np.mean(e), over=lambda e: abs(np.mean(e)))),
+        ("ENERGY_ARGUMENTS_SWAPPED", _energy_of_swapped),
         ("LOGARITHM", _energy_error(change=lambda e: np.log(np.abs(e / e[0])), over=lambda e: 1.0)),
         ("RATIO", _energy_error(change=_same, over=lambda e: e[0])),
     ],

@@ -182,6 +182,11 @@ def _by_place(sim, real):
     return [(s, r) for s, r in pairs if s["id"] not in sim["calibrated_on"]]
 
 
+def _by_place_if_known(sim, real):
+    known = {run["id"] for run in real["runs"]}
+    return [(s, r) for s, r in _by_place(sim, real) if s["id"] in known]
+
+
 def _mean_of_runs(keys):
     def pool(pairs, key, of):
         alone = [_together([pair], key, of) for pair in pairs]
@@ -213,6 +218,7 @@ _RULES = [
     ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone, ddof=1) / math.sqrt(n)),
     ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone, ddof=1)),
     ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * facts.error(alone)),
     ("ZERO_WIDTH", lambda *_: 0.0),
     *(("SAMPLES_COUNTED", lambda n, rest, alone, own, z=z: z * own) for z in (1.0, 1.645, 1.96, 2.0)),
     ("SAMPLES_COUNTED", lambda n, rest, alone, own: _t(n) * own),
@@ -266,6 +272,7 @@ _VERDICT = {
         ("CALIBRATION_RUNS_SCORED", _all_pairs),
         ("CALIBRATION_RUNS_SCORED", lambda sim, real: _all_pairs(sim, real, sim["calibrated_on"])),
         ("MATCHED_BY_POSITION", _by_place),
+        ("MATCHED_BY_POSITION", _by_place_if_known),
     ),
     "number": (
         ("WRONG_SIGN", lambda key, e, sigma: facts.number(key, -e, sigma)),

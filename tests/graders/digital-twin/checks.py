@@ -28,6 +28,8 @@ def test_encoder_turns(submission, rng):
     """An encoder of another resolution counts over many turns both ways"""
     per_turn = int(rng.integers(7, 500))
     theta = sensors.angles_between_counts(rng, 600, 10 * per_turn, per_turn)
+    # More counts than sixteen bits hold.
+    theta = np.append(theta, sensors.angles_between_counts(rng, 40, 100_000, per_turn))
     sensors.expect_counts(submission.call("encoder", theta, per_turn), theta, per_turn)
 
 

@@ -145,6 +145,7 @@ def _expect_success(submission, asked, success, who):
         source="correct solutions 0.97 and more, hard-coded gains 0.92 and less",
         quantity="success: mean of best over own settling",
         message=f"With the gains from tune, {who} later than they could.",
+        help=judge.LEAST_MEAN,
         input={"success on each": shares},
         diagnose=lambda: probes.of_gains(
             submission, *asked[worst], gains[worst], lambda kp, kd: success(submission.seed, worst, kp, kd)

@@ -77,7 +77,7 @@ def expect_refused(submission, rng, recorded, sim, mass):
     shown = _shown(case.sim, SPEC)
     value = submission.call("validate", case.sim, case.real, SPEC)
     report = kit.as_record(value, bundles.KEYS, "the report")
-    bundles.expect_numbers(report, case.sim, bundles.facts(case), shown)
+    bundles.expect_numbers(report, case, bundles.facts(case), shown)
     reasons = set(bundles.reasons_of(report))
     kit.expect_true(
         {"coverage", "rmse"} <= reasons <= {"bias", "coverage", "lag", "rmse"},

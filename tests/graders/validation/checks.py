@@ -83,15 +83,15 @@ def test_nees_correlated(submission, rng):
 @pytest.mark.task("nees")
 @pytest.mark.points(2)
 def test_nees_shapes(submission, rng):
-    """NEES of one component, and of as many rows as there are components"""
-    cases.expect_normalised(submission, "nees", rng, [(1, 12), (4, 4)], ("err", "P"))
+    """NEES of one component, of as many rows as there are components, and of a single row"""
+    cases.expect_normalised(submission, "nees", rng, [(1, 12), (4, 4), (3, 1)], ("err", "P"))
 
 
 @pytest.mark.task("nis")
 @pytest.mark.points(3)
 def test_nis_correlated(submission, rng):
-    """NIS with correlated innovations in components of very different sizes"""
-    cases.expect_normalised(submission, "nis", rng, [(2, 25), (3, 3)], ("nu", "S"))
+    """NIS with correlated innovations in components of very different sizes, and of a single one"""
+    cases.expect_normalised(submission, "nis", rng, [(2, 25), (3, 3), (2, 1)], ("nu", "S"))
 
 
 @pytest.mark.task("consistency_band")
@@ -131,7 +131,9 @@ def _expect_bands(submission, settings):
                 input={"dof": dof, "runs": count, "alpha": alpha},
                 message="The band is not that of an average of chi-square values.",
                 help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
-                diagnose=lambda ends=ends, right=right: probes.of_band(ends, right),
+                diagnose=lambda ends=ends, right=right, given=(dof, count, alpha): probes.of_band(
+                    submission, given, ends, right
+                ),
             )
 
 
@@ -198,9 +200,11 @@ def test_contact_force_shifted(submission, rng):
         dt = rng.uniform(0.0005, 0.002)
         t = dt * np.arange(201)
         peak = rng.uniform(50, 500)
-        real = shared.pulse(t, 70 * dt, rng.uniform(35, 55) * dt, peak)
+        rises = rng.permutation([rng.uniform(0.35, 0.45), rng.uniform(0.55, 0.65)])
+        real = shared.pulse(t, 70 * dt, rng.uniform(35, 55) * dt, peak, rises[0])
         late = rng.choice([-1, 1]) * rng.uniform(15, 30) * dt
-        sim = shared.pulse(t, 70 * dt + late, rng.uniform(35, 55) * dt, rng.uniform(low, high) * peak)
+        length, size = rng.uniform(35, 55) * dt, rng.uniform(low, high) * peak
+        sim = shared.pulse(t, 70 * dt + late, length, size, rises[1])
         pairs.append((sim, real, dt))
     shared.expect_forces(submission, pairs)
 

@@ -225,6 +225,31 @@ def test_an_encoder_is_told_nothing_of_a_factor_where_there_is_none():
     assert sensors.of_encoder(exact, wanted).code == "NOT_QUANTISED"
 
 
+def test_counts_that_do_not_fit_into_sixteen_bits_are_told_so():
+    wanted = np.floor(np.linspace(-50_000, 50_000, 41) + 0.3)
+    counts = wanted.astype(np.int64).astype(np.int16).astype(float)
+    assert sensors.of_encoder(counts, wanted).code == "COUNTS_OVERFLOW"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "code"), [(0.02, "BIAS0_TIME_TOO_SHORT"), (0.6, None), (20.0, "BIAS0_TIME_TOO_LONG")]
+)
+def test_a_bias_that_is_the_mean_of_another_stretch_is_told_so(seconds, code):
+    cases = [
+        (scenes.recording(np.random.default_rng(i), 8000, 0.01, 0.002, 0.006, -0.1), 0.01, 0.002, 0.006, -0.1)
+        for i in range(4)
+    ]
+    found = np.array([np.mean(still[: round(seconds / dt)]) for still, dt, *_ in cases])
+    assert getattr(sensors.of_bias0(found, cases), "code", None) == code
+
+
+def test_a_memory_that_is_not_read_is_told_so():
+    def unread(twin, z, t):
+        return dict(twin) if t < twin["t"] else right.sync({**twin, "memory": {}}, z, t)
+
+    assert twins.of_sync(Fake("sync", unread)).code == "MEMORY_NOT_READ"
+
+
 def test_a_density_without_its_root_of_two_is_told_so():
     still = scenes.recording(np.random.default_rng(1), 8000, 0.01, 0.002, 0.001, 0.0)
     found = np.array([np.std(np.diff(still)) * math.sqrt(0.01)])
@@ -408,6 +433,11 @@ COMMAND = [
     ("BRAKES", lambda twin, target: -twin["friction"] * target),
     ("ADDS_CURRENT_DRIVE", lambda twin, target: twin["drive"] + twin["friction"] * target),
     ("TARGET_IGNORED", lambda twin, target: twin["friction"]),
+    ("USES_TWIN_SPEED", lambda twin, target: twin["friction"] * twin["speed"]),
+    ("BALANCE_MISSING", lambda twin, target: 0.8 * (target - twin["speed"])),
+    # As large as the friction that the probe asks about first: there it looks as if the target were not read.
+    ("PUSHES_AWAY", lambda twin, target: twin["friction"] * target - 0.8 * (target - twin["speed"])),
+    ("GAIN_TOO_LARGE", lambda twin, target: twin["friction"] * target + 30 * (target - twin["speed"])),
 ]
 
 
@@ -459,7 +489,7 @@ def test_a_twin_that_runs_away_by_and_by_is_no_twin_that_is_nan():
 
     flown = run(shares("- b * v", "+ b * v"))
     assert flown.guess.code == "FRICTION_SPEEDS_UP"
-    assert "runs away" in flown.finding.message
+    assert "diverges" in flown.finding.message
     broken = run(lambda twin, z, t: {**right.sync(twin, z, t), "position": math.nan})
     assert "runs away" not in broken.finding.message
 

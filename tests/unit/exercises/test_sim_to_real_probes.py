@@ -69,6 +69,26 @@ def test_what_is_attainable_is_what_many_fits_scatter_by():
     assert constant[5] > 0.3  # a steady force does not show the lag
 
 
+@pytest.mark.parametrize("word", ["chirp", "prbs"])
+def test_twenty_seconds_of_these_show_every_parameter_to_the_limit_of_a_useful_threshold(word):
+    for name in (*cart.NAMES, "lag"):
+        assert bench.reach(word, name, 20.0, cart.PUBLIC_TYPES, (0, 5)) < words.NEEDED[name]
+    assert bench.reach("rest", "noise", 20.0, cart.PUBLIC_TYPES, (0, 5)) == pytest.approx(0.031, abs=1e-4)
+
+
+def test_an_interval_without_width_and_one_in_another_order_are_told_apart():
+    carts = [cart.PUBLIC] * 2
+    right = [
+        {k: (v, 0.99 * v, 1.01 * v) for k, v in {**c, "lag": c["tau"] + c["latency"]}.items()} for c in carts
+    ]
+    judge.expect_intervals(right, carts)
+    for code, order in (("INTERVAL_REVERSED", (1, 0, 2)), ("INTERVAL_WITHOUT_WIDTH", (0, 0, 0))):
+        wrong = [{k: tuple(entry[i] for i in order) for k, entry in one.items()} for one in right]
+        with pytest.raises(kit.CheckFailed) as failure:
+            judge.expect_intervals(wrong, carts)
+        assert failure.value.guess.code == code
+
+
 @pytest.mark.parametrize(
     ("code", "make"),
     [

@@ -78,6 +78,11 @@ RESAMPLES = {
     "too few": (blocks(12)[:23], "OTHER_NUMBER_OF_RESAMPLES"),
     "shifted": ([row + 0.1 for row in blocks(12)], "NOT_OF_THE_SERIES"),
     "shuffled": ([np.roll(ITSELF, i) for i in range(1, 25)], "DRAWN_WITHOUT_REPLACEMENT"),
+    "first part": ([row % 50 for row in blocks(12)], "PART_OF_SERIES"),
+    "blocks in another order": (
+        [np.random.default_rng(i).permutation(ITSELF.reshape(25, 10)).ravel() for i in range(24)],
+        "DRAWN_WITHOUT_REPLACEMENT",
+    ),
     "asked twice": ([*blocks(12), *[ITSELF] * 24], "OTHER_NUMBER_OF_RESAMPLES"),
     "basic interval": ([ITSELF, *blocks(12)], None),
 }
@@ -400,4 +405,18 @@ def test_a_variance_that_is_right_near_zero_is_told_from_one_in_single_precision
 )
 def test_a_band_that_is_near_is_told_from_one_that_is_not(factor, expected):
     right = formulas.exactly()(2, 20, 0.05)
-    assert code(probes.of_band([factor * right[0], right[1]], right)) == expected
+    solution = Fake()
+    solution.set("consistency_band", lambda dof, runs, alpha: [factor * alpha, alpha])
+    ends = [factor * right[0], right[1]]
+    assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected
+
+
+def test_a_band_without_alpha_and_a_symmetric_one_are_recognised():
+    right = formulas.exactly()(2, 20, 0.05)
+    for ends, again, expected in (
+        ([1.2, 3.1], [1.2, 3.1], "ALPHA_IGNORED"),
+        ([1.4, 2.6], [1, 3], "NORMAL_BAND"),
+    ):
+        solution = Fake()
+        solution.set("consistency_band", lambda *_, again=again: again)
+        assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected

@@ -291,6 +291,7 @@ def of_gains(submission, estimate, box, gains, success):
             math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in found
         )
 
+    failing = _of_failing(gains, estimate, box)
     looks = (
         (
             "KD_IS_RATIO",
@@ -310,9 +311,28 @@ def of_gains(submission, estimate, box, gains, success):
             lambda: same[2] and _is_best(kp, kd, prompt, box) and unmoved((sooner, box), (very_late, box)),
         ),
         ("RANDOMIZATION_IGNORED", lambda: same[3] and unmoved(*boxes)),
+        (failing, lambda: failing is not None),
         ("SEARCH_ENDED_EARLY", lambda: ended_early),
     )
     return next((named(code) for code, seen in looks if seen()), None)
+
+
+def _of_failing(gains, estimate, box):
+    """What gains do well with which most of the carts never settle, as a code, or None."""
+    kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 10), np.linspace(0.2, 0.75, 8)))
+    times = _settling((np.append(kp, gains[0]), np.append(kp * ratio, gains[1])), estimate, box)
+    never = times >= 3.0
+    failing = float(np.mean(never[:, -1]))
+    if failing <= 0.5:
+        return None
+    if failing == 1.0:
+        return "NO_CART_SETTLES"
+    first = times.min(axis=0)
+    settled = np.where(never, 0.0, times).sum(axis=0) / np.maximum(np.sum(~never, axis=0), 1)
+    settled[never.all(axis=0)] = 3.0
+    if first[-1] <= 1.02 * first.min():
+        return "BEST_CART_ALONE"
+    return "FAILURES_LEFT_OUT" if settled[-1] <= 1.02 * settled.min() else None
 
 
 def _never_changes(submission, estimate, box, gains):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from course.scoring.explain.words import NOT_FINITE, Diagnosis
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from course.scoring.explain.table import Row
     from course.scoring.explain.words import Words
@@ -40,18 +40,13 @@ class Story:
         diagnosis: the mistake; None if none is recognised.
         certain: True if a known wrong program answers every question as the student's does.
         own: ids of checks that keep what they say themselves: facts that they saw directly.
-        each: where no cause is known, the consequence that each check saw, by id: what one check saw is true
-            of that check, and says nothing of another that failed beside it.
+        bare: ids of checks that it is not said of: they saw another mistake, or not this consequence.
     """
 
     diagnosis: Diagnosis | None
     certain: bool
     own: frozenset[str]
-    each: Mapping[str, Diagnosis] | None = None
-
-    def of(self, check: str) -> Diagnosis | None:
-        """What this check is told."""
-        return self.diagnosis if self.each is None else self.each.get(check)
+    bare: frozenset[str] = frozenset()
 
 
 def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
@@ -59,7 +54,7 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> 
 
     A program that fits decides. Where none does, the probes speak: where a nan comes from before all else,
     then causes, then consequences; of several causes the one that most checks name, and none where as many
-    name another. A cause is said of all the checks, a consequence of those that saw it.
+    name another. A cause is said of every check that saw no other; a consequence only of those that saw it.
 
     Args:
         failures: its failed checks, in order.
@@ -76,8 +71,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> 
     for kind in ("cause", "nan", "consequence"):
         said = [guess for guess in guesses if words.kind(guess.code) == kind]
         if said:
-            seen = {f.check: f.guess for f in left if f.guess and words.kind(f.guess.code) == kind}
-            return Story(_most_named(said), False, own, seen if kind == "consequence" else None)
+            named = _most_named(said)
+            return Story(named, False, own, _contradicted(left, named, words))
     return Story(None, False, own)
 
 
@@ -116,6 +111,17 @@ def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
     if len(said) == 1:
         return next(iter(said.values()))
     return next((guess for code, guess in said.items() if code in NOT_FINITE), None)
+
+
+def _contradicted(failures: Sequence[Failure], named: Diagnosis | None, words: Words) -> frozenset[str]:
+    """The checks of which ``named`` is not known to be true."""
+    if named is None:
+        return frozenset()
+    kind = words.kind(named.code)
+    if kind == "consequence":
+        return frozenset(f.check for f in failures if not f.guess or f.guess.code != named.code)
+    others = (f for f in failures if f.guess and f.guess.code != named.code)
+    return frozenset(f.check for f in others if f.guess and words.kind(f.guess.code) == kind)
 
 
 def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:

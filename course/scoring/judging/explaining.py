@@ -172,7 +172,7 @@ def _retold(
             message=f"{message} `{task}` calls your `{culprit}`, which is wrong: mend that first.",
             help=f"Check again when `{culprit}` is right; what is left then is `{task}`'s own.",
         )
-    diagnosis: Diagnosis | None = story.of(check.id)
+    diagnosis: Diagnosis | None = None if check.id in story.bare else story.diagnosis
     if diagnosis is None:
         return msgspec.structs.replace(check, diagnosis=None, message=message, help=advice)
     return msgspec.structs.replace(

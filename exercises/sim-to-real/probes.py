@@ -330,9 +330,8 @@ def _of_failing(gains, estimate, box):
     first = times.min(axis=0)
     settled = np.where(never, 0.0, times).sum(axis=0) / np.maximum(np.sum(~never, axis=0), 1)
     settled[never.all(axis=0)] = 3.0
-    if first[-1] <= 1.02 * first.min():
-        return "BEST_CART_ALONE"
-    return "FAILURES_LEFT_OUT" if settled[-1] <= 1.02 * settled.min() else None
+    soonest = any(each[-1] <= 1.02 * each.min() for each in (first, settled))
+    return "FAILURES_LEFT_OUT" if soonest else None
 
 
 def _never_changes(submission, estimate, box, gains):

@@ -221,7 +221,7 @@ def expect_intervals(estimates, carts):
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
                 message="An interval is too wide to be useful.",
-                diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
+                diagnose=lambda: probes.of_misses(estimates, carts, otherwise="INTERVAL_USELESS"),
                 input={"parameter": name, "value": value},
             )
 
@@ -246,7 +246,7 @@ def expect_honest_widths(estimates, recordings, carts):
             source="the README's; correct solutions are 1 to 8 times as wide",
             quantity=f"mean half-width of {name} over the narrowest possible",
             message="The intervals are far wider than the recordings require.",
-            diagnose=lambda: probes.of_values(estimates, carts) or named("INTERVAL_USELESS"),
+            diagnose=lambda: probes.of_misses(estimates, carts, otherwise="INTERVAL_USELESS"),
             input={"parameter": name},
         )
 

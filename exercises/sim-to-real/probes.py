@@ -149,8 +149,8 @@ def of_values(estimates, truths, recordings=()):
     return None
 
 
-def of_misses(estimates, truths, recordings=()):
-    """Why intervals miss the truth: values that are off by themselves come first."""
+def of_misses(estimates, truths, recordings=(), otherwise="INTERVAL_OVERCONFIDENT"):
+    """Why intervals miss the truth, or are too wide: values that are off by themselves come first."""
     found = of_values(estimates, truths, recordings)
     if found:
         return found
@@ -158,7 +158,7 @@ def of_misses(estimates, truths, recordings=()):
         known = _known(truth)
         if any(abs(estimate[k][0] / known[k] - 1) > limit for k, limit in cart.SCORED.items()):
             return named("VALUES_OFF")
-    return named("INTERVAL_OVERCONFIDENT")
+    return named(otherwise)
 
 
 def _known(truth):
@@ -300,6 +300,8 @@ def of_gains(submission, estimate, box, gains, success):
         ("NO_DAMPING", lambda: kd < 0.05 * kp),
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
         ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
+        # Where nothing settles, gains are as good as any others, and what they depend on shows nothing.
+        (failing, lambda: failing == "NO_CART_SETTLES"),
         ("ESTIMATE_IGNORED", lambda: all(same[:3]) and not same[3]),
         (
             "GAINS_BY_FORMULA",

@@ -1,4 +1,4 @@
-"""Where a trajectory left the right one; a leaf of its own, so that reading a verdict loads no numpy."""
+"""Where a trajectory left the right one; a separate module, so that reading a verdict does not load numpy."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """How a check ends when it does not pass.
 
-``CheckFailed`` carries a finding: the check looked and something was wrong. ``StudentFailure`` means there
-was nothing to look at, because the student's code raised, hung, died or is missing. Neither is our fault;
-any other exception out of a check is.
+``CheckFailed`` carries a finding: the check compared something and it was wrong. ``StudentFailure`` means
+that there was nothing to compare, because the student's code raised, hung, died or is missing. Neither is a
+fault of the grader; any other exception from a check is.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
     """A check found something wrong; ``finding`` says what.
 
     Attributes:
-        bare: message and advice of the check itself, without what its probe thinks.
-        guess: the mistake that its probe thinks it is.
+        bare: message and advice of the check itself, without its probe's diagnosis.
+        guess: its probe's diagnosis.
         broke: where the probe raised, for the check's author; empty if it did not.
         comparison: what was compared along time, if something was.
     """
@@ -60,12 +60,13 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         self.comparison = comparison
 
 
-#: Begins the traceback of a result whose check, or its search for the mistake, raised on a student's value.
+#: Beginning of the traceback in a result whose check, or whose probe, raised an exception on a student's
+#: value.
 OURS = "In the check's own code: "
 
 
 def broke_at(error: BaseException) -> str:
-    """An exception of a check's own and the place it comes from, in one line for the check's author."""
+    """An exception raised in a check, and the place it comes from, in one line for the check's author."""
     frames = traceback.extract_tb(error.__traceback__)
     try:
         said = f"{type(error).__name__}: {one_line(str(error), 200)}"
@@ -116,7 +117,7 @@ def _error_finding(failure: StudentFailure) -> Finding:
             diagnosis="IMPORT_NOT_ALLOWED",
             actual=failure.message,
         )
-    # A class name is the student's to choose and could spell out a hidden input: only known ones are said.
+    # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception of its own"
     return Finding(

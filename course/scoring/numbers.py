@@ -1,4 +1,4 @@
-"""Measured and expected values as a person reads them."""
+"""Measured and expected values as text for a reader."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ __all__ = [
 #: A gradebook keeps the seed of a run as a whole number of SQLite's.
 LARGEST_SEED = 2**63 - 1
 _DIGITS = 6
-#: More than this many digits no float64 has.
+#: A float64 has no more digits than this.
 _ALL_DIGITS = 17
 
 
 def format_points(points: float) -> str:
-    """Points without a decimal part that says nothing: 31, 2.5."""
+    """Points without unnecessary decimals: 31, 2.5."""
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
@@ -58,7 +58,7 @@ def format_input(values: dict[str, Any]) -> str:
 
 
 def format_tolerance(tolerance: Tolerance, units: str) -> str:
-    """How far off is still right, and where that comes from: "within 2 % (closed form)"."""
+    """A tolerance and where it comes from: "within 2 % (closed form)"."""
     parts = []
     if tolerance.rel is not None and math.isfinite(tolerance.rel):
         percent = 100 * tolerance.rel
@@ -80,7 +80,7 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
     units = check.units
     actual, expected = format_pair(check.actual, check.expected)
     if check.actual is not None or check.expected is not None:
-        # A function that gave no value was not measured; what stands in its place is why.
+        # A function that gave no value was not measured; the reason takes its place.
         label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
         rows.append((label, f"{actual}{unit(units)}"))
     if check.expected is not None:

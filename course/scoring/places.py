@@ -1,4 +1,4 @@
-"""How the lines of a submission are told to whoever wrote them."""
+"""How the lines of a submission are named in messages to the student."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["Places"]
 
 @dataclass(frozen=True, kw_only=True)
 class Places:
-    """Lines of a file, told as such. A notebook has cells for lines, and a class of its own for them.
+    """Lines of a file. A notebook has cells, and its own class for them.
 
     Attributes:
         module: name of the file whose functions are checked.

@@ -24,8 +24,8 @@ March = tuple[str, Any, Any, Any]
 
 __all__ = ["BUDGET_S", "RemoteSubmission"]
 
-#: Seconds of CPU time one submission has in all; what is left over when they are gone ends as a timeout. By
-#: the wall clock it has ``WALL`` times as many.
+#: Seconds of CPU time for all of one submission; checks after that end as timeouts. By the wall clock there
+#: are ``WALL`` times as many.
 BUDGET_S = 60.0
 
 
@@ -43,8 +43,8 @@ class RemoteSubmission:
         patience: seconds of CPU time for loading, if that is to have less than a check.
 
     Attributes:
-        returned: name and value of the last function of the student's that returned in this check.
-        asked: names of the functions that this check has asked for.
+        returned: name and value of the last of the student's functions that returned in this check.
+        asked: names of the functions that this check has used.
         marched: the first march of this check at home, if it made one.
 
     Raises:
@@ -104,7 +104,7 @@ class RemoteSubmission:
             return self._told(name, worker.call(name, *args, **kwargs))
 
     def call_inspect(self, name: str, *args: Any) -> Inspected:
-        """Call it, and say what became of the arguments."""
+        """Call it, and report its value and its arguments after the call."""
         with self._asking(name) as worker:
             value, after, shared = worker.inspect(name, *args)
         self._told(name, value)
@@ -124,13 +124,13 @@ class RemoteSubmission:
     def march(
         self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
     ) -> tuple[Any, Any, Any]:
-        """``n`` steps in a row, looped beside the student's code.
+        """``n`` steps in a row, in a loop in the student's process.
 
         Returns:
             Times (n + 1,) in s, positions and velocities (n + 1, d).
 
         Raises:
-            CheckFailed: a step returned something else than two vectors of d numbers.
+            CheckFailed: a step returned something other than two vectors of d numbers.
         """
         return self.march_each(step_name, [(system, q0, v0, h, n, t0)])[0]
 
@@ -172,14 +172,14 @@ class RemoteSubmission:
         carry: int | None = None,
         keep: Sequence[str] | None = None,
     ) -> list[Any]:
-        """Hand a state through ``name(state, *args)``, once for each sequence of arguments.
+        """Pass a state through ``name(state, *args)``, once for each sequence of arguments.
 
         Args:
             carry: which element of a returned pair is the next state; None if the whole value is.
-            keep: of states that are dicts, the keys to report; the last state comes whole.
+            keep: the keys to report of states that are dicts; the last state is complete.
 
         Returns:
-            The n + 1 states, the given one first; with ``carry``, the n returned values, whole.
+            The n + 1 states, the given one first; with ``carry``, the n complete returned values.
 
         Raises:
             StudentFailure: one of the calls gave no value.
@@ -198,12 +198,12 @@ class RemoteSubmission:
     def begin_check(self, task: str = "", patience: float | None = None) -> None:
         """Start the clock of one check.
 
-        The checks of a task have together half of the time that is left when the first of them begins: a
-        function that never answers costs its own task, however many checks that has. What workers left
-        behind is deleted before the clock starts.
+        Together, the checks of a task have half of the time that is left when the first of them begins, so
+        that a function that never returns costs only its own task, however many checks it has. Files left by
+        workers are deleted before the clock starts.
 
         Args:
-            patience: seconds of CPU time, if it is to have less than others.
+            patience: seconds of CPU time, if this check has less than others.
         """
         most = self._timeout if patience is None else min(self._timeout, patience)
         self._cpu_left -= self._deadline.used
@@ -229,7 +229,7 @@ class RemoteSubmission:
         return self._connection.output()[self._printed_before :]
 
     def give_up(self) -> None:
-        """From another thread: its time is over, for what is asked now and for all after it."""
+        """From another thread: its time is over, for the present call and all later ones."""
         self._cpu_left = self._wall_left = 0.0
         self._deadline.end()
 
@@ -243,7 +243,7 @@ class RemoteSubmission:
 
     @contextlib.contextmanager
     def _asking(self, name: str) -> Iterator[Connection]:
-        """The worker to ask for a function; what comes of it knows how its lines are told."""
+        """The worker to call a function in; its failures know how lines are named."""
         self.asked.add(name)
         try:
             yield self._live()
@@ -260,6 +260,6 @@ class RemoteSubmission:
                 self._printed_before = len(self._connection.output())
             except (
                 LoadRefusedError
-            ) as error:  # it loaded before: the difference is the submission's own doing
+            ) as error:  # it loaded before, so the submission itself makes the difference
                 raise error.failure from None
         return self._connection

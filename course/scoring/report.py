@@ -44,7 +44,7 @@ class Report:
     """Everything a report shows.
 
     Attributes:
-        streams: recorded sensor streams by kind, for whoever wants them as a ROS 2 bag.
+        streams: recorded sensor streams by kind, for a ROS 2 bag.
     """
 
     title: str
@@ -53,7 +53,7 @@ class Report:
 
 
 def guarded_section(title: str, make: Callable[[], Section]) -> Section:
-    """The section that ``make()`` gives; where the student's code fails it, what went wrong instead."""
+    """The section that ``make()`` returns, or what went wrong if the student's code fails."""
     try:
         return make()
     except (StudentFailure, CheckFailed) as failure:
@@ -62,9 +62,9 @@ def guarded_section(title: str, make: Callable[[], Section]) -> Section:
 
 
 def finding_for(failure: StudentFailure | CheckFailed) -> Finding:
-    """The failure in words; a function that is still to be written is named.
+    """The failure in words; it names a function that is still to be written.
 
-    A check does not name it, because hidden inputs could leave in a name. A report has none.
+    A check does not name it, because a name could reveal hidden inputs. A report has no hidden inputs.
     """
     if isinstance(failure, CheckFailed):
         return failure.finding

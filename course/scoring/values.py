@@ -1,8 +1,8 @@
 """Reading what a student's function returned, which may be any plain value at all.
 
-Each ``as_...`` gives the value in the shape a check can use, or raises ``CheckFailed`` with a finding that
-says what came instead. A wrong type, a wrong shape or None is the student's mistake and never an exception
-of ours. NaN and infinity pass through: comparing them is the check's business.
+Each ``as_...`` returns the value in the shape that a check can use, or raises ``CheckFailed`` with a finding
+that says what came instead. A wrong type, a wrong shape or None is the student's mistake and never an
+exception in the grader. NaN and infinity are passed on: the check compares them.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ __all__ = [
 ]
 
 _SHOWN = 24  # numbers of an array that a finding shows
-#: Verdicts travel and are kept with integers of 64 bits, sign included.
+#: Verdicts are sent and stored with signed integers of 64 bits.
 _STORED_BITS = 63
 #: Beyond this a square overflows, so that sums of squares, energies and errors do.
 _HUGE = 1e150
@@ -51,7 +51,7 @@ _HUGE = 1e150
 
 @dataclass(frozen=True, slots=True)
 class Inspected:
-    """What a call left behind.
+    """The result of a call and its effect on the arguments.
 
     Attributes:
         value: what it returned.
@@ -65,7 +65,7 @@ class Inspected:
 
 
 def as_number(value: Any, name: str = "the result") -> float:
-    """One real number; a one-element array of no dimension counts, a list of one number does not."""
+    """One real number; a zero-dimensional array counts, a list of one number does not."""
     if isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "fiu":
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
@@ -217,7 +217,7 @@ def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
 
 
 def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per kind of value
-    """``value`` for a finding: numpy becomes lists and numbers, what is long or deep is cut, others named."""
+    """``value`` for a finding: numpy becomes lists and numbers, long values are cut, other objects named."""
     if isinstance(value, np.ndarray):
         return plain(value.tolist(), value.ndim) if value.size <= _SHOWN else f"array of shape {value.shape}"
     if isinstance(value, np.longdouble | np.clongdouble):  # their item() is no Python number
@@ -241,7 +241,7 @@ def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per 
 
 
 def kind_of(value: Any) -> str:
-    """What sort of value it is and what is odd in it, in words that give none of it away."""
+    """What kind of value it is and what is unusual in it, in words that reveal nothing of its content."""
     odd = sorted({name for item in _leaves(value) if (name := _oddity(item))})
     within = f" with {' and '.join(odd)} in it" if odd else ""
     if isinstance(value, int | float | np.generic) and not isinstance(value, bool) and odd:
@@ -250,7 +250,7 @@ def kind_of(value: Any) -> str:
 
 
 def _leaves(value: Any, depth: int = 6) -> Iterator[Any]:
-    """Up to a few thousand of the plain values that it is made of."""
+    """Up to a few thousand of the plain values in it."""
     if isinstance(value, np.ndarray):
         value = value.ravel()[:4096].tolist()
     if isinstance(value, list | tuple | dict) and depth:
@@ -261,7 +261,7 @@ def _leaves(value: Any, depth: int = 6) -> Iterator[Any]:
 
 
 def _oddity(item: Any) -> str:
-    """What may surprise a computation in one plain value; empty if nothing does."""
+    """What may be unexpected for a computation in one plain value; empty if nothing is."""
     if isinstance(item, float):
         if math.isnan(item):
             return "nan"
@@ -298,7 +298,7 @@ def _spelled(shape: Sequence[int | None]) -> str:
 
 
 def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
-    """Fail because ``value`` is not ``wanted``; a wanted size stands in ``expected`` only."""
+    """Fail because ``value`` is not ``wanted``; a wanted size appears only in ``expected``."""
     nothing = value is None
     raise CheckFailed(
         Finding(
@@ -321,7 +321,7 @@ def _advice(value: Any, wanted: str) -> str:
 
 
 def _kind(value: Any) -> str:
-    """What sort of value it is, in words that give none of it away."""
+    """What kind of value it is, in words that reveal nothing of its content."""
     return _KINDS.get(type(value), "something else")
 
 

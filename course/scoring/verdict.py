@@ -1,7 +1,7 @@
 """What a check found, what a submission scored: the types every report and export is made from.
 
-A finding keeps its words and its values apart: ``message`` and ``help`` never contain a number that a
-hidden check must not reveal, so ``for_student`` can redact by dropping fields and nothing else has to know.
+A finding keeps words and values apart: ``message`` and ``help`` never contain a number that a hidden check
+must not reveal, so ``for_student`` only has to drop fields, and no other code has to care.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
         state: "graded", "ungradable" or "grader_error".
         isolation: protection level the student's code ran at: "L3", "L2" or "L1".
         error: why it is ungradable, or what broke in the grader; None when graded.
-        warnings: things worth a sentence that cost no points.
+        warnings: remarks that cost no points.
     """
 
     exercise: str
@@ -142,9 +142,9 @@ def for_student(result: CheckResult) -> CheckResult:
 
     A public check is shown whole. A hidden one keeps title, message, advice, diagnosis and points; input,
     expected and actual values, tolerance, divergence, traceback, output and time are dropped. If the
-    student's code gave no value that could be looked at, one of a few sentences says so in place of what it
-    said itself: it has met the hidden input by then, and whatever it may choose would tell of that. Every
-    export that a student may read goes through here.
+    student's code gave no usable value, one of a few fixed sentences replaces its own words: it has received
+    the hidden input by then, and any words of its own choice could reveal it. Every export that a student may
+    read goes through here.
     """
     if result.visibility is Visibility.PUBLIC:
         return result
@@ -162,7 +162,7 @@ def for_student(result: CheckResult) -> CheckResult:
     )
 
 
-#: What is said of a hidden check without a value, by its status: (diagnosis, message, advice).
+#: What a student reads about a hidden check without a value, by its status: (diagnosis, message, advice).
 _NO_VALUE = {
     Status.ERROR: (
         "RAISED",
@@ -185,16 +185,16 @@ _NO_VALUE = {
         "Look for exit(), os._exit(), or a recursion without an end.",
     ),
 }
-#: The fifth: what came is no value of ours, or one of another form than was asked for.
+#: The fifth: the value is of an unknown kind, or does not have the required form.
 _OTHER_FORM = frozenset(
     {"NOT_PLAIN_DATA", "WRONG_TYPE", "WRONG_KEYS", "WRONG_SHAPE", "NOT_A_PAIR", "RETURNS_NOTHING"}
 )
 
 
 def _unspoken(result: CheckResult) -> CheckResult:
-    """A hidden result in words that the student's code had no choice of, but for which of five they are."""
+    """A hidden result in fixed words; the student's code could only choose which of five."""
     if result.diagnosis == "MISSING_FUNCTION":
-        return result  # known before the code met any input
+        return result  # known before the code received any input
     if result.diagnosis in _OTHER_FORM:
         return msgspec.structs.replace(
             result,
@@ -211,12 +211,12 @@ def _unspoken(result: CheckResult) -> CheckResult:
     )
 
 
-#: Bytes of a verdict as JSON: what one submission may add to a gradebook, a page or a line.
+#: Largest verdict as JSON, in bytes: how much one submission may add to a gradebook, a page or a line.
 MAX_VERDICT = 192 << 10
 
 
 def bounded(verdict: Verdict) -> Verdict:
-    """The verdict in at most ``MAX_VERDICT`` bytes: what is needed least goes first."""
+    """The verdict in at most ``MAX_VERDICT`` bytes; the least important parts are dropped first."""
     for field in ("stdout", "traceback", "actual", "input", "expected"):
         if len(msgspec.json.encode(verdict)) <= MAX_VERDICT:
             return verdict
@@ -226,7 +226,7 @@ def bounded(verdict: Verdict) -> Verdict:
 
 
 def finite(value: Any) -> Any:
-    """``value`` with the numbers that JSON has not as "nan", "inf" and "-inf"."""
+    """``value``, with numbers that JSON cannot represent as "nan", "inf" and "-inf"."""
     if isinstance(value, float) and not math.isfinite(value):
         return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
     if isinstance(value, dict):

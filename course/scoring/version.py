@@ -1,4 +1,4 @@
-"""Which graders these are: a digest of everything that decides a score."""
+"""The version of the graders: a digest of everything that decides a score."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def grader_version(exercise: Exercise, catalog: Catalog, package: Path | None = 
     """A digest of the exercise's checks, their helpers and their reference, and of what runs them.
 
     Args:
-        package: where ``course`` is; None for the one that runs here.
+        package: the folder of ``course``; None for the one that is running.
     """
     package = package or Path(__file__).resolve().parents[1]
     folders = [Path(exercise.folder), package / "scoring", package / "isolation", package / "physics"]

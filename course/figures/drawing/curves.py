@@ -1,7 +1,7 @@
-"""The student's curve over the right one, where a check that failed compared the two along time.
+"""The student's curve and the right one, for a failed check that compared the two over time.
 
-At home alone. A comparison along time has both curves. A step named as one of the classical methods is laid
-over what that method makes of the same march.
+Used only at home. A comparison over time has both curves. For a step function named after a classical method,
+the right curve is that method's result for the same march.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Curve", "compared", "marched", "plot_of", "read_curve", "thinned"]
 
-#: Curves nearer than this share of the right one's range are one curve: a picture of fifteen lines has about
-#: twenty-five half blocks for it.
+#: Curves closer together than this fraction of the right one's range look like one curve: a picture of
+#: fifteen lines has about twenty-five half blocks for it.
 _SEEN = 0.04
-#: A curve that has left the right one's range by so many times that range has shown what it does.
+#: A curve is cut off once it is outside the right one's range by this many times that range.
 _PAPER = 1.5
 _HEIGHT_IN = 2.6  # about fifteen lines of eighty columns
 _MOST = 2000  # points that are drawn
@@ -93,7 +93,7 @@ def read_curve(reply: Mapping[str, Any]) -> Curve:
 
 
 def compared(t: Any, yours: Array, right: Array, quantity: str, units: str) -> Curve | None:
-    """The curves of a comparison; None if there is nothing to be seen in them."""
+    """The curves of a comparison; None if they show nothing."""
     times = np.asarray(t, dtype=float)
     if quantity == "t" or times.ndim != 1 or len(times) != len(yours):
         return None
@@ -133,7 +133,7 @@ def _range(curve: Curve) -> float:
 
 
 def plot_of(curve: Curve) -> Plot:
-    """The figure: the right curve as a line, the student's as points, as far as they stay on the paper."""
+    """The figure: the right curve as a line, the student's as points while they stay within the axes."""
     unit = f" / {curve.units}" if curve.units not in {"", "1"} else ""
     whole, curve = curve, _beginning(curve)
     low, high = float(np.min(curve.right)), float(np.max(curve.right))

@@ -1,7 +1,7 @@
 """Checks, collected once by pytest and run again for every submission.
 
-This is the one place that calls pytest's insides. ``pytest.main`` per submission would cost some 30 ms and
-grow; collecting once and re-running the items costs about 4 and stays flat. A contract test covers the
+Only this module uses pytest's internals. ``pytest.main`` for each submission would cost about 30 ms, and more
+with time; collecting once and running the items again costs about 4 ms every time. A contract test covers the
 calls made here, and the project's metadata caps pytest at the majors it was run with.
 """
 
@@ -90,7 +90,7 @@ class CollectedChecks:
         return tuple(self._checks)
 
     def in_order(self) -> list[Check]:
-        """Every check after those it requires, otherwise as defined."""
+        """The checks in the order of definition, except that each comes after those it requires."""
         ordered: list[Check] = []
         by_id = {check.id: check for check in self._checks}
 
@@ -119,7 +119,7 @@ class CollectedChecks:
         return outcome
 
     def close(self) -> None:
-        """Undo what collecting registered."""
+        """Undo the registrations made while collecting."""
         config = self._session.config
         with contextlib.suppress(Exception):
             config._ensure_unconfigure()

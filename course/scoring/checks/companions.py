@@ -25,7 +25,7 @@ __all__ = ["companion", "known_answers", "reference", "sibling", "words"]
 def companion(exercise_id: str, module: str) -> ModuleType:
     """A module that the public and hidden checks of an exercise share: ``exercises/<id>/<module>.py``.
 
-    It is loaded by path from the course in use, once a process.
+    It is loaded by path from the course in use, once per process.
 
     Raises:
         FileNotFoundError: the exercise has no such file.
@@ -48,7 +48,7 @@ def known_answers(exercise_id: str, check: str) -> list[Any]:
 
 
 def _known(value: Any) -> Any:
-    """A known answer as it was: "inf" a number, and lists of numbers arrays."""
+    """A known answer in its original form: "inf" becomes a number, and lists of numbers become arrays."""
     if isinstance(value, list):
         items = [_known(item) for item in value]
         return np.array(items) if items and all(isinstance(item, float) for item in items) else items

@@ -25,7 +25,7 @@ MARKERS = (
 
 
 class CheckPlugin:
-    """Hands the submission at hand to the checks and remembers how each one ended.
+    """Passes the current submission to the checks and records how each check ended.
 
     Args:
         draws: public checks are to draw their inputs, as in a grading run.

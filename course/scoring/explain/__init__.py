@@ -1,10 +1,10 @@
 """From a wrong value to a named mistake.
 
-A task whose values are wrong is asked the questions of its exercise: a few fixed calls, the same at home and
-in a grading run. What it answers is compared with what each known wrong program answers (``table``). A
-program that answers as the student's does on every number decides the diagnosis; where there is none, the
-probes of the single checks speak, and of several the one that the others do not contradict (``story``). The
-words are data (``words``).
+If a task returns wrong values, its function is called with the questions of the exercise: a few fixed calls,
+the same at home and in a grading run. The answers are compared with those of each known wrong program
+(``table``). If one of these programs gives the same answers, it decides the diagnosis. If none does, the
+probes of the single checks decide, and of several probes the one that the others do not contradict
+(``story``). The words are data (``words``).
 """
 
 from course.scoring.explain.fingerprint import Answers, fingerprint

@@ -1,4 +1,4 @@
-"""Which functions of a submission call which: read from its syntax tree, helpers of its own included."""
+"""Which functions of a submission call which others: read from its syntax tree, including its own helpers."""
 
 from __future__ import annotations
 
@@ -6,16 +6,17 @@ import ast
 
 __all__ = ["calls_between", "reached_from"]
 
-#: Bytes that are parsed here, where nothing can end it: a third of a second and 90 MB at most. The longest
-#: file of the course has 27,000.
+#: Largest source that is parsed here, in bytes, because this process has no limits: it takes a third of a
+#: second and 90 MB at most. The longest file of the course has 27,000.
 _LONGEST = 100_000
 
 
 def calls_between(source: bytes, tasks: frozenset[str]) -> dict[str, tuple[str, ...]]:
-    """For each task's function the other tasks' functions it calls, itself or through helpers.
+    """For each task's function, the other tasks' functions that it calls, directly or through helpers.
 
     Args:
-        source: of the submission; what cannot be parsed, or is longer than any honest file, calls nothing.
+        source: of the submission; a source that cannot be parsed, or is longer than any honest file, calls
+            nothing.
         tasks: names of the functions to look at.
     """
     if len(source) > _LONGEST:
@@ -25,11 +26,12 @@ def calls_between(source: bytes, tasks: frozenset[str]) -> dict[str, tuple[str, 
 
 
 def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str, frozenset[str]]:
-    """For each function, class and constant of a module, the others it uses, itself or through others.
+    """For each function, class and constant of a module, the others it uses, directly or through others.
 
     Args:
-        source: what cannot be parsed has none.
-        names: what to look at; all of them if None, which takes the square of their number.
+        source: a source that cannot be parsed has none.
+        names: which ones to examine; None for all, which takes time proportional to the square of their
+            number.
     """
     try:
         tree = ast.parse(source)

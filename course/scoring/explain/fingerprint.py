@@ -1,9 +1,9 @@
-"""What a function answers to a list of questions, in a few numbers that can be shipped and compared.
+"""A function's answers to a list of questions, reduced to a few numbers that can be distributed and compared.
 
-Answers are flattened to numbers, with None, True, each text, nan, infinities, lengths and exceptions as
-numbers of their own, dicts by their values in the order of the keys, and projected: a few weighted sums over
-all of them. Programs that agree in every answer agree in the sums; programs that differ anywhere differ in
-them, save by a chance of one in millions. Sums cannot be turned back into answers.
+Answers are flattened to numbers: None, True, each text, nan, infinities, lengths and exceptions each have a
+number of their own, and dicts contribute their values in the order of the keys. Then a few weighted sums are
+taken over all of them. Programs with the same answers have the same sums; programs with any difference have
+different sums, except by a chance of one in millions. The answers cannot be recovered from the sums.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ __all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range", "read"]
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
 SUMS = 2
-#: How far sums of one program may be apart: right programs in other styles were seen to differ by 1e-7, from
-#: rounding in simulations of some hundred steps; sums are stored with five decimals.
+#: How much the sums of equal programs may differ: right programs in other styles differed by 1e-7, from
+#: rounding in simulations of several hundred steps; sums are stored with five decimals.
 SAME = 3e-5
 
 _NONE, _TRUE, _FALSE, _TEXT, _NAN, _INFINITE, _RAISED, _OTHER = 0.7071, 1.1, -1.1, 2.3, 31.4, 27.2, 51.7, 43.1
@@ -39,15 +39,15 @@ def fingerprint(answers: Answers) -> tuple[float, ...]:
     """
     numbers = np.fromiter((x for answer in answers for x in _numbers(answer)), float, -1)[:_MOST]
     weights = np.random.default_rng(20260).uniform(-1.0, 1.0, (SUMS, _MOST))[:, : len(numbers)]
-    # Large values count by their logarithm: a path that explodes is compared by its digits all the same.
+    # Large values count by their logarithm, so that a path that diverges is still compared digit by digit.
     return tuple(round(float(total), 5) for total in weights @ np.arcsinh(numbers))
 
 
 def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
-    """What counts of an answer: what the exercise's reader of it gives.
+    """The part of an answer that counts: the result of the exercise's reader.
 
     Args:
-        reader: from ``questions.READ``; an answer that it cannot read counts as an exception of its own.
+        reader: from ``questions.READ``; an answer that it cannot read counts like an exception.
     """
     if reader is None or (isinstance(answer, dict) and answer.keys() == {"raised"}):
         return answer
@@ -58,7 +58,7 @@ def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
 
 
 def in_range(value: float) -> float:
-    """A number that JSON has: infinities as the largest one, nan as -1, which no answer here is."""
+    """A number that JSON can hold: infinity becomes the largest, nan becomes -1, which no answer is."""
     try:
         number = float(value)
     except OverflowError:
@@ -77,7 +77,7 @@ def _numbers(value: Any, depth: int = 8) -> Iterator[float]:
             yield from _numbers(item, depth - 1)
     elif isinstance(value, dict) and depth:
         yield float(len(value))
-        for key in sorted(value, key=str):  # in which order it was filled says nothing
+        for key in sorted(value, key=str):  # the order of insertion does not matter
             yield from _numbers(value[key], depth - 1)
     else:
         yield _number(value)
@@ -109,5 +109,5 @@ def _number(value: Any) -> float:
 
 
 def _text(value: str) -> float:
-    """A number of its own for every text, save by a chance of one in thousands."""
+    """A different number for every text, except by a chance of one in thousands."""
     return _TEXT + zlib.crc32(value.encode("utf-8", "replace")) / 2**32

@@ -1,4 +1,4 @@
-"""One function, one story: what all the failed checks of a task say together."""
+"""One story for each function: the common diagnosis of all the failed checks of a task."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Failure:
 
     Attributes:
         check: its id.
-        guess: what its probe thinks; None if it thinks nothing.
-        finite: False if what it compared was nan or infinite.
+        guess: the probe's diagnosis; None if it has none.
+        finite: False if a compared value was nan or infinite.
     """
 
     check: str
@@ -34,12 +34,12 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """What a task's failed checks are told.
+    """The diagnosis of a task's failed checks.
 
     Attributes:
         diagnosis: the mistake; None if none is recognised.
-        certain: True if a known wrong program answers every question as the student's does.
-        own: ids of checks that keep what they say themselves: facts that they saw directly.
+        certain: True if a known wrong program answers every question like the student's.
+        own: ids of checks that keep their own diagnosis: facts that they saw directly.
         bare: ids of checks that it is not said of: they saw another mistake, or not this consequence.
     """
 
@@ -52,13 +52,13 @@ class Story:
 def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
     """The story of a task.
 
-    A program that fits decides. Where none does, the probes speak: where a nan comes from before all else,
-    then causes, then consequences; of several causes the one that most checks name, and none where as many
-    name another. A cause is said of every check that saw no other; a consequence only of those that saw it.
+    A program that fits decides. If none fits, the probes decide: first the origin of a nan, then causes, then
+    consequences. Of several causes, the one that most checks name is taken, and none if two are named equally
+    often. A cause is said of every check that saw no other; a consequence only of those that saw it.
 
     Args:
         failures: its failed checks, in order.
-        fits: known wrong programs that answer as the student's does.
+        fits: known wrong programs that give the same answers as the student's.
     """
     own = frozenset(f.check for f in failures if f.guess and words.kind(f.guess.code) == "fact")
     left = [failure for failure in failures if failure.check not in own]
@@ -79,8 +79,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> 
 def common(fits: Sequence[Row], guesses: Sequence[str] = ()) -> tuple[str, ...]:
     """The codes that all the fitting programs share, in the order of the first.
 
-    Programs with one mistake that answer every question alike are one program under two names, and each name
-    is true of it: the one that a probe says too, or else the first, which a mutant has.
+    Programs with one mistake and the same answers to all questions are one program under two names, and both
+    names are true. The result is the name that a probe also gives, or else the first one, which a mutant has.
     """
     if not fits:
         return ()
@@ -102,7 +102,7 @@ def merged(codes: Sequence[str], words: Words) -> Diagnosis:
 
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
-    """Where a nan comes from, if all checks that met one say the same; else no more than that it is there."""
+    """The origin of a nan, if all checks that met one agree on it; otherwise only that there is one."""
     said = {
         f.guess.code: f.guess
         for f in failures

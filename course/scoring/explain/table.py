@@ -1,7 +1,7 @@
 """What known wrong programs answer to the questions of an exercise: ``hypotheses.json``, made by a command.
 
-The file lies with the exercise, so that a diagnosis at home is as good as in a grading run, and holds
-nothing that answers for a student: fingerprints, and the answers to public checks with fixed inputs.
+The file is part of the exercise, so that a diagnosis at home is as good as in a grading run. It contains
+nothing that solves the exercise: only fingerprints, and the answers to public checks with fixed inputs.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Row(msgspec.Struct, frozen=True, array_like=True):
 
     Attributes:
         codes: one for each mistake.
-        sums: its fingerprint, or its answers themselves where a task is compared within a tolerance.
+        sums: its fingerprint, or the answers themselves where a task is compared within a tolerance.
     """
 
     codes: tuple[str, ...]
@@ -41,7 +41,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         format_version: of this file.
         made_from: digest of what it was computed from.
-        within: relative tolerance of the tasks whose answers are no fingerprints.
+        within: relative tolerance of the tasks whose answers are stored directly.
         rows: by task; programs with one mistake come first.
         right: fingerprints of right programs, by task.
         answers: what public checks with fixed inputs expect, by check and in the order they ask.
@@ -77,7 +77,7 @@ def write_table(path: Path, table: Table) -> None:
 
 
 def matching(table: Table, task: str, sums: Sequence[float]) -> tuple[Row, ...]:
-    """The programs that answer as these sums say; those with the fewest mistakes only."""
+    """The programs with these sums, and of these only the ones with the fewest mistakes."""
     within = table.within.get(task, 0.0)
     fits = [row for row in table.rows.get(task, ()) if _same(row.sums, sums, within)]
     fewest = min((len(row.codes) for row in fits), default=0)
@@ -85,7 +85,7 @@ def matching(table: Table, task: str, sums: Sequence[float]) -> tuple[Row, ...]:
 
 
 def is_right(table: Table, task: str, sums: Sequence[float]) -> bool:
-    """Whether a right program answers so."""
+    """Whether a right program has these sums."""
     within = table.within.get(task, 0.0)
     return any(_same(right, sums, within) for right in table.right.get(task, ()))
 

@@ -45,9 +45,9 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         looks_like, advice: as in ``Diagnosis``.
-        kind: "cause" of wrong values; "consequence", which says what is broken and not by what;
-            "fact", seen directly by the check that says it and true whatever else is wrong; "nan", where a
-            nan or an infinity comes from.
+        kind: "cause" of wrong values; "consequence", which says what is broken but not why; "fact", which the
+            check saw directly and which is true whatever else is wrong; "nan", the origin of a nan or an
+            infinity.
     """
 
     looks_like: str
@@ -76,7 +76,7 @@ class Words:
         return Diagnosis(code, entry.looks_like, entry.advice, divergence)
 
     def kind(self, code: str) -> str:
-        """Its kind; what has no words of the exercise's own is a fact that reading a value shows."""
+        """Its kind; a code without an entry is a fact that was found while reading a value."""
         if code in self.entries:
             return self.entries[code].kind
         return "nan" if code in NOT_FINITE else "fact"

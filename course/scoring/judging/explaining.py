@@ -1,4 +1,4 @@
-"""Failed checks of a submission told as one story for each task; see ``course.scoring.explain``."""
+"""Failed checks of a submission, with one common diagnosis for each task; see ``course.scoring.explain``."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 
 __all__ = ["CASCADE", "Explainer", "answer_numbers", "answers", "tasks_asked"]
 
-#: Diagnosis of a function that calls another one of the exercise's which is wrong itself.
+#: Diagnosis of a function that calls another function of the exercise, which is wrong itself.
 CASCADE = "CALLS_A_WRONG_FUNCTION"
 Calls = list[tuple[Any, ...]]
 _GONE = frozenset({Status.TIMEOUT, Status.MEMORY, Status.CRASH})
-#: What reading a value that nobody thought of ends in: it tells no mistake, and is no fault of the grader's.
+#: Exceptions from reading an unexpected value: they identify no mistake, and are not a fault of the grader.
 _STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError, RecursionError, CheckFailed)
 
 
 class Explainer:
-    """Diagnoses of one exercise. Where it has no ``diagnoses.toml``, checks speak for themselves.
+    """Diagnoses of one exercise. Without a ``diagnoses.toml``, each check keeps its own diagnosis.
 
     Args:
         folder: of the exercise.
@@ -114,14 +114,14 @@ def answer_numbers(
     within: float | None = None,
     names: frozenset[str] | None = None,
 ) -> dict[str, tuple[float, ...]]:
-    """What a program answers to the questions of a task, as the numbers that are compared.
+    """A program's answers to the questions of a task, as the numbers that are compared.
 
     Args:
-        questions: ``questions.py`` of an exercise. ``QUESTIONS`` has arguments of calls by task and ``READ``
-            what counts of an answer. Where that is not enough, ``ASK`` has a function of ``answer`` and
-            ``names`` that asks by itself and gives numbers by name, of the task or of its parts. Numbers that
-            are ``SAME`` apart count as equal.
-        answer: what the program answers to a list of calls; ``{"raised": name}`` where it raises.
+        questions: ``questions.py`` of an exercise. ``QUESTIONS`` has the arguments of calls by task, and
+            ``READ`` a function that picks the part of an answer that counts. Where that is not enough,
+            ``ASK`` has a function of ``answer`` and ``names`` that makes the calls itself and returns numbers
+            by name, of the task or of its parts. Numbers no more than ``SAME`` apart count as equal.
+        answer: gives the program's answers to a list of calls; ``{"raised": name}`` where it raises.
         within: relative tolerance, if answers are compared as they are.
         names: of the parts that are of interest; None for all.
     """
@@ -138,7 +138,7 @@ def answer_numbers(
 
 def answers(remote: RemoteSubmission, task: str, questions: Calls) -> list[Any]:
     """What a function answers to each question; ``{"raised": name}`` where it raises."""
-    questions = copy.deepcopy(questions)  # a generator among the arguments is at its start each time
+    questions = copy.deepcopy(questions)  # generators start anew each time
     try:
         return list(remote.call_each(task, questions))
     except (StudentFailure, CheckFailed):
@@ -155,7 +155,7 @@ def _answer(remote: RemoteSubmission, task: str, args: tuple[Any, ...]) -> Any:
 
 
 def _number(value: Any) -> float:
-    """An answer that is compared as it is; -1 if it is no number."""
+    """An answer that is compared directly; -1 if it is not a number."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     return in_range(value) if isinstance(value, int | float) and not isinstance(value, bool) else -1.0
@@ -185,7 +185,7 @@ def _retold(
 
 
 def _finite(finding: Finding) -> bool:
-    """Whether what a check compared was numbers, where it expected numbers."""
+    """Whether the compared values are finite where finite numbers were expected."""
     return not _odd(finding.actual) or _odd(finding.expected)
 
 

@@ -1,4 +1,4 @@
-"""Results of checks and problems of submissions, put into the words and fields of a verdict."""
+"""Results of checks and problems of submissions, as the words and fields of a verdict."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def skipped(check: Check, blocking: str) -> CheckResult:
 
 
 def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
-    """What a student reads where the check's own code failed on what the submission returned.
+    """What a student reads where the check's own code raised an exception on the submission's value.
 
     Args:
         returned: name and value of the function that returned last; None if none did.
@@ -113,7 +113,7 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
 
 
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
-    """What is wrong with a file that is no Python, and what to do about it."""
+    """What is wrong with a file that is not valid Python, and what to do about it."""
     failure = refused.failure
     if "UnicodeError" in failure.bases:
         message = f"{where}: Python cannot read this file: {failure.message}."
@@ -122,7 +122,8 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         # A MemoryError, which is what deep nesting ends in, says nothing.
         reason = failure.message or "it is nested more deeply than Python can read"
         message = f"{where} is no Python source: {reason}."
-        # Python says the same of a letter beyond ASCII in another encoding and of what is no text at all.
+        # Python gives the same message for a non-ASCII letter in another encoding and for a file that is not
+        # text.
         letters = "Save it as UTF-8, or declare its encoding in the first line. "
         other = "Was something else saved under its name? `course reset` puts the stub back, and keeps it."
         return message, letters + other if "encoding" in reason else other

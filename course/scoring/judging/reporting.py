@@ -37,7 +37,7 @@ def report_of(
 
     Raises:
         NotFoundError: the exercise has no report.
-        UngradableError: the submission cannot be loaded, or broke the report off.
+        UngradableError: the submission cannot be loaded, or ended the report.
         MissingCapabilityError: no submission can be run on this machine.
     """
     if not has_report(exercise):

@@ -68,14 +68,14 @@ class GradingSession:
         processor: picks the processor to stay on; None picks any.
 
     Attributes:
-        running: title of the check that runs; empty between runs.
-        asked: for each check that has run, the functions of the last submission that it asked for.
-        took: and how long it kept the worker busy, in s of CPU time.
+        running: title of the running check; empty between runs.
+        asked: for each check that has run, the functions of the last submission that it used.
+        took: and the CPU time of the worker for it, s.
         printed: what the last submission printed while it was loaded.
-        curves: for failed checks at home, the student's curve and the right one, where both say something.
+        curves: for failed checks at home, the student's curve and the right one, if they show anything.
 
     Raises:
-        MissingCapabilityError: the level is not to be had here, or there are no hidden checks here.
+        MissingCapabilityError: this machine cannot provide the level, or the hidden checks are not here.
         ContentError: a check file is wrong.
     """
 
@@ -127,7 +127,7 @@ class GradingSession:
         self._checks.close()
 
     def drop(self) -> None:
-        """From another thread: end the run that is going on; its verdict means nothing."""
+        """From another thread: end the present run; its verdict is not valid."""
         remote = self._remote
         if remote is not None:
             remote.give_up()
@@ -136,10 +136,11 @@ class GradingSession:
         """The verdict on one submission.
 
         Args:
-            only: ids of the checks to run, with what they require; the rest is left out of the verdict.
-                Empty runs all.
+            only: ids of the checks to run, together with those they require; the others are left out of the
+                verdict. Empty means all.
 
-        Nothing a submission does raises here; what is our own fault is in the verdict as "grader_error".
+        Nothing that a submission does raises an exception here; a fault of the grader is in the verdict as
+        "grader_error".
         """
         with pinned_to(self._processor):
             verdict = self._grade(submission, only)
@@ -169,7 +170,7 @@ class GradingSession:
         return self._graded(results)
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
-        """What ``use`` makes of a submission, loaded as for a check; one deadline holds for all of it.
+        """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.
 
         Raises:
             UngradableError: it cannot be loaded.
@@ -193,7 +194,7 @@ class GradingSession:
     # -- checks ---------------------------------------------------------------------------------------
 
     def _load(self, submission: Submission) -> RemoteSubmission:
-        """The submission in a worker; the benchmarks put an unprotected one in its place."""
+        """The submission in a worker; the benchmarks replace it with an unprotected one."""
         return RemoteSubmission(
             self._spawner, submission.files, self.exercise.module,
             timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
@@ -327,7 +328,7 @@ class GradingSession:
             state=state,
             score=score,
             max_score=most,
-            # The tolerance is rounding of sums of points, not mercy.
+            # The tolerance only covers rounding in sums of points.
             passed=state == "graded" and score >= self.exercise.pass_mark * most - 1e-9,
             checks=checks,
             isolation=self.level,
@@ -371,7 +372,7 @@ def _open(imports: tuple[str, ...], terms: Terms) -> Spawner:
 
 
 def _choose(processor: int | None) -> int | None:
-    """The processor to grade on; None where processes are not kept on one."""
+    """The processor to grade on; None where processes are not pinned."""
     if not hasattr(os, "sched_getaffinity"):
         return None
     available = sorted(os.sched_getaffinity(0))
@@ -380,10 +381,10 @@ def _choose(processor: int | None) -> int | None:
 
 @contextlib.contextmanager
 def pinned_to(processor: int | None) -> Iterator[None]:
-    """Keep this thread, and the processes it starts, on one processor meanwhile.
+    """Pin this thread, and the processes it starts, to one processor for the duration.
 
-    Grader and worker take turns and never run at once. On one processor a callback costs about a third of
-    what waking another processor does, and the processor's caches stay warm.
+    Grader and worker take turns and never run at the same time. On one processor, a callback costs about a
+    third of what it costs to wake another processor, and the caches stay warm.
     """
     if processor is None:
         yield

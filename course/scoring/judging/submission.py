@@ -20,8 +20,8 @@ class Submission:
 
     Attributes:
         files: file name to content, exactly as handed in.
-        places: how its lines are told; None if the module is what the student wrote.
-        notes: what was left out or taken for granted when it was read, a sentence each.
+        places: how its lines are named; None if the student wrote the module itself.
+        notes: what was left out or assumed when it was read, one sentence each.
     """
 
     files: Mapping[str, bytes]

@@ -8,7 +8,7 @@ __all__ = ["Terms"]
 
 
 class Terms(msgspec.Struct, frozen=True):
-    """How submissions are judged; made once and handed on as it is, over pipes and networks too.
+    """How submissions are judged; made once and passed on unchanged, also over pipes and networks.
 
     Attributes:
         level: protection level to insist on; None takes the best one not below ``at_least``.

@@ -1,5 +1,6 @@
-"""What checks are written with. Public checks and hidden graders both import this module and nothing else
-of the grading side::
+"""The functions that checks are written with.
+
+Public checks and hidden graders both import this module, and nothing else from the grading side::
 
     from course.grading import kit
     from course.physics import systems
@@ -8,7 +9,7 @@ Three groups of names come from here. ``as_...`` read what a student's function 
 plain value. ``expect_...`` compare and, when they fail, build the finding that the student reads. The rest
 is below: callbacks that count, and modules shared by the checks of one exercise.
 
-This side is trusted: nothing here runs in the process that holds the student's code.
+This side is trusted: nothing here runs in the process that runs the student's code.
 """
 
 from course.figures.drawing.described import Panel, Plot, Series

@@ -1,4 +1,4 @@
-"""Callbacks that count what the student's code asks of them, and black boxes for it to experiment with."""
+"""Callbacks that count the calls from the student's code, and black boxes for it to experiment with."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ class Counted:
     def during(self, call: Callable[[], Any]) -> Any:
         """The value of ``call()``; if this callback refused its arguments meanwhile, that is the finding.
 
-        What a callback raises reaches the student's code first, which may swallow it or die of it. Either
-        way the refusal says more than what came after.
+        An exception from a callback reaches the student's code first, which may catch it or end with it. In
+        both cases the refusal says more than what comes after it.
         """
         try:
             value = call()
@@ -67,8 +67,8 @@ class Counted:
 def counted(fn: Callable[..., Any]) -> Counted:
     """``fn`` as a callback that counts; hand it to the student's code and read ``.count`` after.
 
-    The function runs on this side: the student's code sees neither it nor the count. ``fn`` must put up
-    with any plain arguments; wrap an acceleration in ``acceleration`` instead.
+    The function runs on this side: the student's code sees neither it nor the count. ``fn`` must accept any
+    plain arguments; for an acceleration, use ``acceleration`` instead.
     """
     return Counted(fn)
 
@@ -102,8 +102,8 @@ def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Coun
 def black_box(**methods: Callable[..., Any]) -> dict[str, Any]:
     """An object for the student's code to experiment with: its methods are functions evaluated on this side.
 
-    Hand it to ``submission.call`` as an argument. The student's code sees an object with those methods and
-    nothing of how they answer.
+    Pass it to ``submission.call`` as an argument. The student's code sees an object with these methods, but
+    not what is behind them.
     """
     return {"$methods": methods}
 
@@ -116,7 +116,7 @@ def first_divergence(
     Args:
         t: times, shape (n,), s.
         actual, expected: arrays of shape (n, d) by the name they have in the finding: "q", "v".
-        allowed: deviation that is no surprise, one number or shape (n,).
+        allowed: allowed deviation, one number or shape (n,).
     """
     times = np.asarray(t, dtype=float)
     limit = np.broadcast_to(np.asarray(allowed, dtype=float), times.shape)

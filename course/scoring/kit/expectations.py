@@ -1,4 +1,4 @@
-"""Expectations: each compares what was measured with what theory says, or raises ``CheckFailed``.
+"""Expectations: each compares a measured value with theory, and raises ``CheckFailed`` if they differ.
 
 They share these keywords:
 
@@ -9,7 +9,7 @@ They share these keywords:
     units       unit of the compared values; "1" where there is none
     diagnose    a ``Diagnosis``, a code, or a function that looks for one; called only on failure
 
-A comparison with NaN always fails: no inequality here is written so that NaN could slip through it.
+A comparison with NaN always fails: every inequality here is written so that NaN does not pass it.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def attempt(fn: Callable[[], Any]) -> Any:
         return None
 
 
-#: What to do where a check has no advice of its own: no finding goes without.
+#: The advice of a check that has none of its own, so that every finding has advice.
 _ADVICE = "Take one such case, work out by hand what the README asks for, and compare number by number."
 
 
@@ -108,7 +108,7 @@ def fail(
 
 
 def _explained(diagnose: Diagnose) -> tuple[Diagnosis | str | None, str]:
-    """The diagnosis, and where looking for it broke: the check has failed all the same, as it says."""
+    """The diagnosis, and where the search for it raised an exception; the check has failed in any case."""
     if not callable(diagnose):
         return diagnose, ""
     try:
@@ -120,7 +120,7 @@ def _explained(diagnose: Diagnose) -> tuple[Diagnosis | str | None, str]:
 
 
 def _or_not_finite(number: float, diagnose: Diagnose) -> Diagnose:
-    """The diagnosis of a wrong number: a check's own, or else that it is nan or infinite."""
+    """The diagnosis of a wrong number: the check's own, or else that the number is nan or infinite."""
     if math.isfinite(number):
         return diagnose
 
@@ -203,7 +203,7 @@ def expect_array(
 ) -> None:
     """Every element is within ``abs + rel max|expected|``; the shapes are the same.
 
-    Short arrays are shown whole, long ones by the first element that is off.
+    Short arrays are shown completely, long ones by the first wrong element.
 
     Args:
         t: times (s) of the rows, if the array is a trajectory; the finding then says when it went wrong.
@@ -328,7 +328,7 @@ def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **
 def expect_raises(fn: Callable[[], Any], exception: str, *, message: str, **finding: Any) -> None:
     """Calling ``fn`` raises this exception (or one derived from it) in the student's code.
 
-    Any other failure of the student's code is reported as what it is.
+    Any other failure of the student's code is reported unchanged.
     """
     try:
         value = fn()

@@ -1,4 +1,4 @@
-"""Marching a student's step along a known problem and measuring how far it strays."""
+"""Running a student's step function along a known problem and measuring its error."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ if TYPE_CHECKING:
 
 __all__ = ["CHECKPOINTS", "Marches", "Problem", "march_all_errors", "march_errors"]
 
-#: Instants at which a trajectory is compared with the reference. Several, because the error of a correct
-#: method can pass through zero at one of them: at half a period from rest semi-implicit Euler shows order 2.
+#: Instants at which a trajectory is compared with the reference. There are several, because the error of a
+#: correct method can pass through zero at one of them: at half a period from rest, semi-implicit Euler shows
+#: order 2.
 CHECKPOINTS = 4
 
 
 class Marches(Protocol):
-    """The one thing needed of a submission here."""
+    """The part of a submission that is needed here."""
 
     def march_each(
         self, step_name: str, marches: Sequence[tuple[Any, Any, Any, float, int, float]]
@@ -41,9 +42,10 @@ class Problem:
     """A system, where it starts, and for how long.
 
     Attributes:
-        name: what a person calls it.
+        name: its name for a reader.
         q0, v0: state at t0, d numbers each.
-        rate: its own angular frequency, rad/s: velocities are divided by it to be added to positions.
+        rate: its angular frequency, rad/s: velocities are divided by it so that they can be added to
+            positions.
         span: how long, s.
         t0: start, s.
     """
@@ -109,8 +111,8 @@ def _true_motion(
 ) -> tuple[Array, Array]:
     """Position and velocity at the checkpoints, each (CHECKPOINTS, d).
 
-    A grading run draws the same problems for every submission, and the reference costs more than many a
-    student's march along it: it is computed once.
+    A grading run draws the same problems for every submission, and the reference often costs more than a
+    student's march, so it is computed once.
     """
     times = t0 + span * np.arange(1, CHECKPOINTS + 1) / CHECKPOINTS
     q, v = solution(cast("System", system), q0, v0, times, t0)

@@ -1,9 +1,9 @@
-"""When a stranger's code has had its time, counted where it is spent: in the processor's time of its worker.
+"""When a student's code has used up its time, measured as the CPU time of its worker.
 
-A busy machine takes time from everybody, so the wall clock says little about what somebody's function takes.
-What counts is the CPU time of the worker, and the time it was found asleep while the grader waited for it. A
-wall limit several times as long stands beside both, for whatever neither shows. Where the system does not
-tell the CPU time of another process (macOS, Windows), the wall clock is all there is.
+On a busy machine the wall clock says little about the time that a function needs. What counts is the CPU time
+of the worker, and the time for which it was found asleep while the grader waited for it. In addition there is
+a wall limit several times as long, for anything that neither of these shows. Where the system does not report
+the CPU time of another process (macOS, Windows), only the wall clock counts.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ _TICK_S = 0.1  # how often a worker that does not answer is looked at
 
 
 class Clock(Protocol):
-    """What tells how much time a process has used."""
+    """The interface that reports how much time a process has used."""
 
     def cpu_s(self) -> float:
         """Seconds so far, from any zero."""
 
     def asleep(self) -> bool:
-        """Whether it waits for something else than a processor or a disk, or was stopped."""
+        """Whether it waits for something other than a processor or a disk, or was stopped."""
 
 
 class ProcessClock:
@@ -61,14 +61,15 @@ class ProcessClock:
 
 
 class Deadline:
-    """The time that one piece of work has; its clock stands still until a worker is watched.
+    """The time limit of one piece of work; its clock does not run until a worker is watched.
 
     Args:
         seconds: of CPU time and of sleep.
         wall: seconds by the wall clock; ``WALL`` times as many if None.
 
     Attributes:
-        earliest: ``time.monotonic()`` before which it cannot have passed: nothing need be asked till then.
+        earliest: ``time.monotonic()`` before which it cannot have passed, so nothing need be checked until
+            then.
     """
 
     def __init__(self, seconds: float, wall: float | None = None) -> None:
@@ -83,7 +84,7 @@ class Deadline:
         self.earliest = 0.0
 
     def watch(self, clock: Clock | None) -> None:
-        """From now on this process's time counts; None settles what the one before has used."""
+        """Count this process's time from now on; None only adds up what the previous one has used."""
         if self._clock is not None:
             self._settled = self.used
         self._clock = clock
@@ -92,11 +93,11 @@ class Deadline:
         self.waiting()
 
     def end(self) -> None:
-        """From any thread: the time is up."""
+        """End the time from any thread."""
         self._wall, self.earliest = -1.0, 0.0
 
     def postpone(self, seconds: float) -> None:
-        """Allow so much more by the wall clock: it was spent on something of ours."""
+        """Allow this much more by the wall clock, because the grader spent it."""
         self._wall += seconds
 
     @property
@@ -111,7 +112,7 @@ class Deadline:
         return monotonic() - self._began
 
     def waiting(self) -> None:
-        """From now on the grader waits for the worker: if that sleeps, it is its own doing."""
+        """From now on the grader waits for the worker, so time that the worker sleeps counts."""
         self._looked = monotonic()
         self._cpu_then = self._clock.cpu_s() if self._clock is not None else 0.0
 
@@ -121,10 +122,10 @@ class Deadline:
         if now - self._looked >= _TICK_S and self._clock is not None:
             cpu = self._clock.cpu_s()
             if self._clock.asleep():
-                # Not more than was looked at: on a busy machine the last look may be long ago.
+                # No more than was observed: on a busy machine the last look may be long ago.
                 self._settled += max(0.0, min(now - self._looked, 2 * _TICK_S) - (cpu - self._cpu_then))
             self._looked, self._cpu_then = now, cpu
         used = self.used
-        # Nobody uses more than a second in a second, so it need not be asked before.
+        # A process cannot use more than a second per second, so it need not be checked before.
         self.earliest = min(now + self._seconds - used, self._began + self._wall)
         return used > self._seconds or now - self._began > self._wall

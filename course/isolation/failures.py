@@ -1,4 +1,4 @@
-"""What goes wrong on the far side of the wire, as the trusted side sees it.
+"""Failures on the untrusted side of the wire, as the trusted side sees them.
 
 IsolationError          our side could not provide what it promised: never a student's fault
 StudentFailure          the student's code, or the process it ran in, gave no value
@@ -17,7 +17,7 @@ FailureKind = Literal["error", "timeout", "memory", "crash", "protocol", "missin
 
 
 class IsolationError(Exception):
-    """The protected process could not be started, or does not answer as ours would."""
+    """The protected process could not be started, or does not follow the protocol."""
 
 
 class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for what it says
@@ -33,7 +33,7 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         line: line of the student's file where it arose, 1 first; where it is known.
         traceback: the student's own frames, as text.
         bases: names of the classes the exception derives from, its own included.
-        places: how ``line`` is told to whoever wrote it, for who turns this into words; None if unknown here.
+        places: how ``line`` is named in messages to the student; None if unknown here.
     """
 
     def __init__(

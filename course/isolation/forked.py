@@ -70,7 +70,7 @@ class ZygoteSpawner:
             "become_nobody": root and (self.level is Level.L3 or _open_to_others(self._view)),
         }
         if self.level is Level.L3:
-            # Nothing to list as readable: the root is built of what is.
+            # No list of readable files is needed: the root contains only these.
             self._scratch = "/tmp"
             config |= {"path": [_INSIDE, _PACKAGES], "readable": None, "workdir": self._scratch}
             inside = launch.command(self._view, _INSIDE, config)
@@ -104,7 +104,7 @@ class ZygoteSpawner:
                 raise IsolationError(f"the zygote could not be started: {error}") from None
 
     def _check_start(self, view: View) -> None:
-        """An interpreter may silently load another library than its own: compare what the zygote reports."""
+        """An interpreter may silently load a library other than its own: compare what the zygote reports."""
         try:
             hello, _ = self._receive()
         except (OSError, ValueError) as error:
@@ -155,7 +155,7 @@ class ZygoteSpawner:
         try:
             if self.level is Level.L2:
                 workdir = tempfile.mkdtemp(dir=self._scratch)
-                # The worker may be nobody; the folder around it can be listed by its owner alone.
+                # The worker may run as user nobody; only the owner can list the folder around it.
                 Path(workdir).chmod(0o777)
             with theirs:
                 self._send({"workdir": workdir}, (theirs.fileno(), output))
@@ -202,7 +202,7 @@ class ZygoteSpawner:
 
 
 def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
-    """The command that builds a root of nothing but the view and starts a process in it.
+    """The command that builds a root with only the view in it, and starts a process there.
 
     Raises:
         IsolationError: there is no bubblewrap.
@@ -243,7 +243,7 @@ def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
 
 
 def _folders_above(paths: tuple[Path, ...]) -> list[Path]:
-    """Folders that lead to these and are not inside one of them, outermost first."""
+    """Folders that lead to these paths and are not inside one of them, outermost first."""
     above = {parent for path in paths for parent in path.parents}
     inside = {folder for folder in above if any(folder.is_relative_to(path) for path in paths)}
     return sorted(above - inside - {Path("/")})

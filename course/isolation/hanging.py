@@ -1,7 +1,7 @@
-"""Where a student's code is that does not answer: asked at home, where there is nothing hidden to be told.
+"""Where a student's code is when it does not answer; used only at home, where nothing is hidden.
 
-The worker is looked at a few times. A function that ends meanwhile is not what hangs, so what counts are the
-calls that were there at each look, and in the innermost of them the loop that it was in at each look.
+The worker is sampled a few times. A function that ends in between is not the one that hangs, so only the
+calls that are present in every sample count, and in the innermost of them the loop that it was in each time.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["LOOP", "where_it_hangs"]
 
 #: ``StudentFailure.type`` of a timeout whose line is the first one of a loop.
 LOOP = "loop"
-_BETWEEN_S = 0.05  # a step of a simulation takes far less, so that it is not taken for what hangs
+_BETWEEN_S = 0.05  # a step of a simulation takes far less, so it is not mistaken for the hang
 _ANSWER_S = 1.0
 _RECV = 1 << 12
 _MOST = 1 << 16  # bytes; an answer has some hundreds

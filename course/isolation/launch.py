@@ -1,4 +1,4 @@
-"""What every way of starting a worker shares: the files beside it, its command, cleaning up after it."""
+"""What all ways of starting a worker share: its files, its command, cleaning up after it."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ _COPIED = (
 )
 _PREFIX = "course-worker-"
 _TIDY_S = 1.0
-_SWEEP_S = 5.0  # wall seconds spent on what somebody left behind
+_SWEEP_S = 5.0  # wall seconds spent on deleting what a submission left behind
 
 
 def keep_private() -> None:
     """Close this process to others of the same user: its memory, its descriptors, its environment.
 
-    At L1 a submission runs as that user, and /proc would hand it the pipe that verdicts go through. Only
-    Linux has /proc, and the one call that closes it.
+    At L1 a submission runs as that user, and through /proc it could open the pipe that verdicts go through.
+    Only Linux has /proc, and the one call that closes it.
     """
     if sys.platform == "linux":
         from course.isolation.inside import lockdown
@@ -58,7 +58,7 @@ def keep_private() -> None:
 def private_folder() -> Path:
     """A new folder for one session, named after this process.
 
-    Whoever is killed leaves theirs behind, so the ones whose process is gone are deleted on the way.
+    A killed process leaves its folder behind, so folders whose process is gone are deleted here.
     """
     if hasattr(os, "getuid"):  # on Windows, asking whether a process lives would end it
         for old in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
@@ -80,7 +80,7 @@ def _is_alive(pid: int) -> bool:
 
 
 def copy_worker_files(target: Path) -> None:
-    """Put what runs in a worker into a folder, readable by whoever the worker becomes."""
+    """Put the worker's files into a folder that the worker's user can read."""
     course = Path(__file__).resolve().parents[1]
     package = target / _PACKAGE
     for folder in (package, package / "isolation", package / "isolation" / "inside", package / "physics"):
@@ -110,12 +110,12 @@ def environment() -> dict[str, str]:
 
 
 def sweep(folder: Path) -> None:
-    """Delete the folder of a session that ends; what cannot be deleted soon, a later session finds."""
+    """Delete the folder of a session that ends; a later session deletes what remains."""
     _advance(removing(folder), _SWEEP_S)
 
 
 def tidy(left: list[Iterator[None]]) -> None:
-    """Go on with some removals for a second of wall time, and take those that are done off the list.
+    """Continue some removals for a second of wall time, and remove the finished ones from the list.
 
     Deleting can take longer than making did, and a run must not stand still for that.
     """
@@ -131,18 +131,18 @@ def _advance(removal: Iterator[None], seconds: float) -> bool:
 
 
 def remove_tree(folder: Path) -> None:
-    """Delete a folder that a stranger filled, however long it takes."""
+    """Delete a folder that a submission filled, however long it takes."""
     for _ in removing(folder):
         pass
 
 
 def removing(folder: Path) -> Iterator[None]:
-    """Delete a folder that a stranger filled: of any depth, with any permissions, with links to anywhere.
+    """Delete a folder that a submission filled: of any depth, with any permissions, with links to anywhere.
 
     Folders inside folders are moved up before they are emptied, so that neither the length of a path nor
-    recursion sets a limit. Stops after each entry, so that whoever asks can go on with it later.
+    recursion sets a limit. Yields after each entry, so that the caller can continue later.
     """
-    moved, prefix = 0, secrets.token_hex(8)  # no name that the stranger could have taken
+    moved, prefix = 0, secrets.token_hex(8)  # a name that the submission cannot have used
     pending = [folder]
     while pending:
         here = pending.pop()
@@ -151,7 +151,7 @@ def removing(folder: Path) -> Iterator[None]:
             here.chmod(0o700)
             entries = list(os.scandir(here))
         for entry in entries:
-            with contextlib.suppress(OSError):  # what cannot be deleted keeps nothing else
+            with contextlib.suppress(OSError):  # an entry that cannot be deleted does not keep the others
                 if entry.is_dir(follow_symlinks=False):
                     moved += 1
                     os.chmod(entry.path, 0o700)  # noqa: PTH101 - moving a folder needs to write to it

@@ -45,7 +45,7 @@ MAX_OUTPUT = 128 << 10
 
 
 class Level(StrEnum):
-    """How strongly a stranger's code is kept apart; a greater letter is not weaker."""
+    """How strongly a student's code is isolated; a higher level is not weaker."""
 
     L1 = "L1"
     L2 = "L2"
@@ -84,26 +84,27 @@ class Exit:
 class Channel(Protocol):
     """The grader's end of a stream of bytes to a worker and back; ``ticking`` makes one of a socket.
 
-    A call that could do nothing for ``TICK_S`` raises BlockingIOError or TimeoutError, so that whoever waits
-    can look at the deadline. A worker that is gone shows as no bytes, or as any other OSError.
+    A call that could do nothing for ``TICK_S`` raises BlockingIOError or TimeoutError, so that the caller can
+    check the deadline. A worker that is gone shows as no bytes, or as any other OSError.
     """
 
     def recv(self, most: int, /) -> bytes:
-        """Some bytes, at most so many; none once the other end is closed."""
+        """Some bytes, at most this many; none once the other end is closed."""
 
     def recv_into(self, room: memoryview, /) -> int:
-        """The same, into memory that is there already; how many they were."""
+        """The same, into existing memory; returns how many."""
 
     def send(self, data: bytes | bytearray | memoryview, /) -> int:
-        """Hand over some bytes from the beginning; how many were taken."""
+        """Send some bytes from the beginning; returns how many were sent."""
 
 
 class Handle(Protocol):
     """A running worker.
 
     At the other end of its channel is ``course.isolation.inside.worker.Worker``, or what speaks as it does:
-    READY first, and only once it is locked down as its level promises; then an answer to each request. That
-    nothing of a submission is loaded before READY is the worker's to keep; all else it says is only a claim.
+    READY first, and only once it is locked down as its level promises; then an answer to each request. The
+    worker guarantees that nothing of a submission is loaded before READY; everything else it reports is only
+    a claim.
     """
 
     @property
@@ -117,20 +118,20 @@ class Handle(Protocol):
         """Seconds of CPU time it has used so far; by the wall clock where the system does not tell."""
 
     def asleep(self) -> bool:
-        """Whether it waits for something else than a processor or a disk, or was stopped."""
+        """Whether it waits for something other than a processor or a disk, or was stopped."""
 
     def look(self) -> None:
         """Ask it where its code is, if it can be asked; the answer comes after ``LOOKS`` of these."""
 
     def finish(self) -> Exit:
-        """Kill it if it lives, and wait for its end; what it wrote is left for ``Spawner.tidy``.
+        """Kill it if it is alive, and wait for its end; ``Spawner.tidy`` deletes what it wrote.
 
         It must end whatever its code does, in a bounded time, and close the channel; safe to call twice.
         """
 
 
 class Spawner(Protocol):
-    """Starts workers, one at a time; a worker has one submission, and what it did is gone with it.
+    """Starts workers, one at a time; each worker has one submission, and its effects end with it.
 
     Attributes:
         level: what its workers promise; verdicts and gradebooks note it.
@@ -146,7 +147,7 @@ class Spawner(Protocol):
         """
 
     def tidy(self) -> None:
-        """Delete what ended workers wrote: at no time when somebody's clock runs."""
+        """Delete what ended workers wrote; call it only while no submission's clock runs."""
 
     def close(self) -> None:
         """End everything that was started; safe to call twice."""

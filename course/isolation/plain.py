@@ -57,7 +57,7 @@ class ProcessSpawner:
     def spawn(self) -> Handle:
         handle, self._standby = self._standby, None
         if handle is not None and not handle.alive():
-            # It ended with the thread that started it: that is what Linux takes for its parent.
+            # It ended with the thread that started it, because Linux takes that thread for its parent.
             handle.finish()
             handle = None
         handle = handle or self._start()
@@ -94,7 +94,7 @@ class _ProcessHandle:
         self.channel = self._socket = ticking(ours)
         self._left = left
         self._workdir = workdir
-        # Opened twice and at once: later that name may be anything the student's code put there.
+        # Opened twice and at once: later the student's code may have put anything under that name.
         with (workdir / ".output").open("wb") as output:
             self._output = (workdir / ".output").open("rb")
             streams: dict[str, Any] = {"stdout": output, "stderr": output, "env": launch.environment()}

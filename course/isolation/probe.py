@@ -1,7 +1,7 @@
-"""Finds the protection level of this machine by trying it, never by asking for versions.
+"""Finds the protection level of this machine by trying it, never by checking versions.
 
-A level counts when a canary, run as a submission, can neither read a file it must not see nor open a socket
-nor start a process. Whoever grades gets a spawner that has just proven itself.
+A level counts if a canary, run as a submission, can neither read a file it must not see, nor open a socket,
+nor start a process. The grader gets a spawner that has just passed this test.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Protection:
 
     Attributes:
         level: the strongest level that proved itself.
-        causes: why the stronger ones did not, one sentence each.
+        causes: why the stronger ones failed, one sentence each.
         advice: what would raise the level, one sentence each; never to switch a protection off.
     """
 
@@ -108,7 +108,7 @@ def _escapes(found: Spawner) -> list[str]:
     with tempfile.TemporaryDirectory(prefix="course-canary-") as folder:
         secret = Path(folder) / "secret"
         secret.write_text("secret", "utf-8")
-        # Readable to everyone: only the lockdown must stand between it and the canary.
+        # Readable to every user, so that only the lockdown protects it from the canary.
         Path(folder).chmod(0o755)
         secret.chmod(0o644)
         try:

@@ -1,4 +1,4 @@
-"""What a worker says about an exception, read as the claim of a stranger that it is."""
+"""What a worker reports about an exception, read as an untrusted claim."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | Non
 
 
 def claimed_text(value: Any, limit: int = 2000) -> str:
-    """Text that can be shown on one line, nothing if it is no text."""
+    """Text that can be shown on one line; empty if it is not text."""
     return one_line(value, limit) if isinstance(value, str) else ""
 
 

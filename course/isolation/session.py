@@ -1,7 +1,7 @@
-"""The trusted end of one worker: sends calls, answers callbacks, holds the deadline, believes nothing.
+"""The trusted end of one worker: sends calls, answers callbacks, keeps the deadline, and trusts nothing.
 
-Nothing here waits on a stranger without a deadline, nothing un-pickles, and whatever arrives out of turn
-ends the worker instead of the grader.
+Nothing here waits for untrusted code without a deadline, nothing un-pickles, and a message out of turn ends
+the worker instead of the grader.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _RECV = 1 << 12
 _SEND = 1 << 16
 _HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
-#: What the callbacks of one call may carry in all; a check may keep every argument it is given.
+#: The total size of the callbacks of one call, because a check may keep every argument it gets.
 _CALLBACK_BYTES = 16 << 20
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
@@ -76,7 +76,8 @@ class Connection:
         files: the submission: file name to content.
         main: the file whose functions are called.
         deadline: by which loading must be done.
-        asks: where the code is that does not answer in time. At home only: what it says, it may have chosen.
+        asks: ask where the code is if it does not answer in time. Only at home, because the code may have
+            chosen the answer.
 
     Raises:
         LoadRefusedError: the submission cannot be loaded.
@@ -176,7 +177,7 @@ class Connection:
         raise self._breach("an inspection in another form")
 
     def march(self, step: str, marches: list[list[Any]]) -> list[Any]:
-        """Positions and velocities of each march, or the worker's word on why a step was unusable.
+        """Positions and velocities of each march, or the worker's report why a step was unusable.
 
         Args:
             marches: [right-hand side, q0, v0, t0, h, n] each.
@@ -184,7 +185,7 @@ class Connection:
         return self._batch(self._ask(Kind.MARCH, [step, marches], step), len(marches))
 
     def each(self, function: str, calls: list[list[Any]]) -> list[Any]:
-        """What ``function`` returns for each list of arguments; the loop runs beside the student's code."""
+        """What ``function`` returns for each list of arguments; the loop runs in the student's process."""
         return self._batch(self._ask(Kind.EACH, [function, calls], function), len(calls))
 
     def fold(
@@ -246,8 +247,8 @@ class Connection:
                 self._answer_callback(value)
             elif kind in (Kind.RESULT, Kind.RAISED):
                 if self._refused is not None and not self._nesting:
-                    # A function of ours refused what it was given: that is the finding, whatever the
-                    # student's code made of the exception.
+                    # One of our functions refused its arguments: that is the finding, whatever the student's
+                    # code did with the exception.
                     refused, self._refused = self._refused, None
                     raise refused
                 if kind == Kind.RESULT:
@@ -294,9 +295,9 @@ class Connection:
         raise LoadRefusedError("crash", self._breach("an answer of another form"))
 
     def _await_lockdown(self) -> None:
-        """The first word of a worker, said before it is given a stranger's code: only here is it believed.
+        """The worker's first message, sent before it is given a student's code: the only one that is trusted.
 
-        Starting is our own time: none of it counts.
+        The time for starting does not count.
         """
         deadline, self._deadline = self._deadline, Deadline(START_TIMEOUT, START_TIMEOUT)
         try:
@@ -388,7 +389,7 @@ class Connection:
         return StudentFailure("protocol", type="ProtocolBreach", message=f"the process sent {what}")
 
     def _ended(self) -> StudentFailure:
-        """The process is gone without an answer."""
+        """The process ended without an answer."""
         end = self._finish()
         how = f"signal {end.signal}" if end and end.signal else f"exit code {end.code if end else 0}"
         return StudentFailure("crash", type=how, message=f"its process ended by itself ({how})")

@@ -1,4 +1,4 @@
-"""What a stranger's code may read: the interpreter, the system's libraries, declared packages; no more.
+"""What a student's code may read: the interpreter, the system's libraries and declared packages.
 
 One description serves both mechanisms: bubblewrap binds ``readable`` into an otherwise empty root and covers
 ``masked`` with empty folders; Landlock, which cannot subtract, gets the list from ``expanded``.
@@ -32,7 +32,7 @@ class View:
         interpreter: the Python to run, links resolved.
         prefix: the ``sys.prefix`` that interpreter must report.
         readable: files and folders.
-        masked: folders inside ``readable`` that must look empty: other people's packages, and this course.
+        masked: folders inside ``readable`` that must look empty: other packages, and this course.
         packages: entries of site-packages that are declared, by name.
     """
 

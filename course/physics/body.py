@@ -1,4 +1,4 @@
-"""A body: what it weighs, how it resists turning, where it is, and what pushes it right now."""
+"""A body: its mass and inertia, its state, and the forces that act on it now."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ __all__ = ["Body"]
 class Body:
     """A rigid body with a mass, principal moments of inertia and, for contacts, the shape of a sphere.
 
-    Forces and torques add up until they are cleared, so that gravity, a spring and a motor need not know of
-    one another.
+    Forces and torques add up until they are cleared, so that gravity, a spring and a motor need not know
+    about each other.
 
     Args:
-        mass: kg; ``math.inf`` for something that nothing moves.
+        mass: kg; ``math.inf`` for a body that cannot be moved.
         state: where it is; may hold many runs at once.
         inertia: principal moments about the body's axes, shape (3,), kg m². ``math.inf`` (the default) makes
             a body that never turns: a point mass.
@@ -62,7 +62,7 @@ class Body:
 
     @classmethod
     def sphere(cls, mass: float, radius: float, state: RigidBodyState, *, spins: bool = True) -> Body:
-        """A solid ball, inertia 2/5 m r²; with ``spins=False`` one that friction cannot set turning."""
+        """A solid ball, inertia 2/5 m r²; with ``spins=False`` one that friction cannot make turn."""
         inertia = 0.4 * mass * radius**2 if spins and radius > 0 else math.inf
         return cls(mass, state, inertia=inertia, radius=radius)
 
@@ -79,7 +79,7 @@ class Body:
         self.force, self.torque = np.zeros(3), np.zeros(3)
 
     def acceleration(self) -> Array:
-        """Newton's second law: what the forces so far do, m/s², shape (..., 3)."""
+        """Newton's second law: the acceleration by the forces so far, m/s², shape (..., 3)."""
         return self.force / self.mass
 
     def momentum(self) -> Array:

@@ -1,8 +1,8 @@
 """A planar arm of two links: forward dynamics, inverse dynamics, and motion without forces.
 
-    forward     joint torques -> joint accelerations       what a simulator asks
-    inverse     joint accelerations -> joint torques       what a controller asks
-    kinematic   a path of the hand -> joint angles         what a planner asks; no masses, no forces
+    forward     joint torques -> joint accelerations       used by a simulator
+    inverse     joint accelerations -> joint torques       used by a controller
+    kinematic   a path of the hand -> joint angles         used by a planner; no masses, no forces
 
 Angles: ``q = (q1, q2)`` in rad; q1 from the x axis, counter-clockwise, q2 from the first link. Gravity points
 along -y. All functions take leading axes: q of shape (..., 2).
@@ -69,7 +69,7 @@ class TwoLinkArm:
         return cls(length, length, mass, mass, length, length, 0.0, 0.0, g)
 
     def mass_matrix(self, q: ArrayLike) -> Array:
-        """How torques and accelerations hang together at rest, kg m², shape (..., 2, 2)."""
+        """The matrix between accelerations and torques at rest, kg m², shape (..., 2, 2)."""
         m11, m12, m22 = self._inertias(np.asarray(q, dtype=float)[..., 1])
         rows = [[m11, m12], [m12, m22 + 0.0 * m11]]
         return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
@@ -107,14 +107,16 @@ class TwoLinkArm:
     def inverse(self, q: ArrayLike, v: ArrayLike, acceleration: ArrayLike) -> Array:
         """Inverse dynamics: joint torques (N m) that make joint accelerations (rad/s²); shape (..., 2).
 
-        Outward, link by link, to find how each centre of mass accelerates; inward again, to find what each
-        hinge must do about it.
+        First outward, link by link, for the acceleration of each centre of mass; then inward, for the force
+        and torque at each hinge.
         """
         q, v, a = (np.asarray(x, dtype=float) for x in (q, v, acceleration))
         angle1, angle2 = q[..., 0], q[..., 0] + q[..., 1]
         spin1, spin2 = v[..., 0], v[..., 0] + v[..., 1]
         turn1, turn2 = a[..., 0], a[..., 0] + a[..., 1]
-        up = np.array([0.0, self.g])  # standing still in gravity is accelerating upwards without it
+        up = np.array(
+            [0.0, self.g]
+        )  # being at rest in gravity is the same as accelerating upwards without it
         elbow = up + _swing(self.length1, angle1, spin1, turn1)
         force2 = self.mass2 * (elbow + _swing(self.centre2, angle2, spin2, turn2))
         force1 = self.mass1 * (up + _swing(self.centre1, angle1, spin1, turn1))
@@ -152,11 +154,11 @@ class TwoLinkArm:
         return np.stack([_left(whole), _left(far)], axis=-1)
 
     def reach(self, hand: ArrayLike, *, elbow_up: bool = False) -> Array:
-        """Joint angles that put the hand somewhere (inverse kinematics), rad, shape (..., 2).
+        """Joint angles that put the hand at a given place (inverse kinematics), rad, shape (..., 2).
 
         Args:
             hand: the place, m, shape (..., 2).
-            elbow_up: the other one of the two ways to get there.
+            elbow_up: take the other of the two solutions.
 
         Raises:
             ValueError: the place is out of reach.
@@ -175,7 +177,7 @@ class TwoLinkArm:
 
 @dataclass(frozen=True, slots=True)
 class PassiveArm:
-    """An arm whose joints nothing drives, as a system that any stepper integrates: a double pendulum."""
+    """An arm whose joints are not driven, as a system that any stepper can integrate: a double pendulum."""
 
     arm: TwoLinkArm
 
@@ -211,10 +213,11 @@ class HandPath:
         return place, velocity, acceleration
 
     def joints(self, arm: TwoLinkArm, t: ArrayLike) -> tuple[Array, Array, Array]:
-        """Angles (rad), velocities and accelerations of the joints that draw the path; shapes (..., 2).
+        """Angles (rad), velocities and accelerations of the joints along the path; shapes (..., 2).
 
         Raises:
-            ValueError: a part of the path is out of reach, or so near its edge that the joints would race.
+            ValueError: part of the path is out of reach, or so close to the limit that the joints would have
+                to move too fast.
         """
         place, velocity, acceleration = self.hand(t)
         q = arm.reach(place)
@@ -234,9 +237,9 @@ class HandPath:
 
 
 def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:
-    """How far along at the share s of the time, with first and second derivative: the smoothest way.
+    """The fraction of the path covered at the fraction s of the time, with first and second derivative.
 
-    The polynomial of degree five that begins and ends at rest without a jerk of the acceleration.
+    This is the polynomial of degree five that begins and ends at rest with zero acceleration.
 
     Source: Flash and Hogan, J. Neuroscience 5, 1985 (minimum jerk).
     """

@@ -1,7 +1,7 @@
-"""Solutions to compare with: closed forms where there are any, and a reference for everything else.
+"""Solutions to compare with: closed forms where they exist, and a numerical reference for everything else.
 
-``reference`` is good to about twelve digits on the smooth problems of this course and is itself compared
-with the closed forms in the tests.
+``reference`` is accurate to about twelve digits on the smooth problems of this course, and the tests compare
+it with the closed forms.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def reference(
 ) -> tuple[Array, Array]:
     """Position and velocity at given times, to about twelve digits.
 
-    Each interval is crossed by the midpoint rule with 2, 4, 6, ... substeps, extrapolated to none; an
+    Each interval is integrated by the midpoint rule with 2, 4, 6, ... substeps, extrapolated to step zero; an
     interval that does not converge is halved.
 
     Args:

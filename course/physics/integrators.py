@@ -73,7 +73,7 @@ class State:
 
 
 class Stepper(Protocol):
-    """A method that carries a state one step forward; new states never share memory with old ones."""
+    """A method that advances a state by one step; new states never share memory with old ones."""
 
     order: ClassVar[int]
     symplectic: ClassVar[bool]

@@ -1,8 +1,8 @@
-"""What happens between two samples: cubic Hermite interpolation and the first root of a sampled curve.
+"""Values between two samples: cubic Hermite interpolation and the first root of a sampled curve.
 
 A trajectory is known at its samples together with its slopes there, and the cubic through both is exact for
-anything that moves with constant acceleration. Events (a landing, an apex) are therefore found far more
-finely than the step they lie in.
+anything that moves with constant acceleration. So events (a landing, an apex) are found far more accurately
+than to one step.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def hermite(s: ArrayLike, y0: Array, y1: Array, d0: Array, d1: Array) -> Array:
 
 
 def falling_root(y0: Array, y1: Array, d0: Array, d1: Array) -> Array:
-    """Where the cubic falls through 0 on its way to a negative end, as a share of the interval.
+    """Where the cubic falls through 0 before a negative end, as a fraction of the interval.
 
     Starting at or below 0 and falling counts as 0; starting there and rising, the way up comes first.
 
@@ -38,7 +38,7 @@ def falling_root(y0: Array, y1: Array, d0: Array, d1: Array) -> Array:
         d0, d1: slopes there, per interval.
 
     Returns:
-        The share in [0, 1]; inf where the end is not negative. Same shape.
+        The fraction in [0, 1]; inf where the end is not negative. Same shape.
     """
     # The top of the curve, if its slope were to change linearly: there the bracket begins.
     fall = np.where(d0 > d1, d0 - d1, 1.0)

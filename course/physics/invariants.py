@@ -1,4 +1,4 @@
-"""What a trajectory must keep, and how to measure how well a method keeps it.
+"""Conserved quantities of a trajectory, and how to measure how well a method conserves them.
 
 Energies are per unit mass (J/kg) and take a whole trajectory at once: q and v of shape (..., d) give
 energies of shape (...).
@@ -120,7 +120,7 @@ def jacobian_of_many(flows: Callable[[Array], Array], y: ArrayLike, delta: float
 def symplecticity_defect(derivative: ArrayLike) -> float:
     """``max |J^T Omega J - Omega|`` of the derivative of a map on (q, v); 0 if the map is symplectic.
 
-    In one degree of freedom this is |det J - 1|; in more it asks for more than a preserved volume.
+    In one degree of freedom this is |det J - 1|; in more, it is a stronger condition than a preserved volume.
 
     Args:
         derivative: shape (2d, 2d), positions before velocities.

@@ -1,4 +1,4 @@
-"""Quaternions, and three ways to carry a spinning body forward.
+"""Quaternions, and three ways to step a rotating body forward.
 
 A unit quaternion [w, x, y, z] = [cos(a/2), sin(a/2) n] turns by the angle a about the unit vector n. Here it
 takes vectors from the body's axes to the world's. Products of unit quaternions are unit quaternions, sums are
@@ -62,7 +62,7 @@ def quaternion(rotation_vector: ArrayLike) -> Array:
 
 
 def turn(orientation: Array, vector: Array) -> Array:
-    """A vector in the body's axes, (..., 3), as the world sees it."""
+    """A vector in the body's axes, (..., 3), expressed in the world's axes."""
     w, axis = orientation[..., :1], orientation[..., 1:]
     twice = 2.0 * cross(axis, vector)
     return np.asarray(vector + w * twice + cross(axis, twice))
@@ -91,7 +91,7 @@ class Spin(NamedTuple):
 
 
 class RotationStepper(Protocol):
-    """A method that carries a rotation one step forward."""
+    """A method that advances a rotation by one step."""
 
     def advance(self, inertia: Array, spin: Spin, torque: Array, h: float | Array) -> Spin:
         """The rotation h (s) later.

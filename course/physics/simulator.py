@@ -1,11 +1,12 @@
 """A small physics engine: gravity, forces, contacts, one fixed step, and a record of it all.
 
-A step asks first which surfaces touch and what velocities their contacts allow, and only then moves: velocity
-before position. What lies on something is carried by forces that hold over the step, so it neither sinks nor
-creeps, whatever the method that integrates. Where surfaces meet on the way, the step goes back to that
-instant, lets them collide, and goes on. Sample i belongs to the time ``i h``, never to a sum of steps.
+A step first finds which surfaces touch and what velocities their contacts allow, and only then moves the
+bodies: velocity before position. A body at rest on another is carried by forces that stay constant over the
+step, so it neither sinks nor creeps, whatever the integrator. Where surfaces meet during the step, it goes
+back to that instant, lets them collide, and continues. Sample i belongs to the time ``i h``, never to a sum
+of steps.
 
-States may hold many runs at once (leading axes), which then go forward together:
+States may hold many runs at once (leading axes), which are then advanced together:
 
     >>> from course.physics.body import Body
     >>> from course.physics.state import RigidBodyState
@@ -47,11 +48,11 @@ __all__ = ["Simulator", "step_count"]
 
 # A step goes back to this many instants at which surfaces meet; what meets after that overlaps a little.
 _INSTANTS = 8
-_BLOWS = 64  # that pass from pair to pair at one instant, as along a row of balls
+_BLOWS = 64  # impacts that pass from pair to pair at one instant, as along a row of balls
 _REST = 1.5  # speeds below this many g h are what gravity adds in one step, no impact: they do not bounce
 _STILL = 0.01  # a speed below this share of g h is rest: the forces of the next step end it
 _NEAR = 1e-3  # a gap below this share of g h² is none
-_ROUND_OFF = 1e-12  # m and m/s: what is left of nothing without gravity
+_ROUND_OFF = 1e-12  # m and m/s: what counts as zero without gravity
 
 
 def step_count(duration: float, h: float) -> int:
@@ -79,7 +80,7 @@ def step_count(duration: float, h: float) -> int:
 
 
 def _short(value: float) -> str:
-    """A number in six digits if that is all there is to it; otherwise nothing, for it would not divide."""
+    """The number in six digits if that is exact; otherwise empty, as the rounded one would not divide."""
     text = f"{value:.6g}"
     return text if abs(float(text) - value) <= 1e-12 * value else ""
 
@@ -135,10 +136,10 @@ class Simulator:
         #: m/s and m: slower is at rest, nearer touches.
         self._still = max(_STILL * abs(self.gravity) * self.h, _ROUND_OFF)
         self._near = max(_NEAR * abs(self.gravity) * self.h**2, _ROUND_OFF)
-        #: What contacts add while they hold: accelerations, m/s², and angular ones, rad/s², world axes.
+        #: What resting contacts add: accelerations, m/s², and angular accelerations, rad/s², world axes.
         self._held = self._held_spin = np.zeros((len(bodies), *self.batch, 3))
         shape = (len(self._pairs.numbers), *self.batch)
-        #: Forces of the contacts in the last step, N: where the solver begins in the next one.
+        #: Forces of the contacts in the last step, N: the solver's starting point in the next one.
         self._last = Impulses(np.zeros(shape), np.zeros((*shape, 3)))
         self._met_at: Array = np.full(shape, np.nan)
 
@@ -152,7 +153,7 @@ class Simulator:
         return self._steps * self.h
 
     def run(self, duration: float) -> Recording:
-        """Go on for a duration (s) and give every sample, the present one first.
+        """Run for a duration (s) and return every sample, the present one first.
 
         Raises:
             ValueError: the step does not divide the duration.
@@ -174,7 +175,7 @@ class Simulator:
         return Recording(t, position, velocity, orientation, spin, mass, inertia, self.gravity, first)
 
     def step(self) -> None:
-        """One step: from instant to instant at which surfaces meet, with the contacts before the motion."""
+        """One step, from one meeting of surfaces to the next, with the contacts before the motion."""
         left = np.full(self.batch, self.h)
         met = np.zeros_like(self._met_at, dtype=bool)
         for instant in range(_INSTANTS + 1):
@@ -204,7 +205,7 @@ class Simulator:
     # -- motion ----------------------------------------------------------------------------------------
 
     def _accelerations(self, t: Any, q: Array, v: Array) -> Array:
-        """What gravity, force laws and contacts do at these positions and velocities; shape (B, ..., 3)."""
+        """Accelerations by gravity, laws and contacts at these positions and velocities; shape (B, ..., 3)."""
         a: Array = self._falling + self._held
         if self.laws:
             for body, position, velocity in zip(self.bodies, q, v, strict=True):
@@ -219,7 +220,7 @@ class Simulator:
         return a
 
     def _fly(self, span: Array) -> None:
-        """Advance every body by ``span`` (s, one for every run) as if nothing more were in the way."""
+        """Advance every body by ``span`` (s, one for every run) without further contacts."""
         h: Any = span[..., None]
         q = np.stack([body.state.position for body in self.bodies])
         v = np.stack([body.state.velocity for body in self.bodies])
@@ -262,7 +263,7 @@ class Simulator:
         return Motion(velocity, rim, self._pairs.give, self._pairs.spin_give)
 
     def _collide(self, normal: Array, touching: Flags, now: Array) -> None:
-        """End all approach of what touches, at once: with restitution where it is fast enough to bounce."""
+        """End all approach in contacts at once, with restitution where it is fast enough to bounce."""
         motion = self._motion()
         speed = normal_speed(self._pairs.numbers, normal, motion.velocity)
         if not np.any(touching & (speed < -self._still)):
@@ -286,9 +287,10 @@ class Simulator:
             )
 
     def _support(self, normal: Array, touching: Flags, left: Array, now: Array) -> Flags:
-        """Find the forces that keep apart, for the time left, what touches and does not separate.
+        """Find the forces that keep touching bodies apart for the rest of the step.
 
-        They are those that leave no approach at the end of the motion, given how it would end without them.
+        These are the forces that leave no approach at the end of the motion, given how it would end without
+        them.
 
         Returns:
             Which pairs rest on each other, shape (P, ...).

@@ -1,8 +1,8 @@
-"""Two solvers of many constraints at once, each going over them one by one: a stack and a chain.
+"""Two iterative solvers of many constraints: a stack and a chain.
 
-An engine has thousands of contacts and joints that all depend on one another. Solving for all together is
-dear, so it takes them in turn, again and again, and stops when its time is up. These are the two smallest
-cases that show what such a solver leaves undone.
+An engine has thousands of contacts and joints that all depend on one another. Solving for all of them
+together is expensive, so an engine solves them in turn, again and again, and stops when its time is up. These
+are the two smallest cases that show the error such a solver leaves.
 
 Source: Catto, Iterative Dynamics with Temporal Coherence (Game Developers Conference), 2005 (projected
 Gauss-Seidel, called sequential impulses from 2006 on); Müller et al., Position Based Dynamics, 2007; Macklin
@@ -26,10 +26,10 @@ __all__ = ["Chain", "iterations_to", "stack_impulses"]
 
 
 def stack_impulses(boxes: int, iterations: int) -> Array:
-    """Sequential impulses in a stack that lies still, from nothing, over one step.
+    """Sequential impulses in a stack at rest, starting from zero, over one step.
 
-    Each box has mass 1 and gravity has just given each a velocity of -1. Contact k lies under box k; an
-    iteration takes the approach out of every contact once, from the ground up.
+    Each box has mass 1 and gravity has just given each a velocity of -1. Contact k is under box k; an
+    iteration removes the approach from every contact once, from the ground up.
 
     Returns:
         The impulse of every contact after 0, 1, ... iterations, shape (iterations + 1, boxes), in units of
@@ -57,7 +57,7 @@ def stack_impulses(boxes: int, iterations: int) -> Array:
 
 
 def iterations_to(boxes: int, tolerance: float = 0.01, limit: int = 100_000) -> int:
-    """Iterations until the ground carries the stack's weight to within ``tolerance`` (a share of it).
+    """Iterations until the ground carries the stack's weight to within ``tolerance`` (a fraction of it).
 
     Raises:
         ValueError: not reached within ``limit`` iterations.
@@ -77,8 +77,8 @@ def iterations_to(boxes: int, tolerance: float = 0.01, limit: int = 100_000) -> 
 class Chain:
     """Equal point masses on equal links without mass, hung at one end, in a vertical plane.
 
-    Position-based: every substep lets the masses fall freely, then puts each link back to its length in
-    turn, ``iterations`` times over, and reads the velocities off what the positions did.
+    Position-based: every substep lets the masses fall freely, then restores each link to its length in turn,
+    ``iterations`` times, and computes the velocities from the change of the positions.
 
     Attributes:
         links: how many.
@@ -91,15 +91,15 @@ class Chain:
     g: float = 9.81
 
     def stretch(self, duration: float, h: float, substeps: int, iterations: int) -> Array:
-        """Let go of the chain held out level, and watch its longest link.
+        """Release the chain from a horizontal line, and record its longest link.
 
         Args:
             duration, h: s; h is a frame, which is divided into substeps.
-            substeps, iterations: how the work of a frame is spent: their product is its cost.
+            substeps, iterations: how the work of a frame is divided: their product is its cost.
 
         Returns:
-            How much longer than it should be the longest link is after each frame (a share of its length),
-            shape (n + 1,).
+            By how much the longest link is too long after each frame (a fraction of its length), shape (n +
+            1,).
 
         Raises:
             ValueError: the frame does not divide the duration.
@@ -122,7 +122,7 @@ class Chain:
     def _substep(
         self, x: list[float], y: list[float], vx: list[float], vy: list[float], h: float, iterations: int
     ) -> None:
-        """Fall, put the links right, read off velocities. Plain lists: one link is too small for NumPy."""
+        """Fall, restore the links, compute velocities. Plain lists: one link is too small for NumPy."""
         old_x, old_y = x.copy(), y.copy()
         for i in range(1, len(x)):
             vy[i] -= self.g * h
@@ -132,7 +132,7 @@ class Chain:
         for _ in range(iterations):
             for i in range(1, len(x)):
                 dx, dy = x[i] - x[i - 1], y[i] - y[i - 1]
-                # The first mass hangs on something that does not move; of two masses each goes half way.
+                # The first mass hangs from a fixed point; of two masses, each moves half-way.
                 near, far = (0.0, 1.0) if i == 1 else (0.5, 0.5)
                 excess = 1.0 - rest / math.hypot(dx, dy)
                 x[i - 1] += near * excess * dx

@@ -1,14 +1,14 @@
 """Right-hand sides: the accelerations of the systems this course integrates.
 
-A system is a frozen object with plain numbers in it. Called as ``system(t, q, v)`` it answers the
-acceleration there, as a fresh array; ``system.params()`` gives the numbers back, and
+A system is a frozen object with plain numbers in it. Called as ``system(t, q, v)`` it returns the
+acceleration there, as a new array; ``system.params()`` gives the numbers back, and
 ``SYSTEMS[name](**params)`` rebuilds it, so a system can be sent to another process as a name and numbers.
 
 Units are SI and angles radians. ``q`` and ``v`` have shape (d,); the systems of one degree of freedom
 apply to each component on its own.
 
-This file stands alone: it is copied beside a stranger's code. It imports only the standard library and
-numpy, and has neither an integrator nor a solution: either would hand out answers.
+This file is self-contained, because it is copied into the student's process. It imports only the standard
+library and numpy, and has neither an integrator nor a solution, which would give away answers.
 """
 
 # ruff: noqa: ARG002 - every right-hand side takes (t, q, v); most need only some of them
@@ -45,7 +45,7 @@ __all__ = [
 
 
 class System(Protocol):
-    """Anything that answers an acceleration and knows its own parameters."""
+    """An object that returns an acceleration and knows its own parameters."""
 
     def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:
         """Acceleration at time t (s), position q (m or rad), velocity v; shape (d,)."""
@@ -106,10 +106,10 @@ class DampedOscillator(_Plain):
 
 @dataclass(frozen=True, slots=True)
 class ForcedOscillator(_Plain):
-    """Spring pushed by the clock: a = -omega² q + amplitude cos(drive t).
+    """Spring with a drive that depends on time: a = -omega² q + amplitude cos(drive t).
 
-    omega and drive in rad/s, amplitude in m/s². Its acceleration depends on t, which is what makes wrong
-    stage times visible: no autonomous problem can show them.
+    omega and drive in rad/s, amplitude in m/s². Its acceleration depends on t, so it shows wrong stage times;
+    no autonomous problem does.
     """
 
     omega: float

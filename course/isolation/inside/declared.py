@@ -1,7 +1,8 @@
 """What a submission may import: the standard library, its own files and the packages its exercise declares.
 
-Runs beside a stranger's code and is no protection by itself: at L3 and L2 the files of other packages cannot
-be read at all. It gives a sentence instead of a bare ModuleNotFoundError, and keeps the rest of a file alive.
+This runs in the student's process and is no protection by itself: at L3 and L2 the files of other packages
+cannot be read at all. It gives a clear message instead of a bare ModuleNotFoundError, and lets the rest of a
+file work.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class ImportNotDeclaredError(ImportError):
 class StandIn(types.ModuleType):
     """What a submission gets for a package it may not import, if it imports it at its top level.
 
-    While the submission loads, it takes any use without a word, so that a plot at the end of a file costs
+    While the submission loads, it silently accepts any use, so that a plot at the end of a file costs
     nothing. After that every use raises: only the tasks that need the package fail.
     """
 
@@ -93,8 +94,8 @@ class Imports:
     def stand_in(self, source: str) -> None:
         """Let a file load although it imports other packages.
 
-        Only imports at its top level: one inside a ``try`` has something to fall back on, and one in a
-        function is that function's affair.
+        Only for imports at the top level: an import inside a ``try`` has an alternative, and an import in a
+        function concerns only that function.
         """
         for node in ast.parse(source).body:
             if isinstance(node, ast.Import):

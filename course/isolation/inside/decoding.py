@@ -1,6 +1,6 @@
-"""Bytes to values: a quick way for what a callback carries, and a careful one for everything.
+"""Bytes to values: a fast way for the arguments of callbacks, and a careful one for everything.
 
-Whatever is read here was written by a stranger: every length is checked before it is believed.
+Everything read here comes from untrusted code: every length is checked before it is used.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _QUICK_COUNT = 64
 
 
 def quick(body: bytes | memoryview) -> Any:  # noqa: PLR0911 - it gives up at the first thing it does not know
-    """A vector, or a short list of numbers, words, vectors and tables: what a callback and its answer are.
+    """A vector, or a short list of numbers, words, vectors and tables, as in a callback and its answer.
 
     Twenty thousand of them pass in a second, so they are read in one loop; ``OTHER`` stands for anything
     else, which takes the long way from the start.

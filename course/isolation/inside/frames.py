@@ -1,4 +1,4 @@
-"""What both ends of the wire agree on: limits, kinds of message, and what stands for what cannot cross."""
+"""What both ends of the wire agree on: limits, kinds of message, placeholders for what cannot cross."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ DTYPES = (np.dtype("<f8"), np.dtype("<i8"), np.dtype("?"), np.dtype("<c16"))
 
 
 def room_for(size: int, begun: bytes) -> memoryview:
-    """Room for a frame whose first bytes have come: memory is taken only as the others do."""
+    """Memory for a frame whose first bytes have arrived; it is taken only as the rest arrives."""
     room = np.empty(size, np.uint8).data
     room[: len(begun)] = begun
     return room
@@ -62,7 +62,7 @@ class Kind(enum.IntEnum):
 
 
 class WireError(Exception):
-    """What arrived is not a frame this protocol has."""
+    """The data is not a frame of this protocol."""
 
 
 class UnsupportedValueError(Exception):
@@ -93,7 +93,7 @@ class Reference:
 
 
 class Names(Protocol):
-    """How one side turns what it holds into references and back."""
+    """How one side turns its objects into references and back."""
 
     def lower(self, value: Any) -> Reference | Rhs | Seed | None:
         """What stands for ``value`` on the wire, or None if it cannot cross."""

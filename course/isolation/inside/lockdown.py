@@ -1,8 +1,8 @@
 """How a process gives up what it could do, on Linux: namespaces, capabilities, Landlock, limits, seccomp.
 
-Each function does one of these to the calling process, for good, or raises ``LockdownError``; none carries
-on half done. ``zygote`` calls them in a freshly forked worker before a stranger's code is loaded. Like all
-files that are copied next to that code, this one imports the standard library only.
+Each function permanently does one of these to the calling process, or raises ``LockdownError``; none
+continues half done. ``zygote`` calls them in a newly forked worker before a student's code is loaded. Like
+all files that are copied next to that code, this one imports the standard library only.
 
 Sources: landlock(7), seccomp(2), capabilities(7), pid_namespaces(7); constants from the kernel's uapi
 headers.
@@ -144,7 +144,7 @@ def not_dumpable() -> None:
 
 
 def die_first() -> None:
-    """Be what the kernel ends when memory runs out, rather than the grader; forks inherit it.
+    """Let the kernel end this process, rather than the grader, when memory runs out; forks inherit this.
 
     Among those marked so the kernel takes the largest, which is a worker and not the zygote.
     """
@@ -153,7 +153,7 @@ def die_first() -> None:
 
 
 def die_with_parent() -> None:
-    """Be killed when the process that forked this one ends, whatever ends it."""
+    """Be killed when the process that forked this one ends, for whatever reason."""
     parent = os.getppid()
     _check(_prctl(_PR_SET_PDEATHSIG, 9), "parent death signal")
     if os.getppid() != parent:
@@ -180,7 +180,7 @@ def landlock_abi() -> int:
 
 
 def landlock_ruleset(readable: list[str], writable: list[str]) -> int:
-    """A set of rules under which only these can be read or written, with everything below them.
+    """A set of rules under which only these paths, and everything below them, can be read or written.
 
     TCP, signals to others and abstract sockets are refused too where the kernel can. Rule sets stack: a
     process under several may do what all of them allow. So the long list is built once and shared, and a
@@ -254,7 +254,9 @@ def apply_limits(*, cpu_s: int, memory: int, file_size: int, descriptors: int) -
         (resource.RLIMIT_CORE, 0),
     ):
         resource.setrlimit(kind, (value, value))
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a too large file is an OSError, not a death
+    signal.signal(
+        signal.SIGXFSZ, signal.SIG_IGN
+    )  # a file that is too large raises OSError instead of killing the process
 
 
 # -- seccomp ------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Loops around a student's function that run beside it, so that many calls cost one message.
+"""Loops around a student's function that run in its process, so that many calls cost one message.
 
 A copy of this file lies next to a stranger's code; it imports numpy and nothing of this course.
 """
@@ -18,7 +18,7 @@ _MAX_DEPTH = 32  # of a value that is recorded; the wire refuses a deeper one an
 
 
 class Methods:
-    """An object whose methods are the grader's functions; there is nothing else in it to be found."""
+    """An object whose methods are the grader's functions; it contains nothing else."""
 
     def __init__(self, **methods: Callable[..., Any]) -> None:
         self.__dict__.update(methods)
@@ -30,7 +30,7 @@ class Methods:
 def march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) -> Any:
     """Take ``n`` steps from (q0, v0) and record each; the loop that the checks of a step share.
 
-    Each step gets copies, so that a step which changes its arguments spoils its own result and not the
+    Each step gets copies, so that a step which changes its arguments spoils only its own result, not the
     record.
 
     Returns:
@@ -61,7 +61,7 @@ def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
 def fold(
     function: Any, state: Any, calls: Iterable[list[Any]], carry: int | None, keep: list[str] | None = None
 ) -> list[Any]:
-    """Hand the state through ``function(state, *args)``, once for each list of arguments.
+    """Pass the state through ``function(state, *args)``, once for each list of arguments.
 
     Args:
         carry: which element of a returned sequence is the next state; None if the whole value is.
@@ -81,7 +81,7 @@ def fold(
 
 
 def _part(value: Any, keep: list[str] | None) -> Any:
-    """The kept keys of a dict; anything else whole, so that whoever reads it sees what it is."""
+    """The kept keys of a dict; any other value complete, so that the reader sees what it is."""
     if keep is None or not isinstance(value, dict):
         return value
     return {key: value[key] for key in keep if key in value}

@@ -19,7 +19,7 @@ A list of nothing but floats goes as ``r``, one of dicts with the same keys as `
 
 This file and the three it imports run on both sides and are copied next to a stranger's code, so they import
 the standard library and numpy and nothing of this course. Whatever arrives is a claim by an untrusted sender:
-every length is checked before it is believed, and the one exception that leaves these files is ``WireError``.
+every length is checked before it is used, and the only exception that leaves these files is ``WireError``.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The process that runs a stranger's code: loads one submission and answers calls.
 
-Everything here shares an address space with code that may be hostile, so nothing here is a secret and
-nothing it says is more than a claim. It imports the standard library, numpy and the files copied beside
-it (the wire, the loops and the right-hand sides), and nothing of this course.
+Everything here shares an address space with code that may be hostile, so it contains no secrets, and
+everything it reports is only a claim. It imports the standard library, numpy and the files copied beside it
+(the wire, the loops and the right-hand sides), and nothing of this course.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class CappedText(io.TextIOBase):
 
 
 def _run(code: types.CodeType, main: str) -> types.ModuleType:
-    """A module of its own from a submission's code."""
+    """A new module from a submission's code."""
     module = types.ModuleType(main.removesuffix(".py"))
     module.__file__ = main
     module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None, origin=main)
@@ -129,7 +129,7 @@ class Worker:
         return _Callback(self, value.number)
 
     def look(self, _number: int, frame: types.FrameType | None) -> None:
-        """See where the submission is; at the last look, say which of its frames were there at each one."""
+        """Note where the submission is; at the last look, report the frames that were there every time."""
         seen = []
         while frame is not None:
             if frame.f_code.co_filename == self._main:
@@ -265,7 +265,7 @@ class Worker:
         return argument
 
     def callback(self, number: int, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-        """Ask the grader to evaluate one of its functions; may answer calls of its own meanwhile."""
+        """Ask the grader to evaluate one of its functions; meanwhile, answer calls from the grader."""
         self._sock.sendall(self._codec.encode(_CALLBACK, (number, kwargs or None, *args)))
         kind, value = self._receive()
         if kind == _REPLY:
@@ -285,7 +285,7 @@ class Worker:
 
 
 class _Callback:
-    """A function of the grader's: calling it asks the grader, and shows nothing of how it answers."""
+    """A function of the grader's: calling it asks the grader, and reveals nothing about how it works."""
 
     __slots__ = ("_worker", "number")
 

@@ -1,4 +1,4 @@
-"""Starts workers: a warm interpreter that forks a locked-down process per submission, or (L1) is one.
+"""Starts workers: a warm interpreter that forks a locked-down process per submission, or (L1) is a worker.
 
 It holds trusted code and no secrets. The grader starts it once, inside bubblewrap at L3, with numpy loaded;
 each request brings a socket and an output file and gets back a pidfd, so that the grader itself can end a
@@ -23,7 +23,7 @@ import threading
 import time
 from typing import Any, NamedTuple
 
-# What submissions commonly import: loaded here once, it is in every worker for nothing.
+# What submissions commonly import: loaded here once, it costs nothing in the workers.
 _COMMON = (
     "abc", "bisect", "cmath", "collections", "collections.abc", "copy", "dataclasses", "enum", "functools",
     "heapq", "inspect", "itertools", "json", "math", "numbers", "operator", "random", "re", "statistics",
@@ -107,7 +107,7 @@ def _fork_on_request(config: dict[str, Any]) -> _ForkSetup:
     """Fork for each request until the grader goes away; returns in the forks alone.
 
     A fork inherits every object of this process and could walk its frames. So it returns from here before a
-    stranger's code is loaded, and what is learnt of a worker that ended never becomes an object (``_reap``).
+    student's code is loaded, and information about a worker that ended never becomes an object (``_reap``).
     """
     from course_worker.isolation.inside import lockdown
 
@@ -165,8 +165,8 @@ def _answer(control: socket.socket, own_namespace: int) -> tuple[list[int], str]
 def _reap(control: socket.socket, pid: int) -> None:
     """Collect a worker, and tell how it ended and its user and system time, as ``frames.ENDED`` has it.
 
-    By the C library and out of one buffer that is wiped: what a student's process was like would otherwise
-    stay in this one's memory, for the next students' to find.
+    This uses the C library and one buffer that is wiped. Otherwise information about a student's process
+    would stay in this one's memory, where the next student's code could find it.
     """
     from course_worker.isolation.inside import frames
 

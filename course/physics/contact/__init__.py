@@ -1,4 +1,4 @@
-"""Contact between rigid bodies: where it is, what it does, and the models that engines use.
+"""Contact between rigid bodies: where it occurs, what it does, and the models that engines use.
 
 geometry  how far apart things are, in which direction, and what their surfaces are like
 pairs     which bodies may touch and when they meet, for all pairs at once

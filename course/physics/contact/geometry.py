@@ -1,6 +1,6 @@
 """Contact as geometry: how far apart things are, in which direction, and what their surfaces are like.
 
-Detection knows no forces. What a contact does to the bodies is the business of ``impulses``.
+Detection does not involve forces. ``impulses`` computes what a contact does to the bodies.
 
 Source: Baraff and Witkin, Physically Based Modeling (SIGGRAPH course notes), 1997, part II.
 """
@@ -23,7 +23,7 @@ __all__ = ["Plane", "Surface", "meet", "meet_plane"]
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The surface of a half-space that nothing enters.
+    """The surface of a solid half-space.
 
     Attributes:
         point: any point of the surface, m.
@@ -62,7 +62,7 @@ class Surface:
 
 
 def meet(first: Array, second: Array, reach: float | Array) -> tuple[Array, Array]:
-    """How two spheres lie to each other. Where the centres coincide any direction will do; this takes x.
+    """The normal and the gap of two spheres. Where the centres coincide, the normal is along x.
 
     Args:
         first, second: their centres, m, shape (..., 3).
@@ -80,6 +80,6 @@ def meet(first: Array, second: Array, reach: float | Array) -> tuple[Array, Arra
 
 
 def meet_plane(centre: Array, radius: float | Array, plane: Plane) -> tuple[Array, Array]:
-    """The same of a sphere and a plane: the normal points from the sphere into the solid."""
+    """The same for a sphere and a plane: the normal points from the sphere into the solid."""
     outward = np.array(plane.normal)
     return np.broadcast_to(-outward, centre.shape), (centre - np.array(plane.point)) @ outward - radius

@@ -1,19 +1,19 @@
 """The impulses of all contacts at once: a complementarity problem, solved one contact after the other.
 
-A contact can push and not pull, and a pair may separate and not close. With ``push`` the impulse along the
+A contact can push but not pull, and a pair may separate but not approach. With ``push`` the impulse along the
 normal and ``speed`` the normal velocity afterwards,
 
     push >= 0,    speed >= target,    push (speed - target) = 0
 
-where ``target`` is what restitution asks of a pair that collides, and 0 for one that rests: an impact and a
-support are the same constraint. Friction stops sliding if an impulse of at most ``friction * push`` can, and
-otherwise opposes it with just that (Coulomb's cone, a round one). Contacts that share a body depend on one
-another, so all of them have to be solved together.
+where ``target`` follows from the restitution for a pair that collides, and is 0 for one that rests: an impact
+and a support are the same constraint. Friction stops sliding if an impulse of at most ``friction * push`` is
+enough, and otherwise opposes it with exactly that impulse (Coulomb's round cone). Contacts that share a body
+depend on one another, so all of them have to be solved together.
 
-Projected Gauss-Seidel does it in turn: what a contact lacks is added to its impulse, the sum is projected
-back to where it is allowed (not below 0, not out of the cone), and its two bodies get the difference at once.
-Sweep over all contacts until a sweep changes nothing. Starting from the impulses of the last step (*warm
-starting*) saves nearly all sweeps where things lie still.
+Projected Gauss-Seidel solves them in turn: a contact's missing impulse is added to its impulse, the sum is
+projected back into the allowed range (not below 0, not outside the cone), and its two bodies get the
+difference at once. The sweeps over all contacts go on until a sweep changes nothing. Starting from the
+impulses of the last step (*warm starting*) saves almost all sweeps where bodies are at rest.
 
 Source: Stewart and Trinkle, Int. J. Numerical Methods in Engineering 39, 1996, and Anitescu and Potra,
 Nonlinear Dynamics 14, 1997 (contact as complementarity of velocities); Catto, Iterative Dynamics with
@@ -37,19 +37,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Impulses", "Motion", "normal_speed", "solve"]
 
-_DONE = 1e-6  # a sweep that changes no velocity by more than this share of what was asked for is the last
-_SWEEPS = 500  # then a step goes on with what there is, as every engine does; the next one begins there
+_DONE = 1e-6  # the last sweep changes no velocity by more than this fraction of the target
+_SWEEPS = 500  # then the step uses what it has, as every engine does; the next one starts from it
 
 
 @dataclass(slots=True)
 class Motion:
-    """How bodies move at one instant; ``solve`` changes it. Spheres, and whatever cannot be moved.
+    """How bodies move at one instant; ``solve`` changes it. The bodies are spheres or immovable.
 
     Attributes:
         velocity: m/s, shape (B, ..., 3).
         rim: radius times angular velocity, in the world's axes, m/s, shape (B, ..., 3).
-        give: 1/mass, 1/kg, shape (B,); 0 for what nothing moves.
-        spin_give: radius²/inertia, 1/kg, shape (B,); 0 for what nothing turns.
+        give: 1/mass, 1/kg, shape (B,); 0 for a body that cannot be moved.
+        spin_give: radius²/inertia, 1/kg, shape (B,); 0 for a body that cannot be turned.
     """
 
     velocity: Array
@@ -67,7 +67,7 @@ class Impulses:
 
 
 def normal_speed(pairs: Sequence[tuple[int, int]], normal: Array, velocity: Array) -> Array:
-    """How fast the bodies of each pair separate, m/s, shape (P, ...); negative while they close."""
+    """How fast the bodies of each pair separate, m/s, shape (P, ...); negative while they approach."""
     first, second = np.array(pairs, dtype=int).reshape(-1, 2).T
     return np.asarray(np.sum((velocity[second] - velocity[first]) * normal, axis=-1))
 
@@ -88,7 +88,7 @@ def solve(
         normal: unit vectors from the first body to the second, shape (P, ..., 3).
         impulses: where to start; 0 for a pair that is not active.
         active: which pairs touch, shape (P, ...).
-        target: the least normal velocity afterwards, m/s, shape (P, ...) or a number.
+        target: the smallest allowed normal velocity afterwards, m/s, shape (P, ...) or a number.
         friction: Coulomb's coefficient, shape (...).
 
     Returns:
@@ -127,7 +127,7 @@ def solve(
 
 @dataclass(slots=True)
 class _Contact:
-    """Two bodies that touch, and what their contact needs again and again."""
+    """Two bodies that touch, and the quantities that their contact uses repeatedly."""
 
     i: int
     j: int

@@ -1,12 +1,12 @@
 """A ball on a floor in one dimension, under the contact models that engines use.
 
-    penalty       a spring and a damper push back whatever has entered
+    penalty       a spring and a damper push back a body that has entered
     constraint    the velocity may not fall below a target; correction by ERP, softness by CFM, split impulse
-    soft convex   MuJoCo's: the acceleration is drawn towards that of a spring, by a share called impedance
+    soft convex   MuJoCo's: the acceleration is a mean with that of a spring; its weight is called impedance
 
-Each model is a step ``(gap, velocity) -> (gap, velocity)``. All of them find the new velocity first and move
-with it, see contact only once the ball has touched the floor, and cannot pull. One ball and one contact is
-all there is to solve, so what differs is the model and not the solver.
+Each model is a step ``(gap, velocity) -> (gap, velocity)``. All of them compute the new velocity first and
+move with it, act only once the ball has touched the floor, and cannot pull. With only one ball and one
+contact to solve, the models differ but not the solver.
 
 Source: Catto, Soft Constraints (Game Developers Conference), 2011, and Open Dynamics Engine, Manual (ERP,
 CFM); MuJoCo documentation, Computation (solref, solimp); Horak and Trinkle, IEEE RA-L 4, 2019 (comparison).
@@ -56,12 +56,12 @@ class Penalty:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """The velocity after the step may not be below a target: complementarity, with the engines' additions.
+    """The velocity after the step may not be below a target: complementarity, with the additions of engines.
 
     Attributes:
         restitution: of impacts faster than ``threshold`` (m/s); slower ones do not bounce.
-        erp: error reduction, the share of the overlap that a step is to remove; its velocity is added to the
-            target (Baumgarte).
+        erp: error reduction, the fraction of the overlap that a step should remove; the velocity for it is
+            added to the target (Baumgarte).
         split: remove it by moving the ball, and keep the velocity out of it (split impulse).
         cfm: constraint force mixing, s/kg: how much the contact yields to its own force.
         mass: kg.
@@ -106,7 +106,7 @@ class SoftConvex:
     width: float = 0.001
 
     def impedance(self, depth: float) -> float:
-        """The share of the spring in the acceleration, at a depth in m."""
+        """The weight of the spring in the acceleration, at a depth in m."""
         x = min(depth / self.width, 1.0)
         rise = 2 * x**2 if x <= 0.5 else 1 - 2 * (1 - x) ** 2
         return self.least + rise * (self.most - self.least)
@@ -124,7 +124,7 @@ class SoftConvex:
         return gap + h * v, v
 
     def resting_depth(self, g: float) -> float:
-        """How deep the ball sinks in, m: where the free part and the spring's balance."""
+        """How deep the ball sinks in, m: where gravity and the spring balance."""
         low, high = 0.0, g * (self.most * self.timeconst * self.dampratio) ** 2 / self.least**2
         for _ in range(60):  # each halves the bracket; 53 of them exhaust a float
             middle = 0.5 * (low + high)
@@ -158,7 +158,7 @@ def drop(model: ContactModel, gap: float, v: float, h: float, n: int, g: float =
 
 
 def slide_across(angle: float, speed: float, mu: float, h: float, *, pyramid: bool, g: float = 9.81) -> Array:
-    """Where a block is that slides over a level floor, until it stands; shape (n, 2), m.
+    """The positions of a block that slides over a level floor until it stops; shape (n, 2), m.
 
     Args:
         angle: of its velocity, rad, from the x axis; speed: m/s.

@@ -31,7 +31,7 @@ _ROUNDS = 10  # in which bodies that overlap are moved apart
 
 
 class Snapshot(NamedTuple):
-    """Where all bodies are at one instant, and how the pairs lie.
+    """The positions of all bodies at one instant, and the normal and gap of each pair.
 
     Attributes:
         position, velocity: shape (B, ..., 3).
@@ -88,12 +88,12 @@ class Pairs:
         return Snapshot(x, v, normal, gap)
 
     def meetings(self, start: Snapshot, end: Snapshot, span: Array, near: float, resting: Flags) -> Array:
-        """When pairs that do not rest meet on the way from ``start`` to ``end``, as a share of ``span``.
+        """When pairs that do not rest meet on the way from ``start`` to ``end``, as a fraction of ``span``.
 
         Args:
             span: s, shape (...).
             near: a gap below this counts as touching, m.
-            resting: which pairs not to ask about, shape (P, ...).
+            resting: pairs to leave out, shape (P, ...).
 
         Returns:
             Shape (P, ...); inf for a pair that does not meet.
@@ -133,7 +133,7 @@ class Pairs:
         return np.where(closing, np.maximum(room, 0.0) / safe, np.inf)
 
     def push_apart(self, near: float) -> None:
-        """Move bodies that overlap apart; velocities stay, so no energy of motion comes of it."""
+        """Move overlapping bodies apart; velocities stay, so no kinetic energy is added."""
         for _ in range(_ROUNDS):
             deep = self.now().gap < -near
             if not np.any(deep):
@@ -141,7 +141,7 @@ class Pairs:
             self.put_together(deep)
 
     def put_together(self, which: Flags) -> None:
-        """Move the pairs marked, shape (P, ...), along their normals until their surfaces just touch.
+        """Move the marked pairs, shape (P, ...), along their normals until their surfaces just touch.
 
         The lighter body moves further, so that the centre of mass stays.
         """

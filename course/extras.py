@@ -1,8 +1,8 @@
 """Optional parts of the course: what each is for, what it needs, and the one sentence where that is missing.
 
-The core imports none of these parts: whoever asks for one gets it by its name here, after a look whether what
-it needs is installed. A command that installs something lists the requirements themselves, read from the
-course's own metadata: nobody owns the course's name on an index.
+The core imports none of these parts: a caller gets one by its name here, after a look whether what it needs
+is installed. A command that installs something lists the requirements themselves, read from the course's own
+metadata: nobody owns the course's name on an index.
 """
 
 from __future__ import annotations

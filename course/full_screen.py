@@ -77,7 +77,7 @@ class FullScreenApp(App[None]):
                 loop.add_signal_handler(getattr(signal, name), self.action_quit_now)
 
     def _handle_exception(self, error: Exception) -> None:
-        # Whoever called ``play`` reports errors; a picture of the stack would be a second report.
+        # The caller of ``play`` reports errors; a picture of the stack would be a second report.
         if self.failure is None:
             self.failure = error
         if self.is_headless:

@@ -1,7 +1,7 @@
 """Text of strangers as people may see it: it steers no terminal, hides nothing and turns nothing around.
 
-Exception messages, names of folders, values and lines of code all come from whoever handed something in. What
-is shown on one line goes through ``one_line``, so that nobody can add lines of their own to a report.
+Exception messages, names of folders, values and lines of code all come from submissions. Text that is shown
+on one line goes through ``one_line``, so that a submission cannot add lines to a report.
 """
 
 from __future__ import annotations

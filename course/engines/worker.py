@@ -107,7 +107,7 @@ def main(arguments: list[str]) -> int:
     for line in sys.stdin:
         job = json.loads(line)
         if hasattr(signal, "alarm"):
-            # Nobody may be left to end this process: the parent can be gone by the time an engine hangs.
+            # Nothing may be left to end this process: the parent can be gone by the time an engine hangs.
             signal.alarm(int(job["seconds"]) + 5)
         say(desk.answer(job))
     return 0

@@ -38,7 +38,7 @@ TESTS = {
 }
 #: Errors below this are drawn at it, per cent.
 FLOOR = 1e-3
-#: An error of this many per cent is one that anybody sees.
+#: An error of this many per cent is clearly visible.
 LARGE = 10.0
 
 

@@ -1,8 +1,8 @@
-"""A class graded: from a folder of submissions to a gradebook, and from there to everybody who reads it.
+"""A class graded: from a folder of submissions to a gradebook, and from there to exports and reports.
 
 intake      whose submission for which exercise, or why there is none
 running     a run over a class, a second one, and the grader processes of both
-gradebook   the one truth of a run
+gradebook   the record of a run
 results     what counts: rosters, times, lateness, overrides
 exports     files for other programs, and pages for people
 similar     submissions that are alike

@@ -39,7 +39,7 @@ MAX_NOTES = 20
 
 
 class _Record(msgspec.Struct, frozen=True):
-    """What is kept of a notebook beside its module."""
+    """What is stored of a notebook beside its module."""
 
     notes: tuple[str, ...]
     starts: tuple[tuple[int, int], ...]
@@ -47,7 +47,7 @@ class _Record(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class NotebookSource(Places):
-    """A notebook as the module it stands for.
+    """A notebook as a module.
 
     Attributes:
         source: the module's text, UTF-8.
@@ -102,7 +102,7 @@ _IN_TRACE = re.compile(r"^\S+:(\d+) in ", re.MULTILINE)
 
 
 def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
-    """What was handed in, ready to be graded; beside a notebook's ``RECORD``, lines are told as its cells."""
+    """The submission, ready for grading; with a notebook's ``RECORD``, messages name its cells."""
     record = files.get(RECORD)
     if record is None:
         return Submission(files)
@@ -110,7 +110,7 @@ def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
 
 
 def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook") -> NotebookSource:
-    """The module that a notebook stands for.
+    """The module of a notebook.
 
     Args:
         data: the file.

@@ -1,4 +1,4 @@
-"""The public checks on whatever somebody wrote, wherever they wrote it, recorded like `course check`."""
+"""The public checks on a student's code, wherever it was written, recorded like `course check`."""
 
 from __future__ import annotations
 

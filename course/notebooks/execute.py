@@ -48,7 +48,7 @@ def executed(data: bytes, name: str) -> bytes:
             resources={"metadata": {"path": folder}},
         )
         try:
-            # A kernel's own log has nothing for whoever asked for notebooks.
+            # A kernel's own log is of no use to the user here.
             client.execute(env=environment() | {STILL: "1"}, stderr=subprocess.DEVNULL)
         except CellExecutionError as error:
             raise InternalError(

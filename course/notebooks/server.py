@@ -101,7 +101,7 @@ def _address(process: subprocess.Popen[bytes], token: str, page: str, log: IO[by
 
 
 def _answers(url: str) -> bool:
-    """Whether somebody listens there: the file is written a moment before."""
+    """Whether a server listens there: the file is written a moment before."""
     parts = urlsplit(url)
     try:
         socket.create_connection((parts.hostname, parts.port or 80), timeout=_LOOK).close()

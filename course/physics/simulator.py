@@ -205,7 +205,7 @@ class Simulator:
     # -- motion ----------------------------------------------------------------------------------------
 
     def _accelerations(self, t: Any, q: Array, v: Array) -> Array:
-        """Accelerations by gravity, laws and contacts at these positions and velocities; shape (B, ..., 3)."""
+        """Accelerations by gravity, laws and contacts at these positions and velocities; (B, ..., 3)."""
         a: Array = self._falling + self._held
         if self.laws:
             for body, position, velocity in zip(self.bodies, q, v, strict=True):

@@ -256,8 +256,8 @@ def fingerprint(source: bytes) -> str:
     """What makes a file a different attempt: its statements, without comments and layout.
 
     The same code in a notebook is the same attempt. There a module's docstring is a text cell, a ``pass``
-    stands where a magic was, and cells run in the order somebody ran them; so neither of these counts. A file
-    that does not parse is known by its bytes, line endings aside.
+    replaces each magic, and cells run in the order in which the student ran them; so neither of these counts.
+    A file that does not parse is known by its bytes, line endings aside.
     """
     try:
         with warnings.catch_warnings():
@@ -272,7 +272,7 @@ def fingerprint(source: bytes) -> str:
 
 
 def _number(value: object) -> float:
-    """What was recorded, or 0 if somebody put something else in its place: no command may fail over that."""
+    """The recorded number, or 0 if an edited file has something else there: no command may fail over that."""
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
 
 

@@ -99,7 +99,7 @@ class QuizHistory:
     def counting(self) -> tuple[Attempt, ...]:
         """Finished attempts that count: the first one of each seed.
 
-        Whoever answers the same questions again has read their explanations.
+        A student who answers the same questions again has read their explanations.
         """
         first: dict[int, Attempt] = {}
         for attempt in self.finished:

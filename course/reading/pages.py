@@ -1,7 +1,7 @@
 """Screens of a given height out of rows of any width, and a place in the text that outlives both.
 
-A row is one line of the screen. Whoever lays a lesson out says of each row which block it belongs to, whether
-it is blank, and whether a screen may begin with it. Everything here is arithmetic on that.
+A row is one line of the screen. The layout says for each row which block it belongs to, whether it is blank,
+and whether a screen may begin with it. Everything here is arithmetic on that.
 """
 
 from __future__ import annotations

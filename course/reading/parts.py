@@ -5,7 +5,7 @@ sight without its output, since most questions are about the code below them, an
 no computed number. Answered or skipped, the prediction opens all of it.
 
 Predictions and cells are known by a digest of their own words, so that an edit elsewhere in a lesson, which
-moves and renumbers them, takes nobody's answers away.
+moves and renumbers them, loses no student's answers.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files that commands write where they are told to. What was there before is kept, and said."""
+"""Files that commands write to a given place. A copy of what was there before is kept and reported."""
 
 from __future__ import annotations
 

@@ -247,7 +247,7 @@ def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
 
 
 def _everybody(results: Results) -> set[str]:
-    """Every name a student of this gradebook goes by."""
+    """All names of the students in this gradebook."""
     names = set(results.students())
     people = (results.person(name) for name in results.students())
     return names | {person.student for person in people if person is not None}

@@ -157,7 +157,7 @@ def _graders(
 
 
 def _show_people(console: Console, summary: Summary) -> None:
-    """Who is missing, and what is nobody's."""
+    """Missing students, and submissions without a student."""
     for listed, words in (
         (summary.missing, "enrolled and handed in nothing"),
         (summary.strangers, "not in the roster, or not told apart by it"),

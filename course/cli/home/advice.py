@@ -35,7 +35,7 @@ def hint_is_due(here: Here, exercise: Exercise) -> bool:
 
 
 def after_warm_up(here: Here, warm_up: Exercise) -> str:
-    """Once a warm-up is done: what it has to show, or what comes next."""
+    """After a finished warm-up: its report, or what comes next."""
     if (Path(warm_up.folder) / "report.py").is_file():
         return f"course report {warm_up.id}"
     return _rest_of_lesson(here, warm_up)
@@ -53,7 +53,7 @@ def after_report(here: Here, exercise: Exercise) -> str:
 
 
 def _rest_of_lesson(here: Here, warm_up: Exercise) -> str:
-    """Its lesson, if that is half read; else the next warm-up of it, the lesson, or what comes next."""
+    """Its lesson if partly read; otherwise the lesson's next warm-up, the lesson, or what comes next."""
     try:
         begun = here.workspace.store.events("bookmark", warm_up.lesson)
         done = {e.subject for e in here.workspace.store.events("check") if e.data.get("all_pass")}
@@ -106,7 +106,7 @@ def _warm_up_step(here: Here, lesson: str, started: set[str]) -> str:
 
 
 def _quiz_passed(here: Here) -> bool:
-    """Whether the quiz is behind the student, or the course has none."""
+    """Whether the student has passed the quiz, or the course has none."""
     if not any(here.catalog.content.quiz.glob("*.toml")):
         return True
 
@@ -125,7 +125,7 @@ def _exercise_step(here: Here, name: str, started: set[str]) -> str:
 
 
 def _before_writing(here: Here, exercise: Exercise) -> str:
-    """Nothing is written yet: the lesson, if it was not read, or the file."""
+    """The step before anything is written: the lesson if it was not read, or the file."""
     if exercise.is_warm_up:  # done while its lesson is read
         return f"course watch {exercise.id}"
     try:

@@ -81,7 +81,7 @@ def _why(here: Here, step: str) -> str:
 
 
 def _as_run(console: Console, step: str) -> list[str]:
-    """The words of a step, in the form that suits somebody who is there and goes on."""
+    """The words of a step, in the form for a user at a terminal who continues."""
     words = shlex.split(step)[1:]
     if not console.interactive:
         return words

@@ -1,4 +1,4 @@
-"""What ``course progress`` says about learning: predictions, mistakes made and mended, what to read again."""
+"""What ``course progress`` says about learning: predictions, mistakes, what to read again."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ _DAYS = 7
 
 
 class Learning:
-    """What the record tells about learning.
+    """What the record shows about learning.
 
     Attributes:
-        predictions: None if nothing was ever predicted.
+        predictions: None if the student made no predictions.
         mistakes: in the order they were first made.
-        revisit: sections worth reading again, what the most mistakes point at first.
+        revisit: sections worth reading again; those with the most mistakes come first.
     """
 
     def __init__(self, catalog: Catalog, events: Sequence[Event]) -> None:
@@ -189,7 +189,7 @@ def _show_some(console: Console, what: str, done: str, mistakes: Sequence[Mistak
 
 
 def _in_words(counts: PredictionsOf) -> str:
-    """ "3 right, 1 nearly, 1 wrong, 1 skipped": what is none is left out."""
+    """ "3 right, 1 nearly, 1 wrong, 1 skipped"; zero counts are left out."""
     named = (
         (counts.right, "right"),
         (counts.nearly, "nearly right"),

@@ -249,7 +249,7 @@ def _inside(console: Console, here: Here) -> int:
         objectives = objective_states(here, states, warm_ups)
         step = next_in_course(here)
     except CourseError as error:
-        # The dashboard is where someone in trouble looks first; it must not be one more error.
+        # A student in trouble looks at the dashboard first, so it must not fail as well.
         here.warnings.append(f"{error.message} {error.help}")
         states, read, quiz, warm_ups, objectives, step = (), 0, None, (), (), "course doctor"
     total = len(catalog.lesson_ids())

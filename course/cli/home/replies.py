@@ -1,4 +1,4 @@
-"""What `course`, `course progress` and what is next answer."""
+"""Replies of `course`, `course progress` and `course next`."""
 
 from __future__ import annotations
 

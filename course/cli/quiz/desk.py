@@ -38,7 +38,7 @@ class Desk:
         return cls(here, Bank.of(here.catalog), quiz_history(here.workspace.store.events()))
 
     def new_seed(self) -> int:
-        """A seed that asks nothing the way it was last asked."""
+        """A seed that asks no question in the same way as last time."""
         return fresh_seed(self.bank, self.history.last_seeds())
 
     def reviews(self) -> tuple[Due, ...]:
@@ -66,7 +66,7 @@ def open_or_new(console: Console, desk: Desk, seed: int | None) -> tuple[Attempt
 def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
     """Which questions to print: they are the same until they are answered.
 
-    An attempt in which something was answered goes on waiting, whatever is printed.
+    An attempt with at least one answer stays open, whatever is printed.
     """
     open_one = desk.history.open
     if seed is not None and open_one is not None and open_one.answers:
@@ -85,6 +85,6 @@ def answer(desk: Desk, attempt: Attempt, question: str, option: str) -> None:
 
 
 def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:
-    """Whether a file completes an open attempt rather than contradicts it."""
+    """Whether a file completes an open attempt and does not contradict it."""
     same = attempt.seed == seed and fits(bank, attempt)
     return same and all(answers[name] == option for name, option in attempt.answers.items())

@@ -50,7 +50,7 @@ class QuizQuestion(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class QuizPlace(msgspec.Struct, frozen=True):
-    """One option of a question that is asked."""
+    """One option of a question."""
 
     letter: str
     id: str

@@ -1,4 +1,4 @@
-"""How the quiz looks: questions, explanations, dates, and the same as parts of an answer."""
+"""How the quiz looks: questions, explanations and dates, on the screen and as parts of a reply."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ __all__ = [
 
 _PROMPT = "Your answer: "
 _KEYS = f"Type {LETTERS[0]} to {LETTERS[-1]} or 1 to {len(LETTERS)}, then Enter; q stops."
-#: So wide is the longest label beside an option: "Your answer".
+#: Width of the longest label beside an option: "Your answer".
 _LABEL = 11
 
 
@@ -90,7 +90,7 @@ def _show_prompt(console: Console, posed: PosedQuestion, indent: int = 0) -> Non
 
 
 def show_result(console: Console, result: Result) -> None:
-    """The score, then each question: every option of what was missed, the right one of the rest."""
+    """The score, then each question: all options of a missed question, only the right one of the others."""
     verdict = ("passed", "green") if result.passed else ("not passed", "red")
     with console.paged():
         console.blank()
@@ -235,7 +235,7 @@ def due_reply(due: Sequence[Due]) -> tuple[QuizDue, ...]:
 
 
 def attempt_replies(history: QuizHistory) -> tuple[QuizAttempt, ...]:
-    """Attempts as a script reads them; one that was left without an answer is not worth a line."""
+    """Attempts as a script reads them; attempts without an answer are left out."""
     shown = [a for a in history.attempts if a.finished or a.answers or a is history.open]
     return tuple(
         QuizAttempt(

@@ -1,7 +1,7 @@
-"""A lesson for eyes: wrapped prose, highlighted code, drawings, pictures where the terminal can show them.
+"""A lesson for sighted readers: wrapped prose, highlighted code, drawings, pictures where possible.
 
-Colour and weight repeat what a word or a mark already says. Prose is at most 78 columns wide; code, output
-and drawings are as they are and, in lessons that pass the audit, fit in 60.
+Colour and weight only repeat what a word or a mark already says. Prose is at most 78 columns wide; code,
+output and drawings are as they are and, in lessons that pass the audit, fit in 60.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A lesson on a terminal: for eyes, or line by line for a screen reader.
+"""A lesson on a terminal: laid out for the screen, or line by line for a screen reader.
 
 A page ends where a section ends, and after each prediction, since the figure that answers it must not be in
 sight; and after each answer, which is compared with what was predicted.
@@ -31,7 +31,7 @@ class Page:
     """One screenful of reading: a section, or a section up to a prediction.
 
     Attributes:
-        section: the heading it stands under; empty before the first.
+        section: the heading it is under; empty before the first.
         blocks: what it shows, the heading included where the section starts here.
         first: the lesson's title, summary and objectives come before it.
     """
@@ -106,7 +106,7 @@ class Reader:
         self._printer.blocks(page.blocks)
 
     def show_section(self, section: Section) -> bool:
-        """Print one section of the lesson; False, for that is not the whole of it."""
+        """Print one section of the lesson; returns False, because that is not the whole lesson."""
         blocks = [block for page in self.pages for block in page.blocks]
         self._printer.blocks(tuple(blocks[section.start : section.end]))
         return False

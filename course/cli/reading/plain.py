@@ -1,8 +1,8 @@
-"""A lesson for a screen reader or a log: one fact a line, no boxes, nothing said by position or colour.
+"""A lesson for a screen reader or a log: one fact per line, no boxes, no meaning in position or colour.
 
 Formulae are words, a diagram is its description, a table row is one "column: value" line per cell, and a
-paragraph has one sentence a line. Lines are never broken to a width, which a screen reader knows better; only
-on a terminal without layout (TERM=dumb) do words wrap.
+paragraph has one sentence a line. Lines are never wrapped, because a screen reader does that better; only on
+a terminal without layout (TERM=dumb) do words wrap.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the commands about lessons answer."""
+"""Replies of the commands about lessons."""
 
 from __future__ import annotations
 

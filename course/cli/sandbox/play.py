@@ -115,7 +115,7 @@ def _check(options: PlayOptions) -> None:
 
 
 def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | None:
-    """The student's number: given, or asked for where somebody is there to answer."""
+    """The student's number: given, or asked for if a user is there to answer."""
     asked = chosen.scene.prediction
     if asked is None or options.guess is not None:
         return options.guess

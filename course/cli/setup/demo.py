@@ -189,7 +189,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 
     wide = console.width >= _WIDE
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
-    if console.interactive:  # else nobody watches: a file, or the picture of a page
+    if console.interactive:  # otherwise the output is a file, or the picture of a page
         rows = max(_PANEL_ROWS // 2, min(rows, console.height - _WORDS))
     with console.working("Drawing"):
         drawn = terminal_plot(_plot(before, after, wide=wide), columns, rows)

@@ -189,7 +189,7 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
 
 
 def _is_edited(here: Here, work: StudentWork) -> bool:
-    """Whether somebody wrote in a file since it was handed out."""
+    """Whether a file was edited since it was handed out."""
     if work.notebook is None:
         return here.workspace.is_edited(work.exercise.place, work.name, work.data)
 
@@ -246,7 +246,7 @@ def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | N
 
 
 def _without_outputs(data: bytes) -> bytes:
-    """A notebook as it was before it was run: outputs are large, and nobody grades them."""
+    """A notebook without outputs, which are large and are not graded."""
     notebook = json.loads(data.decode("utf-8-sig"))
     sheets = [notebook, *notebook.get("worksheets", [])]
     for cell in (cell for sheet in sheets for cell in sheet.get("cells", [])):

@@ -107,7 +107,7 @@ def watch(
 
 @contextlib.contextmanager
 def _keys(console: Console, wake: threading.Event) -> Iterator[Keys | None]:
-    """Keys, where somebody is there to press them."""
+    """Keys, if a user is there to press them."""
     if not (console.fancy and console.interactive) or console.quiet:
         yield None
         return
@@ -136,7 +136,7 @@ def saves(path: Path, wake: threading.Event | None = None) -> Iterator[None]:
     """Yield at once, and then whenever ``path`` was saved, went or came back, until Ctrl-C.
 
     Args:
-        wake: set by whoever wants a look sooner.
+        wake: set by a caller who wants an earlier look.
     """
     wake, seen = wake or threading.Event(), _signature(path)
     yield

@@ -64,7 +64,7 @@ class Plot:
 
     Attributes:
         title: what it shows, as a sentence.
-        description: what is seen, in words, for whoever cannot see it.
+        description: what the figure shows, in words, for a reader who cannot see it.
         columns: how many panels stand in a row.
     """
 

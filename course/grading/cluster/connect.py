@@ -4,8 +4,8 @@
         grade_class(folder, out, catalog, options, report, grade=grade)
 
 Nothing is started before there is something to grade. A local cluster speaks TLS with a key of its own that
-is never on disk: whoever can speak to a scheduler can have its workers run anything, and on a machine with
-several users everyone can reach a port on it.
+is never on disk. Any program that can talk to a scheduler can make its workers run anything, and on a machine
+with several users every user can reach a port.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Cluster:
         """Verdicts on all entries that have a submission or a problem.
 
         Raises:
-            UsageError: unprotected submissions may not run beside a scheduler that they could command.
+            UsageError: unprotected submissions may not run on a cluster whose scheduler they could command.
             CourseError: there is no scheduler, or its workers cannot grade.
         """
         if self._remote and terms.at_least == "L1":

@@ -1,8 +1,8 @@
 """Deals out batches of submissions to workers somewhere else, and takes the verdicts back.
 
-A batch that is lost with its worker is given to others one submission at a time, so that one which ends
-whatever grades it is soon alone. A worker grades other things beside, and may die for reasons of its own:
-before a submission is blamed, it is graded while nothing else is, and the rest of the class comes first.
+A batch that is lost with its worker is given to others one submission at a time, so that a submission which
+ends its grader is soon alone. A worker also grades other submissions, and may die for other reasons: before a
+submission is blamed, it is graded while nothing else is, after the rest of the class.
 """
 
 from __future__ import annotations
@@ -45,21 +45,21 @@ _PATIENCE_S = 600.0
 
 @dataclass(frozen=True)
 class LostBatch:
-    """A batch did not come back: its worker died.
+    """A batch that did not come back, because its worker died.
 
     Attributes:
-        deaths: how many workers died with the batch in hand, one after the other.
+        deaths: how many workers in a row died with this batch.
     """
 
     deaths: int = 1
 
 
-#: What became of a batch: the answers, its loss, or why none can be given at all.
+#: The outcome of a batch: the answers, its loss, or the reason why there can be no answers.
 Outcome: TypeAlias = "bytes | LostBatch | CourseError"
 
 
 class Workers(Protocol):
-    """Whatever grades batches."""
+    """The interface of everything that grades batches."""
 
     def places(self) -> int:
         """How many batches can be graded at once; 0 if there is no worker."""
@@ -81,8 +81,8 @@ def grade_on(
 
     Args:
         workers: who grades.
-        version: the version of an exercise's graders here, which those that judge must have too.
-        graders: the snapshot that ``terms`` names, packed: a worker that lacks it is sent it.
+        version: the version of an exercise's graders here, which the workers' graders must have too.
+        graders: the snapshot that ``terms`` names, packed; it is sent to a worker that lacks it.
         patience_s: wall seconds to wait for a worker when there is none.
 
     Raises:
@@ -156,7 +156,7 @@ class _Coordinator:
             self._workers.send(encode(message), lambda outcome, n=number: self._arrived.put((n, outcome)))  # type: ignore[misc]
 
     def _next(self) -> list[_Work]:
-        """What to send next: nothing if it has to wait."""
+        """What to send next; nothing if sending must wait."""
         if self._again:
             return [self._again.popleft()]
         self._read_ahead()

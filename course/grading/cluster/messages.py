@@ -1,8 +1,8 @@
 """What crosses the wire between a coordinator and the workers of a cluster.
 
-A task is a function that both sides have, by name, with one argument of bytes; its result is bytes. What
-Dask pickles is therefore never more than a name and a string of bytes: no object of ours, let alone anything
-that came out of a submission, is ever un-pickled. What is in the bytes is checked against these types.
+A task is a function that both sides have, by name, with one argument of bytes; its result is bytes. So Dask
+pickles only a name and a string of bytes: no object of this course, and nothing that came from a submission,
+is ever un-pickled. What is in the bytes is checked against these types.
 """
 
 from __future__ import annotations

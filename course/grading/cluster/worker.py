@@ -1,4 +1,4 @@
-"""What a Dask worker does: hands each batch to a grader process that it keeps warm.
+"""What a Dask worker does: it passes each batch to a grader process that it keeps warm.
 
 The grader is the same program that ``course grade run`` starts on one machine, with its checks, its sandbox
 and its protection level. The Dask worker only carries bytes to it: no student's code, no check and no
@@ -39,12 +39,12 @@ if TYPE_CHECKING:
 
 __all__ = ["IDLE_S", "dask_setup", "grade_batch", "version_mismatch"]
 
-#: Seconds after which a grader without work ends: a worker of somebody's cluster outlives the run.
+#: Seconds after which a grader without work ends, because the workers of an external cluster outlive the run.
 IDLE_S = 60.0
 
 _idle: list[_WarmGrader] = []
 _lock = threading.Lock()
-#: Of runs that may be going on at once; some 3 MB each.
+#: Of runs that may go on at the same time; about 3 MB each.
 _MOST_SNAPSHOTS = 4
 _snapshots: deque[contextlib.ExitStack] = deque()
 
@@ -98,7 +98,7 @@ atexit.register(_forget)
 
 
 def version_mismatch(what: str) -> Answer:
-    """The answer of a worker that has other graders than the run was begun with."""
+    """The answer of a worker whose graders differ from those of the run."""
     problem = Problem(
         "version_mismatch",
         f"{what}.",
@@ -138,7 +138,7 @@ class _WarmGrader:
         self._retirement: threading.Timer | None = None
 
     def answer(self, job: Job) -> Answer:
-        """The grader's answer; one with nothing in it if this submission ended every grader it was given to.
+        """The grader's answer; an empty one if this submission ended every grader it was given to.
 
         Raises:
             InternalError: no grader can be started here.
@@ -198,7 +198,7 @@ class _WarmGrader:
             self._seat = None
 
     def retire_later(self) -> None:
-        """End the process when nothing has come for it for a while."""
+        """End the process when it has had no work for a while."""
         self._retirement = threading.Timer(IDLE_S, self._retire)
         self._retirement.daemon = True
         self._retirement.start()

@@ -1,7 +1,7 @@
-"""A zip for Gradescope's "Configure Autograder": our graders, run in their container on every submission.
+"""A zip for Gradescope's "Configure Autograder": the course's graders, run there on every submission.
 
-It holds hidden graders and model solutions, so it is the instructor's alone. The same inputs give the same
-bytes.
+It contains hidden graders and model solutions, so it is only for the instructor. The same inputs give the
+same bytes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Text for cells, XML and file contents: what a student or a name brings in is shown and never obeyed."""
+"""Text for cells, XML and file contents: text from a student or a name is shown, and never interpreted."""
 
 from __future__ import annotations
 

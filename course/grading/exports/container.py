@@ -1,8 +1,8 @@
-"""Inside Gradescope's container: grade what was handed in, write ``results.json``.
+"""Inside Gradescope's container: grade the submission and write ``results.json``.
 
 Run as ``python -m course.grading.exports.container SUBMISSION RESULTS CONFIG``. It works at the best
-protection level the container allows and says which in the output that the instructor sees. Whatever happens,
-a results file is written: a fault of ours says so and gives no score, so that nobody is marked down for it.
+protection level the container allows and says which in the output that the instructor sees. A results file is
+always written: if the grader fails, it says so and gives no score, so that no student loses points for it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Gradescope's ``results.json``: what an autograder there answers with, one file per submission.
 
-Everything in it may be shown to the student, so it is made of what students may read. A hidden check is
-shown after the due date only: students may hand in as often as they like, and would else try until it passes.
+Everything in it may be shown to the student, so it contains only what students may read. A hidden check is
+shown only after the due date, because students may hand in as often as they like, and could otherwise try
+until it passes.
 """
 
 from __future__ import annotations

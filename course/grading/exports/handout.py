@@ -1,4 +1,4 @@
-"""A verdict as its student may read it; whatever is handed out is made from this."""
+"""A verdict as its student may read it; everything that is handed out is made from this."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 __all__ = ["checks_for_student", "problem_for_student"]
 
-#: What a check of ours said when it broke may name its hidden values.
+#: The message of a check that broke may contain its hidden values.
 _OUR_FAULT = Problem(
     "grader_error",
     "A fault of the grader kept this from being graded; it is none of yours.",

@@ -1,7 +1,7 @@
 """JUnit XML as Jenkins' xUnit plugin reads it (its schema junit-10): one suite per student and exercise.
 
 The schema allows properties under a suite and none under a case, so a suite carries score and reasons. What
-is written is what students may read: build servers show such files to more people than their maker.
+file contains only what students may read, because build servers show such files to many people.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Grades for Canvas and Moodle: a row per student, a column per exercise.
 
-Both find a student by an id of their own, which only the roster has. An id is written as it is or not at all:
-one that a spreadsheet would take for a formula cannot be disarmed without becoming another id.
+Both find a student by their own id, which only the roster has. An id is written unchanged or not at all: one
+that a spreadsheet would take for a formula cannot be escaped without becoming another id.
 """
 
 from __future__ import annotations

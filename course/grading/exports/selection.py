@@ -26,9 +26,10 @@ class ExportOptions:
     Attributes:
         exercises: ids; empty takes all.
         assignments: exercise id -> id of the assignment on the platform.
-        partial: leave out students the roster has not, instead of stopping.
-        missing: what stands for what an enrolled student did not hand in: "blank" or "zero".
-        zeros: what could not be graded may be written as 0, though nobody has looked at it.
+        partial: leave out students who are not in the roster, instead of stopping.
+        missing: what to write for work that an enrolled student did not hand in: "blank" or "zero".
+        zeros: work that could not be graded may be written as 0, although the instructor has not looked at
+            it.
         worksheet: the file of Moodle's that is to be filled in.
     """
 
@@ -48,7 +49,7 @@ class Written:
         paths: the files.
         rows: results in them.
         unmatched: students left out.
-        without_grade: "student exercise" of results a fault of ours left without a score.
+        without_grade: "student exercise" of results without a score because the grader failed.
         notes: what the instructor should know, one sentence each.
     """
 
@@ -163,7 +164,7 @@ def check_zeros(selection: Selection, options: ExportOptions) -> None:
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:
-    """Whether something the gradebook has is left out."""
+    """Whether the export leaves out something that is in the gradebook."""
     if options.exercises and {exercise.id for exercise in results.exercises()} - set(options.exercises):
         return True
     return options.partial and bool(results.unmatched(results.students()))

@@ -1,4 +1,4 @@
-"""The one truth of a grading run, as an SQLite file.
+"""The record of a grading run, as an SQLite file.
 
 file      its format, its lock, its seal, and SQLite's errors as sentences
 book      what is read from it and written to it

@@ -1,9 +1,9 @@
-"""``gradebook.sqlite``: the one truth of a grading run. Every other file there is an export of it.
+"""``gradebook.sqlite``: the record of a grading run. Every other file beside it is an export.
 
 One coordinator writes it. A result is kept under student, exercise, submission, grader, seed and run: grading
-the same again changes nothing, grading anew keeps the old beside the new. The submissions themselves are in
-it too, so that a regrading needs nothing but this file. What an instructor decides later (a score in place of
-the graders', a late policy) lies beside the results and never changes them;
+the same again changes nothing, and a new grading keeps the old results as well. The submissions themselves
+are in it too, so that a regrading needs only this file. Later decisions of the instructor (a score in place
+of the graders', a late policy) are stored separately and never change the results;
 ``course.grading.results.effective`` puts the two together.
 """
 
@@ -60,7 +60,7 @@ class Gradebook:
     Args:
         path: the file.
         create: make a new one; otherwise it must exist.
-        writing: hold it against everybody else.
+        writing: lock it against all other processes.
 
     Attributes:
         write_s: seconds spent on writing.
@@ -210,8 +210,8 @@ class Gradebook:
     def confirm(self, key: Key) -> bool:
         """Whether this very submission was graded; if so, make that the newest result of its student again.
 
-        A student who hands in an earlier version again is to get its score, and not the later one's. Other
-        graders than the key's do as well: nobody is graded anew by the way.
+        A student who hands in an earlier version again gets the score of that version. A result of other
+        graders than the key's counts too, so that nothing is graded again without need.
         """
         number = self._find(key)
         if number is None:
@@ -269,12 +269,12 @@ class Gradebook:
                 yield Result(Key(*key), msgspec.json.decode(body, type=Verdict), graded_at, run, number)
 
     def student_ids(self) -> list[str]:
-        """Everybody with a result, by name."""
+        """All students with a result, by name."""
         with explained(self.path):
             return [row[0] for row in self._db.execute("SELECT DISTINCT student FROM results ORDER BY 1")]
 
     def exercise_ids(self) -> list[str]:
-        """Everything with a result, by name."""
+        """All exercises with a result, by name."""
         with explained(self.path):
             return [row[0] for row in self._db.execute("SELECT DISTINCT exercise FROM results ORDER BY 1")]
 
@@ -296,7 +296,7 @@ class Gradebook:
     # -- what an instructor decided -------------------------------------------------------------------
 
     def add_override(self, override: Override, before: str = "") -> None:
-        """Keep a decision, here and in the journal; earlier ones stay beside it.
+        """Store a decision, here and in the journal; earlier ones are kept.
 
         Args:
             before: what counted, for the journal.
@@ -327,7 +327,7 @@ class Gradebook:
         return found
 
     def note(self, decision: Decision) -> None:
-        """Write down who changed a grade, when, why, and what it was before."""
+        """Record who changed a grade, when, why, and what it was before."""
         with self._transaction():
             number = self._next("journal")
             at, who = decision.at or _now(), decision.who or whoami()
@@ -364,7 +364,7 @@ class Gradebook:
         return None if row is None else bytes(row[0])
 
     def set_found(self, student: str, exercise: str, listed: str | None) -> None:
-        """Note what a student has that may be meant for an exercise; None: it is settled."""
+        """Record files of a student that may be meant for an exercise; None if it is settled."""
         with self._transaction():
             if listed is None:
                 self._db.execute("DELETE FROM found WHERE student = ? AND exercise = ?", (student, exercise))
@@ -434,7 +434,7 @@ def _failed_checksum(what: str, path: Path) -> IntegrityError:
 
 
 def _sha256(body: bytes | str) -> str:
-    # Whoever edits the file by hand may leave text where bytes were: that is damage too, not a crash.
+    # A file edited by hand may have text where bytes were: that is damage, and must not crash.
     return hashlib.sha256(body.encode() if isinstance(body, str) else body).hexdigest()
 
 

@@ -1,6 +1,6 @@
 """The file below a gradebook: its format, its lock, and its errors as sentences.
 
-A run writes in SQLite's write-ahead mode while it holds the file alone. Every result is committed when it
+A run writes in SQLite's write-ahead mode while it has the file to itself. Every result is committed when it
 arrives (about 0.05 ms): a process that is killed loses nothing that was reported, and a machine that loses
 power leaves a consistent file that lacks the last seconds. Held exclusively, that mode needs no shared memory
 and so works on network folders; closing puts the file back into the ordinary mode, in which it is one file
@@ -250,7 +250,7 @@ def _draft(path: Path) -> Path:
 
 
 def _publish(draft: Path, path: Path) -> None:
-    """Give the draft its name, unless there is a file of that name: of two runs at once one is told."""
+    """Give the draft its name, unless there is such a file: of two simultaneous runs, one gets an error."""
     try:
         path.hardlink_to(draft)
     except (FileExistsError, FileNotFoundError):
@@ -269,7 +269,7 @@ def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
     """An open, recognised and up-to-date gradebook.
 
     Args:
-        writing: hold it against everybody else until it is closed.
+        writing: lock it against all other processes until it is closed.
 
     Raises:
         NotFoundError: there is none.

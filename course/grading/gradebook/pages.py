@@ -1,8 +1,8 @@
-"""The rows on the pages of an SQLite file, read without SQLite: what is left when SQLite refuses the file.
+"""The rows on the pages of an SQLite file, read without SQLite, for a file that SQLite refuses.
 
-Nothing is believed: not the header, not a pointer, not a length. Every page is looked at by itself, in
-whatever order they lie; a row that continues on other pages is followed there. Rows come out raw, some of
-them nonsense; ``salvage`` keeps those whose own digest fits.
+Nothing in the file is trusted: not the header, not a pointer, not a length. Every page is read by itself, in
+any order; a row that continues on other pages is followed there. The rows are raw, and some are nonsense;
+``salvage`` keeps those whose own digest matches.
 
 The format: https://www.sqlite.org/fileformat2.html (sections 1.3, 1.6, 1.7 and 2.1).
 """
@@ -32,7 +32,7 @@ class _DamagedError(Exception):
 
 
 def raw_rows(data: bytes) -> Iterator[tuple[int | None, tuple[Cell, ...]]]:
-    """Everything that reads as a row, with its number where it has one.
+    """Everything that can be read as a row, with its number if it has one.
 
     Args:
         data: a whole file.

@@ -1,8 +1,8 @@
-"""A gradebook out of a damaged one: every row that is whole, from the file itself and from its backups.
+"""A new gradebook from a damaged one: every intact row, from the file itself and from its backups.
 
-A row is whole if the digest it ends with fits, wherever it was found; so neither the file's header nor its
-order matters, and a row that damage changed is left behind. An override is in the gradebook twice, among the
-overrides and in the journal, on pages that are not the same.
+A row is intact if the digest at its end matches, wherever it was found. So neither the file's header nor its
+order matters, and damaged rows are left out. An override is in the gradebook twice, among the overrides and
+in the journal, on pages that are not the same.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _NUMBERED = {"runs", "overrides", "results", "journal"}
 
 @dataclass
 class Salvaged:
-    """What was got out.
+    """What was recovered.
 
     Attributes:
         rows: number of rows by table.
@@ -63,7 +63,7 @@ class Salvaged:
 
 
 def salvage(path: Path, target: Path) -> Salvaged:
-    """Write a new gradebook of all that is whole in a damaged one and its backups; those stay as they are.
+    """Write a new gradebook from all intact rows of a damaged one and its backups; those stay unchanged.
 
     Raises:
         NotFoundError: there is no gradebook and no backup.
@@ -166,7 +166,7 @@ def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
 
 
 def _lost(found: dict[str, dict[Row, Row]]) -> Iterator[str]:
-    """What other rows know of and is not there."""
+    """What other rows refer to and is missing."""
     for name, words in (("results", "results"), ("overrides", "overrides"), ("journal", "notes of changes")):
         numbers = {int(str(key[0])) for key in found[name]}
         gone = sorted(set(range(1, max(numbers, default=0) + 1)) - numbers)

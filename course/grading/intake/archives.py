@@ -1,7 +1,7 @@
-"""Zip archives as students hand them in, read as data: nothing is unpacked to disk, nothing is believed.
+"""Zip archives from students, read as data: nothing is unpacked to disk, and nothing in them is trusted.
 
 Links, devices, bombs and paths that lead elsewhere are refused with a reason that reaches the report. A
-folder around everything, and the backslashes of Windows, are taken as what they are meant to be, and said.
+folder around everything, and the backslashes of Windows, are accepted and noted.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class ArchiveContent:
 
     Attributes:
         name: as the archive has it.
-        notes: what was taken for granted, a sentence each.
+        notes: what was assumed, one sentence each.
         copies: the members that are the same file, this one included.
     """
 
@@ -115,7 +115,7 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
 
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
-    """What was taken for granted about a member."""
+    """What was assumed about a member."""
     around = raw.replace("\\", "/").removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
     if around:
         yield f"Everything in {path.name} lies in the folder {around}, which was passed over."
@@ -241,7 +241,7 @@ def _is_clutter(name: str) -> bool:
 
 
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
-    """A member's content; the size its header claims is not believed."""
+    """A member's content; the size in its header is not trusted."""
     with archive.open(info) as handle:
         content = handle.read(MAX_FILE + 1)
     if len(content) > MAX_FILE:

@@ -45,7 +45,7 @@ _MOODLE = re.compile(
     r"(?P<name>[^_]*)_(?P<key>[0-9]+)_assignsubmission_(?P<plugin>[a-z]+)(?:_(?P<file>.*))?", re.S
 )
 # Canvas takes '_<digits>_' out of names, so the first two numbers are its own. Graded anonymously, a student
-# is a few letters and digits that stand for nobody.
+# is a few letters and digits that do not identify anyone.
 _CANVAS = re.compile(
     r"(?:(?P<name>.*?)(?P<late>_LATE)?_(?P<key>[0-9]+)"
     r"|(?P<anon>anon)(?P<anon_late>_LATE)?_(?P<anon_key>[A-Za-z0-9]{4,8}))"
@@ -112,8 +112,8 @@ class Student:
         name: id in the gradebook, as text that any file format can hold.
         identity: who that is to the platform; None for plain folders.
         submitted_at: seconds since 1970, UTC, where the platform says so.
-        flagged_late: the platform says it was late, and not by how much.
-        typed: files that stand for what was typed into the platform.
+        flagged_late: the platform says that it was late, but not by how much.
+        typed: files with text that was typed into the platform.
     """
 
     name: str
@@ -217,7 +217,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
         if not (path.is_dir() or path.is_symlink()):
             if _may_be_handed_in(raw):
                 found.unrecognised.append(f"{_text(raw)}: is in no student's folder")
-            continue  # a class list, notes: no submission of anybody's
+            continue  # a class list, notes: not a submission
         name = _text(raw)
         while name in owned:
             name += "'"
@@ -241,7 +241,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
         people[student] = PlatformIdentity("moodle", match["key"], _text(match["name"]))
         if match["plugin"] != "file":
             typed.setdefault(student, []).append(_text(raw))
-            continue  # text typed into the platform, comments: no files of the student's
+            continue  # text typed into the platform, comments: not files of the student
         if (folder / raw).is_dir() or not match["file"]:
             owned[student] = folder / raw
         else:

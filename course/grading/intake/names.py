@@ -1,4 +1,4 @@
-"""What a file is called, and what it was meant to be called: spellings that are taken without a question.
+"""File names, and the names they were meant to be: spellings that are accepted without asking.
 
 Letter case, and the number that a browser, Canvas or Windows adds to a second download, change nothing about
 what a file is. Every such spelling is named in the result. What is called otherwise is for triage.

@@ -1,8 +1,8 @@
-"""What students hand in, read in a process of its own that can be ended.
+"""Submissions, read in a separate process that can be ended.
 
-Notebooks and archives are parsed there, under limits of CPU time, memory, wall time and of what it may
-answer; nothing of them is ever run. A file that exceeds one costs itself: it is named and cannot be graded.
-``python -m course.grading.intake.reading`` is the process; it answers frames of msgpack.
+Notebooks and archives are parsed there, with limits on CPU time, memory, wall time and the size of the
+answer; nothing in them is ever run. A file that exceeds a limit is named and cannot be graded; other files
+are not affected. ``python -m course.grading.intake.reading`` is the process; it answers frames of msgpack.
 """
 
 from __future__ import annotations
@@ -252,7 +252,7 @@ def main() -> None:
         except OSError as error:
             told = _Reply(problem=Problem("unreadable", f"{ask.name} cannot be read: {error.strerror}.", ""))
         except MemoryError:
-            os._exit(1)  # whoever asked takes it from there
+            os._exit(1)  # the parent process reports it
         write_frame(sink, told)
 
 

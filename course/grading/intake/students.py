@@ -57,8 +57,8 @@ class Entry:
         student: the student's id.
         submission: what is to be graded; None if there is nothing.
         problem: why there is nothing; None together with ``submission`` None means it was not handed in.
-        times: who says when it was handed in.
-        notes: what was taken for granted, or left lying beside it, a sentence each.
+        times: sources for when it was handed in.
+        notes: what was assumed, or left beside it, one sentence each.
         found: what may be meant for the exercise, where there is a problem.
         only: ids of the checks to run; empty runs all.
     """
@@ -140,7 +140,7 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
-    """What lies beside a submission and has functions of the same exercise: never passed over in silence."""
+    """Files beside a submission with functions of the same exercise; they are always reported."""
     others = [
         one
         for one in found_for(exercise, left, asked=False)
@@ -171,9 +171,9 @@ def _without(
 
 
 def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -> tuple[SubmittedAt, ...]:
-    """Who says when a submission was handed in: the platform it came from, and the time of its file.
+    """The sources for when a submission was handed in: its platform, and the time of its file.
 
-    Nothing inside a submission is asked: a student's machine wrote it.
+    Nothing inside a submission counts, because a student's machine wrote it.
     """
     said: list[tuple[str, float | None]] = []
     if student.submitted_at is not None and student.identity is not None:

@@ -1,8 +1,8 @@
-"""A student's files that are not a submission yet: found, read for their functions, and proposed.
+"""A student's files that are not a submission yet: found, searched for functions, and proposed.
 
-A file under another name, in another folder, or beside the one that was graded is never passed over in
-silence. Names of functions are read in the process that reads submissions, which can be ended; nothing is
-run. What is proposed is settled by an instructor, with ``course grade assign``.
+A file with another name, in another folder, or beside the one that was graded is always reported. Names of
+functions are read in the process that reads submissions, which can be ended; nothing is run. An instructor
+decides about the proposals, with ``course grade assign``.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Candidate(msgspec.Struct, frozen=True):
         member: in the archive; empty for a file.
         sha256: digest of its content.
         defines: names of the functions in it; of one exercise's tasks, where it is listed for an exercise.
-        proposed: it is the one match there is.
+        proposed: it is the only match.
     """
 
     name: str
@@ -118,7 +118,7 @@ def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError:
-        return  # what cannot be listed was refused, with its reason, by whoever wanted a file in it
+        return  # a folder that cannot be listed was refused with its reason elsewhere
     for entry in entries:
         search.left -= 1
         if search.left < 0:
@@ -169,7 +169,7 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
     ranked.sort(key=lambda item: (-item[0], item[1].name))
     distinct = {item[1].sha256: item[0] for item in reversed(ranked)}
     best = max(distinct.values(), default=0.0)
-    # Two files that are as good, and not the same: which one counts is not ours to say.
+    # Two equally good files that differ: the grader must not decide which one counts.
     clear = best > 0 and list(distinct.values()).count(best) == 1
     return tuple(
         msgspec.structs.replace(one, proposed=clear and number == 0) for number, (_, one) in enumerate(ranked)
@@ -177,7 +177,7 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
 
 
 def described(candidates: Sequence[Candidate]) -> str:
-    """Files and what they define, in a sentence's words."""
+    """Files and what they define, as part of a sentence."""
     told = []
     for one in candidates[:_SHOWN]:
         names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")

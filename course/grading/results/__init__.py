@@ -1,1 +1,1 @@
-"""What a class scored as it counts: newest gradings, overrides, lateness, and who everybody is."""
+"""The scores of a class that count: newest gradings, overrides, lateness, and the students' identities."""

@@ -1,11 +1,11 @@
-"""What a class scored, as everybody is to see it: the one reader of a gradebook.
+"""The scores of a class that count: the only reader of a gradebook.
 
 A gradebook keeps apart what the graders found, what an instructor decided and what lateness costs.
 ``Results`` puts them together, the same way for every export and report: the newest grading of each student
 and exercise; an override in its place if there is one, which is final and not touched by lateness; else less
 the penalty of the late policy. A fault of ours is never a zero: its score is None until it is graded or
-overridden. With a roster, whoever is enrolled and handed in nothing has a result too: ``missing``, without a
-score, which an export writes as it is told to.
+overridden. With a roster, enrolled students who handed in nothing have a result too: ``missing``, without a
+score; an option decides how an export writes it.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class Results:
         return tuple(self._exercises.values())
 
     def students(self) -> list[str]:
-        """Everybody with a result or an override, or a row of the roster, by name."""
+        """All students with a result, an override or a row in the roster, by name."""
         return sorted({*self._known(), *self.absent()})
 
     def absent(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""Whose score a decision about the class changed, and by how much: written down beside the decision."""
+"""Whose scores a decision about the class changed, and by how much; stored with the decision."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Scores = dict[tuple[str, str], float | None]
 
 
 class ScoreChange(msgspec.Struct, frozen=True):
-    """A score that counts otherwise than before; None where none counts."""
+    """A change of the score that counts; None where there is no score."""
 
     student: str
     exercise: str

@@ -18,7 +18,7 @@ _MAX_REASON = 2000
 
 
 def override(results: Results, student: str, exercise: str, score: float, reason: str) -> Effective:
-    """Set a score and keep why; earlier decisions stay in the gradebook beside it.
+    """Set a score and store the reason; earlier decisions stay in the gradebook.
 
     Args:
         results: over a gradebook opened for writing.

@@ -181,7 +181,7 @@ def read_text(path: Path) -> str:
         raise _wrong(path, "it is not UTF-8; save it as 'CSV UTF-8'") from None
 
 
-#: What makes of a row a person, or None of a row that is about nobody.
+#: Turns a row into a person, or None if the row is not about a person.
 Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
 
 
@@ -215,7 +215,7 @@ def _cells(path: Path, line: int, row: dict[str, str | None]) -> tuple[dict[str,
 
 
 def _from_ours(path: Path, line: int, row: dict[str, str]) -> Person:
-    # A student's id is the name of a folder, spaces and all; the rest was typed by somebody.
+    # A student's id is the name of a folder, including spaces; the other cells were typed by hand.
     cells = {name: text if name == "student" else text.strip() for name, text in row.items()}
     if not cells["student"]:
         raise _wrong(path, f"line {line}: it names no student")

@@ -273,7 +273,7 @@ class _Coordinator:
 
 
 def _is_stopped(pid: int) -> bool:
-    """Whether a signal stopped that process: a submission at L1 may send one, and nobody would wake it."""
+    """Whether a signal stopped that process: a submission at L1 may send one, and nothing would wake it."""
     if not hasattr(os, "waitid"):
         return False
     with contextlib.suppress(ChildProcessError):
@@ -284,7 +284,8 @@ def _is_stopped(pid: int) -> bool:
 def answer_to(job: Job, frame: bytes | None) -> Answer | None:
     """The answer in a grader's frame; None if there is none, or one to something else than was asked.
 
-    A grader that answers what it was not asked is no better than a dead one, whoever spoke in its place.
+    A grader that answers another question than it was asked counts as dead, because something else may have
+    answered.
     """
     if frame is None:
         return None

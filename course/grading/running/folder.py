@@ -133,7 +133,7 @@ def previewed(out: Path) -> Iterator[Results]:
     What a change would do is found by doing it, so a preview cannot differ from it.
     """
     path = out / BOOK
-    Gradebook(path).close()  # it is whole, nobody is writing it, and it is one file now
+    Gradebook(path).close()  # it is complete, no process is writing it, and it is one file now
     folder = private_folder()
     try:
         shutil.copyfile(path, folder / path.name)

@@ -43,7 +43,7 @@ class Job(msgspec.Struct, frozen=True):
     Attributes:
         version: the ``grader_version`` it must be graded by; empty takes whatever is here.
         only: checks to run, with what they require; empty runs all.
-        number: drawn for each job, so that nobody knows it who was not told.
+        number: drawn at random for each job, so that only the grader knows it.
     """
 
     exercise: str

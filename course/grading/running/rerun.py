@@ -1,8 +1,8 @@
 """Grading again what a gradebook holds, with the graders as they are now, or as they were for an earlier run.
 
 The submissions come out of the gradebook, so nothing else is needed, and hidden inputs are drawn with the
-same seed. Regraded is what another version of the graders scored, and what a fault of ours left unscored.
-Old results stay beside the new; an override goes on counting in place of both.
+same seed. Regraded is what another version of the graders scored, and what a fault of ours left unscored. Old
+results are kept beside the new ones; an override still replaces both.
 """
 
 from __future__ import annotations

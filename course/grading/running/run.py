@@ -242,7 +242,7 @@ class _Run:
             self._one_less(student.name)
 
     def _is_done(self, entry: Entry) -> bool:
-        """Whether it was graded before, or a file was assigned to somebody who still has none by its name."""
+        """Whether it was graded before, or an assigned file still takes the place of a missing one."""
         if entry.submission is None and (entry.student, entry.exercise.id) in self._assigned:
             return True
         return self._book.confirm(self._key(entry))
@@ -301,7 +301,7 @@ def _bank(catalog: Catalog) -> Bank:
     """The questions of the quiz.
 
     Raises:
-        UsageError: one of them is not finished or wrong; nothing was graded, and nobody's work is at fault.
+        UsageError: one of them is unfinished or wrong; nothing was graded, and no submission is at fault.
     """
     try:
         return Bank(read_questions(catalog.content.quiz))

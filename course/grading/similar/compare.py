@@ -1,7 +1,7 @@
 """Which submissions are alike: compared on this machine, and with the course's own code.
 
 Each fingerprint weighs the more, the fewer submissions have it; those of the stub weigh nothing. How much of
-the smaller of two submissions is in the other is their share. What everybody writes therefore hardly counts,
+the smaller of two submissions is in the other is their share. So code that all students write hardly counts,
 and a copy with changed names counts in full. Likeness is a reason to talk, not a finding: short exercises
 have few ways to be right.
 """

@@ -2,8 +2,8 @@
 
 A cell's id is a digest of what it holds, so that a notebook generated again differs only where the content
 does. The digest is kept in the cell's metadata too, where Jupyter leaves it when it gives a copy another id;
-so a cell tells by itself whether somebody has edited it. nbformat's own constructors draw ids at random, and
-its validation quietly replaces those that occur twice; so ids are made here, and a cell that repeats another
+so each cell shows by itself whether it was edited. nbformat's own constructors draw ids at random, and its
+validation quietly replaces those that occur twice; so ids are made here, and a cell that repeats another
 counts its repetitions into its id.
 """
 

@@ -47,7 +47,7 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     """The cells, in the order they are worked through.
 
     Args:
-        source: the module's text: the stub, or somebody's work to be put into a notebook.
+        source: the module's text: the stub, or a student's work to be put into a notebook.
     """
     tasks = {task.id: task for task in exercise.task}
     about, parts = pieces(source, tasks)

@@ -1,9 +1,9 @@
 """Merge a newer notebook with a student's work in the older one.
 
 Every generated cell knows its slot and the digest of what it held when it was generated. So a cell whose text
-no longer fits its digest was edited; one without a slot is somebody's own. Edited cells and own cells stay,
-with their outputs, where they are; all others become what the newer notebook has. Where that is not safe
-nothing is merged, and the reason is given.
+no longer matches its digest was edited; one without a slot was added by the student. Edited cells and own
+cells stay, with their outputs, where they are; all others become what the newer notebook has. Where that is
+not safe nothing is merged, and the reason is given.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def merged(old: bytes, new: bytes) -> bytes:
 
     Raises:
         CannotMergeError: the old one is another notebook or none, its cells stand in another order, or the
-            course changed a cell that holds somebody's code.
+            course changed a cell that contains the student's code.
     """
     before, after = _read(old), _read(new)
     about = before.get("metadata", {}).get("course")
@@ -88,7 +88,7 @@ class _Held:
 
 
 def _woven(old: list[_Held], new: list[_Held]) -> list[RawCell]:
-    """The cells of both, in the order of the new ones; somebody's own follow what they followed before."""
+    """The cells of both, in the order of the new ones; added cells follow the same cell as before."""
     known = {cell.slot for cell in new}
     kept: dict[str, _Held] = {}
     own: dict[str, list[_Held]] = {}
@@ -118,7 +118,10 @@ def _either(old: _Held | None, new: _Held) -> list[RawCell]:
     if old.made == new.made or old.source == new.source:
         return [old.cell]
     if new.tags.get("role") == _TEXT:
-        return [new.cell, old.cell]  # the second of one slot is somebody's own from now on
+        return [
+            new.cell,
+            old.cell,
+        ]  # the second cell with the same slot counts as the student's own from now on
     raise CannotMergeError(f"the course changed a cell that you changed too ({new.slot})")
 
 

@@ -28,5 +28,5 @@ _HERE = f"""
 
 
 def style() -> str:
-    """The style sheet of a world in a cell. Whoever holds the world has to be a container of inline size."""
+    """The style sheet of a world in a cell. The element around it must be a container of inline size."""
     return (STATIC / "style.css").read_text("utf-8").replace(_WINDOW, _CELL) + _HERE

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["evaluate", "names"]
 
 _MAX_LENGTH = 300
-#: Longest chain of operations; a deeper tree is no formula that somebody wrote.
+#: Longest chain of operations; a deeper tree is not a formula that a person wrote.
 _MAX_DEPTH = 40
 
 #: Largest n of a binomial coefficient: beyond about a thousand it is no float any more.

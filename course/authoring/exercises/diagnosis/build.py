@@ -38,7 +38,8 @@ SOURCES = (
     ("questions.py", "paths.py"),
     ("hypotheses.py", "formulas.py", "motions.py", "draws.py", "mutants.toml"),
 )
-#: Programs with two mistakes that are kept for a task: with more, a wheel would carry what nobody writes.
+#: How many programs with two mistakes are kept for a task: students hardly write more, and the wheel would
+#: grow.
 _MOST_PAIRS = 260
 
 

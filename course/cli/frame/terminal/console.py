@@ -116,7 +116,7 @@ class Console:
 
     @property
     def interactive(self) -> bool:
-        """True if somebody is there to answer a question."""
+        """True if a user is there to answer a question."""
         return not self.json and sys.stdin is not None and sys.stdin.isatty()
 
     @property
@@ -342,7 +342,7 @@ class Console:
     # -- asking and waiting ------------------------------------------------------------------------------
 
     def confirm(self, question: str) -> bool:
-        """Ask a yes-or-no question. Nobody there to answer means no."""
+        """Ask a yes-or-no question. Without a user to answer it, the answer is no."""
         if not self.interactive:
             return False
         self._out.write(f"{question} [y/N] ")
@@ -350,7 +350,7 @@ class Console:
         return sys.stdin.readline().strip().lower() in {"y", "yes"}
 
     def ask(self, question: str) -> str | None:
-        """What somebody types on one line, without the space around it; None at the end of the input."""
+        """What the user types on one line, without surrounding space; None at the end of the input."""
         self._out.write(question)
         self._out.flush()
         answer = sys.stdin.readline()

@@ -30,7 +30,7 @@ __all__ = ["InlinePicture", "Protocol", "picture", "protocol_of"]
 
 Protocol = Literal["kitty", "iterm2", "sixel"]
 
-#: Terminals that show sixels as they are installed. Others have to be told to, and nobody outside can see it.
+#: Terminals that show sixels as they are installed. Others need a setting, which cannot be detected.
 _SIXEL_TERMS = ("foot", "mlterm", "contour")
 
 #: Pixels in a letter's width where the terminal does not say: those of the VT340, and of what imitates it.
@@ -41,7 +41,7 @@ _CHUNK = 4096
 
 
 def protocol_of(console: Console, environ: Mapping[str, str]) -> Protocol | None:
-    """How the terminal behind a console shows pictures; None if it does not, or nobody knows.
+    """How the terminal behind a console shows pictures; None if it does not, or if that is unknown.
 
     A multiplexer swallows or misplaces pictures unless it was set up for them, so inside one there are none.
     """

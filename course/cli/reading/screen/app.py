@@ -44,7 +44,7 @@ class ReaderApp(TasksApp):
     _wanted = ""
 
     def _is_offered(self, item: Item) -> bool:
-        """Whether keys act on it unasked: what is open to be done, and never a link."""
+        """Whether keys act on it by default: open tasks, and never a link."""
         if item.kind == "question":
             return self.progress.asked_by(item.block) is not None
         if item.kind == "answer":
@@ -139,7 +139,7 @@ class ReaderApp(TasksApp):
         self.open(lesson, Place(script.task(name)))
 
     def _open_address(self, address: str) -> None:
-        """A page of the web, where something can show it; its address in any case."""
+        """Open a web page where a browser can show it; print its address in any case."""
         from course.browser import opened
 
         if opened(address):
@@ -181,7 +181,7 @@ class ReaderApp(TasksApp):
             self._answered(question, "")
 
     def action_judge(self, key: str) -> None:
-        """How a prediction did, by the reader's own word."""
+        """How good a prediction was, in the reader's own judgement."""
         item = self.page.item
         if item is None or item.kind != "answer":  # the cell above it is at hand
             answers = (one for one in self.page.items() if one.kind == "answer")

@@ -1,4 +1,4 @@
-"""What is laid over the page: contents, search, a prediction, a cell to edit."""
+"""Boxes over the page: contents, search, a prediction, a cell to edit."""
 
 from __future__ import annotations
 

@@ -148,7 +148,7 @@ class CellsApp(LessonApp):
             self._say_round()
 
     def _bring_to_sight(self, block: int) -> None:
-        """The end of a block on the screen, where its output is; whoever has read on is not called back."""
+        """Show the end of a block, where its output is; a reader who has moved on is not called back."""
         book = self.page.book
         span = book.layout.span(block) if book is not None else None
         top, end = self.page.top, self.page.end()

@@ -27,7 +27,7 @@ class TasksApp(CellsApp):
     BINDINGS: ClassVar[list[Any]] = [Binding("h", "hint", show=False)]
 
     def on_mount(self) -> None:
-        """Hear of what the checks say."""
+        """Receive the results of the checks."""
         self._practice.changed = self._task_changed
 
     def _tick(self) -> None:
@@ -132,7 +132,7 @@ class TasksApp(CellsApp):
         self.push_screen(Edit(now.file, source, line_to_mend(now, source)), done)
 
     def _task_changed(self, name: str) -> None:
-        """A task's standing has changed (from another thread)."""
+        """A task's state has changed (called from another thread)."""
         with contextlib.suppress(RuntimeError):  # the reader is gone
             self.call_from_thread(self._show_answer, name)
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Practice", "Standing"]
 
-#: A command that takes longer hangs; checks have deadlines of their own below this. In s.
+#: Time limit of a command, in s; the checks' own deadlines are shorter.
 _PATIENCE = 120.0
 
 
@@ -117,7 +117,7 @@ class Practice:
         self._saved[name] = self._stamp(exercise)
 
     def was_saved(self, name: str) -> bool:
-        """Whether the file was saved since this was asked last, by an editor of the student's."""
+        """Whether the student's editor saved the file since the last call."""
         if not self.of(name).file:
             return False
         stamp = self._stamp(self._catalog.exercise(name))

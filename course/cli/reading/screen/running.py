@@ -112,7 +112,7 @@ class Bench:
         try:
             runner = self._made()
             runner.prepare()
-            # Whoever stops a cell while its process still starts means the cell.
+            # If the user stops a cell while its process is still starting, the cell is meant.
             gave = CellOutput("", STOPPED, 0.0) if self._stopped else runner.run(cell)
         except IsolationError as error:
             gave = CellOutput("", f"The cell could not be run: {error}.", 0.0)

@@ -200,7 +200,8 @@ class LessonApp(FullScreenApp):
         book.build(self.page.room)
         at = book.layout.row(place)
         self._draw_ahead(book)
-        # Whoever opens a lesson anew sees its screens as they are cut; a kept place is kept to the line.
+        # A lesson that is opened for the first time begins at a screen; a stored place is restored to the
+        # line.
         self._show(at)
 
     def _draw_ahead(self, book: Book) -> None:

@@ -1,4 +1,4 @@
-"""What the reader tells beside the lesson: the keys, contents, the place, what is next."""
+"""What the reader shows beside the lesson: the keys, contents, the place, what is next."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ __all__ = ["is_possible", "read"]
 
 
 def is_possible() -> bool:
-    """Whether this terminal can be drawn on: somebody is there, and letters beyond ASCII arrive."""
+    """Whether this terminal can be drawn on: a user is there, and non-ASCII letters are shown."""
     if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
         return False
     if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):

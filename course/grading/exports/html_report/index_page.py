@@ -1,4 +1,4 @@
-"""The list of students: whose page is which number, and what everybody scored. For the instructor."""
+"""The list of students: the number of each student's page, and all scores. For the instructor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The templates of these pages: whatever is no markup is escaped, and spelled out where it steers others."""
+"""The templates of these pages: text is escaped, and characters that affect other text are spelled out."""
 
 from __future__ import annotations
 
@@ -34,7 +34,8 @@ def render(template: str, **words: Any) -> str:
 
     Args:
         template: its name, without the end ``.html.j2``.
-        words: what it shows. Text is text: nothing in it is markup, steers, hides or reorders.
+        words: what it shows. All text is literal: it contains no markup, and cannot hide or reorder other
+            text.
     """
     return _environment().get_template(f"{template}.html.j2").render(words)
 

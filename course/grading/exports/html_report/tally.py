@@ -1,4 +1,4 @@
-"""What a class comes to, counted while its results pass by once; it grows with the course, not the class."""
+"""The totals of a class, counted in one pass; their size depends on the course, not on the class."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CappedList", "CheckTally", "DiagnosisTally", "ExerciseTally", "Tally", "TaskTally"]
 
-#: Rows of a list on the class page; the tables of numbers have everybody.
+#: Rows of a list on the class page; the tables of numbers have the whole class.
 MOST_ROWS = 200
 _SLOWEST = 5
 _LATEST = 25
@@ -70,7 +70,7 @@ class TaskTally:
 
 @dataclass
 class DiagnosisTally:
-    """How many students of an exercise made a mistake that has a name, where, and what they are told."""
+    """How many students of an exercise made a known mistake, where, and what they read about it."""
 
     exercise: str
     code: str
@@ -88,9 +88,9 @@ class ExerciseTally:
     """One exercise over the class.
 
     Attributes:
-        scores: what counts, of everybody with a grade (a score set by hand is one).
+        scores: the scores that count, of all students with a grade (including scores set by hand).
         ungraded: results that could not be graded and have no score by hand.
-        faults: results without a score for a fault of the grader.
+        faults: results without a score because the grader failed.
         missing: enrolled students who handed in nothing.
         seconds: wall time of the checks of each graded submission.
     """
@@ -171,7 +171,7 @@ class ExerciseTally:
 
 
 class CappedList:
-    """A list that shows so many and counts all.
+    """A list that shows a limited number of rows and counts all.
 
     Args:
         most: how many it shows.
@@ -209,7 +209,7 @@ class Tally:
         troubled: without a grade, for whatever reason, an instructor's score or none.
         reasons: number of those by exercise, state and code.
         untimed: number of results without a trusted submission time.
-        flagged: number that the download calls late, without saying by how much.
+        flagged: number of results that the download calls late, without saying by how much.
     """
 
     def __init__(self, exercises: Iterable[GradedExercise]) -> None:

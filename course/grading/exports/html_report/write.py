@@ -91,7 +91,8 @@ def write_pages(
 def _by_student(results: Results, found: Iterable[Effective]) -> Iterator[tuple[str, list[Effective]]]:
     """Everything of one student together.
 
-    Whoever has an override may have a result at the end, where nothing was handed in, so these wait for it.
+    A student with an override may have a result at the end, where nothing was handed in, so these wait for
+    it.
     """
     held: dict[str, list[Effective]] = {override.student: [] for override in results.book.overrides()}
     for student, group in itertools.groupby(found, key=lambda effective: effective.student):
@@ -109,7 +110,7 @@ def _table(results: Results, students: Iterable[str], links: dict[str, str]) -> 
 
 
 def _remove_others(folder: Path, written: set[str]) -> None:
-    """Pages of an earlier class: their numbers may stand for others now."""
+    """Delete the pages of an earlier class: their numbers may belong to other students now."""
     if not folder.is_dir():
         return
     for path in folder.iterdir():

@@ -1,7 +1,7 @@
 """The course checks itself.
 
-``audit`` reads every lesson and exercise and grades what must pass and what must fail. It reports all that
-is wrong at once: an author mends a list, not one message after another.
+``audit`` reads every lesson and exercise and grades what must pass and what must fail. It reports all
+problems at once, so that an author can work through a list.
 """
 
 from __future__ import annotations
@@ -58,12 +58,12 @@ def audit(
     Args:
         catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
-        on_progress: told at the start and after each submission how many of how many are graded.
+        on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions.
 
     Raises:
         MissingCapabilityError: this installation has no solutions or no hidden graders.
-        NotFoundError: nothing is called ``only``.
+        NotFoundError: there is nothing with the id ``only``.
     """
     started = time.monotonic()
     instructors(catalog)

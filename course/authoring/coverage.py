@@ -1,4 +1,4 @@
-"""Where the course has what is in the chapter that it grew out of, and whether it really is there.
+"""Where the course covers the parts of the chapter that it grew out of, and whether these places exist.
 
 ``docs/coverage.toml`` names each heading, objective, example, exercise and question in words of our own,
 with the lines it takes up in the chapter, so that a part that was forgotten shows as a gap in the lines even
@@ -57,7 +57,7 @@ class Part(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=T
     """One part of the chapter.
 
     Attributes:
-        lines: where it stands there, "12" or "12-15", or several of these with commas.
+        lines: its lines in the chapter, "12" or "12-15", or several of these with commas.
         what: a name for it that is not the chapter's own sentence.
         word: what the course made of it, one of ``WORDS``.
         where: the places of the course that have it; see ``docs/coverage.toml``.
@@ -70,7 +70,7 @@ class Part(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=T
 
     @property
     def span(self) -> tuple[int, ...]:
-        """Its lines; none where they are not written as they should be."""
+        """Its lines; none if they are not in the right form."""
         found: list[int] = []
         for text in self.lines.split(", "):
             match = _LINES.fullmatch(text)
@@ -154,7 +154,7 @@ def check_coverage(
 
 
 def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:
-    """What is wrong with a part in itself, and the fix."""
+    """What is wrong with a part by itself, and the fix."""
     if not part.span:
         yield f"{part.lines!r} are not lines.", 'Write "12", "12-15" or "12-15, 20".'
     if part.word not in WORDS:
@@ -168,7 +168,7 @@ def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:
 
 @dataclass(slots=True)
 class _Places:
-    """Knows which places there are."""
+    """Knows which places exist."""
 
     catalog: Catalog
     is_command: IsCommand

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LEAST_VARIANTS", "audit_quiz"]
 
-#: Fewer, and a retake is likely to ask what was just explained.
+#: With fewer, a retake is likely to ask what was just explained.
 LEAST_VARIANTS = 4
 
 #: The id under which a gradebook keeps the quiz.

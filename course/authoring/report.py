@@ -1,4 +1,4 @@
-"""What an audit found: problems that name the file, the line and the fix, and how much was looked at."""
+"""The result of an audit: problems with file, line and fix, and what was checked."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class AuditReport:
     """The outcome of an audit.
 
     Attributes:
-        problems: sorted by file and line; empty is what one hopes for.
+        problems: sorted by file and line; empty if there are none.
         lessons, exercises, questions, scenes: ids that were looked at.
         checks: number of checks, public and hidden.
         graded: number of submissions that were graded to find out.

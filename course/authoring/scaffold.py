@@ -1,7 +1,7 @@
-"""New lessons and exercises: files in the right places, with marked blanks where an author has to write.
+"""New lessons and exercises: files in the right places, with marked blanks for the author.
 
-The audit names every blank that is left, with file and line, and proves the rest once they are filled.
-Nothing is ever overwritten, and either all files are written or none.
+The audit names every remaining blank, with file and line, and proves the rest once they are filled. Nothing
+is ever overwritten, and either all files are written or none.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Function:
 
     Attributes:
         signature: as it stands in the stub: "swing_period(length, gravity=9.81)".
-        gives: what it returns, in a sentence without a subject: "gives the period of small swings, s."
+        gives: what it returns, as a sentence without a subject: "gives the period of small swings, s."
     """
 
     signature: str
@@ -66,14 +66,14 @@ class Function:
 
     @property
     def docstring(self) -> str:
-        """What the stub says of it."""
+        """Its docstring in the stub."""
         if self.gives:
             return self.gives[:1].upper() + self.gives[1:]
         return "<<FILL IN: what it gives; shapes and units of arguments and result>>"
 
     @property
     def readme(self) -> str:
-        """What the README says of it, after its name."""
+        """Its description in the README, after its name."""
         return self.gives or "<<FILL IN: what it gives, with formula, shapes and units of its arguments>>"
 
     def case(self, value: float) -> str:
@@ -136,11 +136,11 @@ def new_exercise(
     summary: str = "",
     lesson: str = "",
 ) -> tuple[Path, ...]:
-    """Write the files of a new exercise, with whatever is known of it in every place where it stands.
+    """Write the files of a new exercise, with all that is known about it filled in.
 
     Args:
         functions: that it asks for; one of the exercise's own name and an ``x`` if none is given.
-        title, summary: what people call it, and one line for lists; blanks are left if empty.
+        title, summary: its title, and one line for lists; blanks are left if empty.
         lesson: id of the one to read first; the last one if empty.
 
     Returns:

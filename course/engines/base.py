@@ -1,4 +1,4 @@
-"""What every engine is asked: build this scene, step it, say where everything is.
+"""The interface of every engine: build a scene, step it, report the motion.
 
 Scenes are three-dimensional, z up, in SI units. Bodies are balls and cubes, whose inertia is the same about
 every axis, so that mechanical energy needs no orientation. An engine in the plane uses x and z.
@@ -45,7 +45,7 @@ class EngineDivergedError(CourseError):
 
 
 class NotApplicableError(CourseError):
-    """A scene asks for something that an engine has no word for."""
+    """A scene needs something that an engine cannot express."""
 
     default_code = "not_applicable"
 
@@ -89,8 +89,8 @@ class Scene:
     Attributes:
         bodies: those that move, in the order in which ``World.motion`` reports them.
         gravity: m/s².
-        friction, restitution: the coefficients that are to act between any two surfaces. An adapter sets
-            whatever its engine's rule for two materials turns into these.
+        friction, restitution: the coefficients that must act between any two surfaces. An adapter sets the
+            values that its engine's rule for two materials turns into these.
         floor: there is a plane z = 0.
         walls: fixed boxes.
         pivots: for a chain: body i hangs by a hinge about the y axis at ``pivots[i]`` on body i - 1, the
@@ -137,13 +137,13 @@ class World(Protocol):
     """A scene inside an engine."""
 
     def step(self, n: int = 1) -> None:
-        """Go on by ``n`` steps of the scene's length."""
+        """Advance by ``n`` steps of the scene's length."""
 
     def motion(self) -> Motion:
         """The state after the steps so far; arrays of its own."""
 
     def contacts(self) -> tuple[int, float]:
-        """How many points touch, and the deepest overlap among them in m; as of the last step."""
+        """The number of contact points and their deepest overlap in m, in the last step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ class Adapter(Protocol):
         """Put a scene into the engine.
 
         Args:
-            options: empty for the engine as it comes; else what ``settings.tuning`` gives.
+            options: empty for the engine as it comes; otherwise the result of ``settings.tuning``.
 
         Raises:
             NotApplicableError: the engine cannot express the scene.

@@ -1,7 +1,7 @@
-"""Remembers measurements, so that asking again is quick.
+"""Stores measurements, so that a second request is quick.
 
-A measurement is kept under everything it depends on: the engine's version, the code that measured, the
-machine, the scenario and how it was run. What failed is not kept: it may go better next time.
+A measurement is stored under everything it depends on: the engine's version, the measuring code, the machine,
+the scenario and how it was run. Failures are not stored, because the next try may succeed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ __all__ = ["Cache", "cache_folder", "code_digest"]
 
 
 def cache_folder() -> Path:
-    """Where this system keeps what can be made again; COURSE_CACHE names another folder."""
+    """Where this system keeps caches; COURSE_CACHE names another folder."""
     if own := os.environ.get("COURSE_CACHE"):
         return Path(own) / "engines"
     home = Path.home()
@@ -44,7 +44,7 @@ def cache_folder() -> Path:
 
 @functools.cache
 def code_digest() -> str:
-    """A fingerprint of the code that builds and measures: a change of it makes old numbers strangers."""
+    """A digest of the code that builds and measures: when it changes, old numbers no longer count."""
     digest = hashlib.sha256()
     here = Path(__file__).parent
     for path in sorted((*here.rglob("*.py"), *here.rglob("*.toml"), here / "well_set.json")):
@@ -66,7 +66,7 @@ class Cache:
         self._machine = machine
 
     def get(self, key: Mapping[str, Any]) -> Row | None:
-        """What is kept under a key; None if nothing is, or it cannot be read."""
+        """The row stored under a key; None if there is none, or it cannot be read."""
         try:
             row = msgspec.json.decode(self._path(key).read_bytes(), type=Row)
         except (OSError, msgspec.DecodeError):
@@ -74,7 +74,7 @@ class Cache:
         return msgspec.structs.replace(row, origin="cached")
 
     def put(self, key: Mapping[str, Any], row: Row) -> None:
-        """Keep a row, if it has a value; where nothing can be written nothing is kept."""
+        """Store a row, if it has a value and the folder can be written."""
         if not row.ok:
             return
         path = self._path(key)

@@ -1,8 +1,8 @@
-"""Puts engines through scenarios: what is installed is measured, for the rest there is the reference.
+"""Runs the scenarios: installed engines are measured, and the others are shown from the reference.
 
-Accuracy is measured in several processes at once, since it does not depend on who else is at work. Speed is
-measured afterwards, one engine at a time, each stretch beside a stretch of pymunk's, so that a ratio is left
-even where the machine is busy.
+Accuracy is measured in several processes at once, since it does not depend on other processes. Speed is
+measured afterwards, one engine at a time, each stretch next to a stretch of pymunk's, so that the ratio is
+valid even on a busy machine.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ __all__ = ["LADDER", "QUICK_LADDER", "Request", "compare", "state_of"]
 #: The steps that show how an error shrinks, s; the middle one is the step of everything else.
 LADDER = tuple(1.0 / rate for rate in (60, 120, 240, 480, 960))
 QUICK_LADDER = tuple(1.0 / rate for rate in (120, 240, 480))
-#: What the speed of the others is measured in.
+#: The engine whose speed is the unit for the others.
 YARDSTICK = "pymunk"
 #: Stretches of each engine and of pymunk, taken in turn, and how long one is to last, s.
 _PAIRS, _PAIRS_QUICK = 7, 3
 _STRETCH_S, _STRETCH_QUICK_S = 0.2, 0.08
-#: Of this many steps the length of a stretch is guessed.
+#: The length of a stretch is estimated from this many steps.
 _TRIAL_STEPS = 10
-#: An engine is given this long for one measurement, s: the slowest seen took 4.
+#: Time limit of one measurement, s: the slowest so far took 4.
 DEADLINE_S = 60.0
 
 
@@ -58,7 +58,7 @@ class Request:
         steps: dt in s; none means 1/240, and a ladder of steps where the integrator alone decides.
         repeat: how often each measurement is made.
         quick: fewer steps, starts and repetitions; the values of what is measured may differ a little.
-        fresh: measure even what is remembered.
+        fresh: measure again even if the result is stored.
         deadline: s for one measurement.
     """
 
@@ -95,7 +95,7 @@ class _Job:
 
 @dataclass(slots=True)
 class _Run:
-    """A comparison on its way."""
+    """A comparison in progress."""
 
     request: Request
     cache: Cache
@@ -151,7 +151,7 @@ def state_of(info: EngineInfo, *, probe: bool = False) -> EngineState:
 
 
 def compare(request: Request, progress: Progress = lambda _done, _total, _what: None) -> Comparison:
-    """Measure, remember, and fill up with the reference.
+    """Measure, store, and fill in from the reference.
 
     Args:
         progress: called with measurements done, in all, and what was measured last.
@@ -177,7 +177,7 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
         run.rows.get(job) or job.row(status="not_installed", message=states[job.engine.id].missing)
         for job in jobs
     ]
-    # What cannot be measured here is shown from the reference, where that has it.
+    # Rows that cannot be measured here are shown from the reference, if it has them.
     lacking = {(row.engine, row.scenario, row.setting, row.dt) for row in rows if _lacks(row)}
     shipped = reference.load()
     filled = [row for row in shipped.rows if (row.engine, row.scenario, row.setting, row.dt) in lacking]
@@ -203,7 +203,7 @@ def _steps(request: Request, scenario: str) -> tuple[float, ...]:
 
 
 def _measure(run: _Run, jobs: Iterable[_Job]) -> None:
-    """Everything that is not remembered: accuracy side by side, then speed one by one."""
+    """Measure everything that is not stored: accuracy in parallel, then speed one by one."""
     left: dict[str, list[_Job]] = {}
     for job in jobs:
         known = None if run.request.fresh else run.cache.get(run.key(job))
@@ -230,7 +230,7 @@ def _measure(run: _Run, jobs: Iterable[_Job]) -> None:
 
 
 def _one_engine(run: _Run, jobs: list[_Job]) -> None:
-    """All accuracy jobs of one engine, in one process as long as that lives."""
+    """All accuracy jobs of one engine, in one process as long as it is alive."""
     unavailable: Row | None = None
     with EngineProcess(jobs[0].engine.id) as process:
         for job in jobs:

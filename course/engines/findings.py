@@ -1,4 +1,4 @@
-"""What the numbers of a comparison say, in sentences; each is made from the rows and from nothing else."""
+"""The results of a comparison in sentences, each made only from its rows."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
 
 __all__ = ["chaos", "defaults", "findings", "fingerprints", "phases", "same_algorithm", "slope"]
 
-#: Two engines whose energies agree to this share over ten seconds of chaos compute the same thing: in double
-#: precision 1e-10 was seen between MuJoCo, Bullet 3 and DART, and 1 % in single precision (PhysX).
+#: Two engines whose energies agree to this fraction after ten seconds of chaos use the same algorithm: in
+#: double precision MuJoCo, Bullet 3 and DART agree to 1e-10, and PhysX in single precision to 1 %.
 _SAME = 1e-6
-#: Errors below these tell nothing about a slope: a thousand steps of round-off in single precision; in double
+#: Errors below these say nothing about a slope: a thousand steps of round-off in single precision; in double
 #: precision, the error of the pendulum's reference itself.
 _FLOOR_SINGLE, _FLOOR_DOUBLE = 2e-4, 1e-11
 
 
 def findings(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Everything worth saying, in the order in which it is to be read."""
+    """All sentences, in reading order."""
     usable = [row for row in rows if row.ok]
     said = (fingerprints(usable), same_algorithm(usable), defaults(usable), phases(usable), chaos(usable))
     return tuple(sentence for sentence in said if sentence)
 
 
 def _of(rows: Iterable[Row], scenario: str, setting: Setting, dt: float = DT) -> dict[str, Row]:
-    """The rows of a scenario by engine; what was measured here goes before the reference."""
+    """The rows of a scenario by engine; measured rows come before those of the reference."""
     found: dict[str, Row] = {}
     for row in rows:
         if row.scenario == scenario and row.setting == setting and math.isclose(row.dt, dt):
@@ -91,10 +91,10 @@ def _agree(one: Sequence[float], other: Sequence[float]) -> bool:
 
 
 def defaults(rows: Sequence[Row]) -> str:
-    """In how many scenarios one engine's options moved it further than well-set engines lie apart.
+    """In how many scenarios one engine's options changed its result by more than well-set engines differ.
 
-    Of several phases or starts, the gap between both ranges has to be wider than the range of all well-set
-    engines: what a phase can change is not said of an option.
+    With several phases or starts, the gap between the two ranges must be wider than the range of all well-set
+    engines, so that the effect of a phase is not attributed to an option.
     """
     beyond, compared = [], 0
     for scenario in SCENARIOS.values():
@@ -123,7 +123,7 @@ def _gap(one: Row, other: Row) -> float:
 
 
 def phases(rows: Sequence[Row]) -> str:
-    """The impact that depends most on where in a step it falls, of the engines well set."""
+    """The impact that depends most on its moment within a step, among the well-set engines."""
     impacts = [scenario for scenario in SCENARIOS.values() if scenario.id in IMPACTS and scenario.truth]
     wide = [
         ((row.highest - row.lowest) / (scenario.truth or 1.0), scenario, row)

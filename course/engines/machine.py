@@ -1,4 +1,4 @@
-"""Which machine a measurement was made on, in words that name no one: no host, no path, no user."""
+"""Which machine a measurement was made on, without personal data: no host, no path, no user."""
 
 from __future__ import annotations
 

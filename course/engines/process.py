@@ -1,4 +1,4 @@
-"""Starts an engine in a process of its own, asks it, and survives whatever it does."""
+"""Starts an engine in its own process, sends it jobs, and survives its failures."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ if TYPE_CHECKING:
 
 __all__ = ["START_S", "EngineProcess"]
 
-#: How long an engine may take to load, s: 0.1 to 0.6 were seen, several times that on a cold disk.
+#: How long an engine may take to load, s: usually 0.1 to 0.6, several times that from a cold disk.
 START_S = 60.0
-#: Every engine on one processor core: rates can be compared, and sums do not depend on who was first.
+#: Every engine runs on one processor core: rates can be compared, and sums do not depend on the order of
+#: threads.
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 _LAST_WORDS = 200
 
 
 class EngineProcess:
-    """One engine's process; a context manager. It is started when it is first asked, and again after a death.
+    """One engine's process; a context manager. It starts with the first job, and again after it has died.
 
     Args:
         engine: its id.
@@ -56,7 +57,7 @@ class EngineProcess:
         return self._process.pid if self._process else None
 
     def ask(self, job: Mapping[str, Any], seconds: float) -> dict[str, Any]:
-        """The reply to a job, or one that says why there is none.
+        """The reply to a job, or a reply that says why there is none.
 
         Args:
             seconds: to wait at most; then the process is ended.
@@ -117,7 +118,7 @@ class EngineProcess:
         return reply
 
     def _died(self) -> dict[str, Any]:
-        """What to say of a process that ended by itself."""
+        """The message about a process that ended by itself."""
         process, code = self._process, None
         if process is not None:
             try:

@@ -1,4 +1,4 @@
-"""One measurement that ships with the course, for those who lack an engine; always shown as what it is."""
+"""One measurement that ships with the course, for engines that are not installed; always marked as such."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def row(engine: str, scenario: str, setting: Setting, dt: float = DT) -> Row:
 def encoded(comparison: Comparison, measured: str) -> bytes:
     """A comparison as the file that ``load`` reads: values only, and neither repeated words nor failures.
 
-    Rates of another machine on another day say nothing here, so of speed only the ratio to pymunk is kept.
+    Speeds of another machine on another day are not comparable, so only the ratio to pymunk is stored.
 
     Args:
         measured: the day, YYYY-MM-DD.

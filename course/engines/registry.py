@@ -1,4 +1,4 @@
-"""Which engines there are, and which of them this machine has."""
+"""Which engines exist, and which of them this machine has."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class EngineInfo:
     Attributes:
         id: what ``--engine`` takes; the adapter is the module of this name in ``course.engines.adapters``.
         name: on the screen.
-        package: what is installed to have it.
+        package: the package to install for it.
         extra: the course's extra that brings it; empty for what the course needs anyway.
         licence: of the engine itself, an SPDX expression.
         about: what kind of engine it is, in half a line.
@@ -101,7 +101,7 @@ class Availability:
 
     Attributes:
         version: of the package; None if it is not installed.
-        missing: why not; empty if it is.
+        missing: why it is not installed; empty if it is.
         command: what installs it; empty where nothing does, or nothing is missing.
     """
 
@@ -111,7 +111,7 @@ class Availability:
 
     @property
     def installed(self) -> bool:
-        """True if there is something to try."""
+        """True if the package is there."""
         return self.version is not None
 
 
@@ -143,7 +143,7 @@ def get(engine_id: str) -> EngineInfo:
 
 
 def load(engine_id: str) -> Adapter:
-    """Import an engine: only in a process that may die of it.
+    """Import an engine: only in a process that may crash.
 
     Raises:
         ImportError: it is not installed, or a library that it needs is not.

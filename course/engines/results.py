@@ -1,4 +1,4 @@
-"""What a comparison gives, as data: the same in memory, in the cache and in the reference that ships."""
+"""The results of a comparison, as data: the same in memory, in the cache and in the shipped reference."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
         measured: the day, YYYY-MM-DD.
         version: of the engine's package.
         options, why: what was set, and a reason for each.
-        samples: what the value is the mean or the median of, one for each phase of the step or each start;
-            empty where there is one run.
+        samples: the values of which ``value`` is the mean or the median, one for each phase of the step or
+            each start; empty for a single run.
         repeats: how often it was measured; ``spread`` is the largest value less the smallest.
-        details: what else was seen on the way.
+        details: further results.
     """
 
     engine: str
@@ -88,7 +88,7 @@ class EngineState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Reference(msgspec.Struct, frozen=True, kw_only=True):
-    """A measurement made once, for those who lack an engine."""
+    """A measurement made once, for engines that are not installed."""
 
     format_version: int
     measured: str
@@ -102,7 +102,7 @@ class Reference(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Comparison(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that one comparison gave.
+    """The results of one comparison.
 
     Attributes:
         machine: the one it ran on; ``reference`` is None unless rows of it are among ``rows``.

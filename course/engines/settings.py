@@ -1,18 +1,18 @@
 """How engines are set for a test, by two rules that are the same for all of them.
 
-*As it comes*: every option keeps the value that the installed package gives it. What states the test is set:
-the step (one call goes on by exactly one), gravity, shapes, masses and inertias, the start, and whatever the
-engine's rule for two materials needs for the friction and the restitution that are to act. Three things are
-switched off everywhere, because they would measure something else: sleeping, motors that hold joints, and
-contacts between the bodies of a chain.
+*As it comes*: every option keeps the value that the installed package gives it. Only what defines the test is
+set: the step (one call advances by exactly one), gravity, shapes, masses and inertias, the start, and the
+values that the engine's rule for two materials needs. Three things are switched off everywhere, because with
+them the test would measure something else: sleeping, motors that hold joints, and contacts between the bodies
+of a chain.
 
 *Well set*: an engine's options are listed in ``adapters/<engine>.toml``, each with what it does, the
 documentation it was read from, and the values worth trying for a topic; those left alone are listed as well.
-Of all combinations, the defaults among them, the one that comes nearest to the truth is taken, on the
-mean over the phases of a step; among equals the one that sets least. No engine's solver gets more than
-``BUDGET`` iterations a step, nor another step. So no engine is worse well set than as it comes, and none is
-judged by options that were not tried. ``tests/benchmarks/engines_settings.py`` makes the choice and writes
-``well_set.json``.
+Of all combinations, including the defaults, the one whose mean over the phases of a step is closest to the
+truth is used; of equally good ones, the one that changes the fewest options. No engine's solver gets more
+than ``BUDGET`` iterations a step, and all have the same step. So no engine is worse well set than as it
+comes, and none is judged by options that were not tried. ``tests/benchmarks/engines_settings.py`` makes the
+choice and writes ``well_set.json``.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ __all__ = [
     "tuning",
 ]  # fmt: skip
 
-#: The most iterations that a solver may be given in a step.
+#: The largest number of iterations that a solver may get in a step.
 BUDGET = 100
-#: What decides a test, by scenario; the options tried in it are those of its topic.
+#: The topic of each scenario; only the options of this topic are tried in it.
 TOPICS = {
     "free-fall": "motion",
     "pendulum": "joint",
@@ -101,7 +101,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):
-    """What was chosen for one engine in one scenario, of how many combinations."""
+    """What was chosen for one engine in one scenario, from how many combinations."""
 
     options: dict[str, Any]
     tried: int

@@ -1,7 +1,7 @@
 """The process that one engine runs in: ``python -P -m course.engines.worker ENGINE``.
 
-It answers each line of JSON on its standard input with one on its standard output. What an engine itself
-prints goes to standard error, where the parent finds the last words of one that died.
+It answers each line of JSON on its standard input with one on its standard output. An engine's own output
+goes to standard error, where the parent finds the last lines of one that died.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ __all__ = ["EngineServer", "main"]
 
 
 class EngineServer:
-    """Does what it is asked with one engine.
+    """Runs jobs with one engine.
 
     Args:
         tuning: the options of the engine well set, by scenario.
@@ -78,7 +78,7 @@ class EngineServer:
     def _chunk(self, steps: int) -> dict[str, Any]:
         if self._boxes is None:
             raise InternalError("A stretch of the boxes was asked for before the boxes.")
-        # The processor's time, not the clock's: what one core would take that had nothing else to do.
+        # CPU time, not wall time: the time on an otherwise idle core.
         started = time.process_time()
         self._boxes.step(steps)
         seconds = max(time.process_time() - started, 1e-6)
@@ -115,6 +115,6 @@ def main(arguments: list[str]) -> int:
 
 if __name__ == "__main__":
     code = main(sys.argv[1:])
-    # Engines that crash while they are torn down have already said everything.
+    # Engines that crash while shutting down have already sent all results.
     sys.stderr.flush()
     os._exit(code)

@@ -23,7 +23,7 @@ __all__ = ["audit_checks", "declared", "public_numbers"]
 
 
 def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
-    """Judge the checks of an exercise, public ones first, and return them.
+    """Audit the checks of an exercise, public ones first, and return them.
 
     Raises:
         ContentError: a file is missing or is not Python.
@@ -110,7 +110,7 @@ def _audit_check(
 
 
 def _needed_for(ids: Iterable[str], known: dict[str, CheckSource]) -> set[str]:
-    """Every check that must have passed before, directly or not."""
+    """Every check that must pass first, directly or indirectly."""
     needed: set[str] = set()
     left = list(ids)
     while left:
@@ -122,7 +122,7 @@ def _needed_for(ids: Iterable[str], known: dict[str, CheckSource]) -> set[str]:
 
 
 def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
-    """What hidden checks say contains no decimal number, unless the student has it in a file already."""
+    """The words of hidden checks contain no decimal number, unless the student already has it in a file."""
     public = public_numbers(exercise)
     for path in sorted(graders.glob("*.py")):
         for line, number in quoted_numbers(parse(path)):
@@ -137,7 +137,7 @@ def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
 
 
 def public_numbers(exercise: Exercise) -> frozenset[str]:
-    """Decimal numbers in the files that a student is given: naming them gives nothing away."""
+    """Decimal numbers in the student's files: showing them reveals nothing."""
     files = [path for path in exercise.stub_path.parent.iterdir() if path.suffix in {".py", ".md", ".toml"}]
     return frozenset(match[0] for path in files for match in DECIMAL.finditer(read_text(path)))
 

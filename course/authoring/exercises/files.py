@@ -77,7 +77,7 @@ def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tup
     catalog.rubric(exercise)
     _audit_code(catalog, exercise, findings)
     checks = audit_checks(catalog, exercise, findings)
-    # What lacks a marker cannot be added up, and is reported.
+    # Checks without a marker cannot be added up, and are reported.
     if not findings.of("check"):
         audit_points(exercise, checks, findings)
         audit_slow(exercise, checks, findings)
@@ -181,7 +181,7 @@ def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> No
 
 
 def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    """Stub, solution and README speak of the same functions."""
+    """Stub, solution and README have the same functions."""
     stub = parse(exercise.stub_path)
     model = parse(solution_path(catalog, exercise))
     theirs, ours = signatures(stub), signatures(model)

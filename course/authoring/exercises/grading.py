@@ -1,4 +1,4 @@
-"""The one seam between authoring and grading: what checks there are, and verdicts on sources."""
+"""The only interface between authoring and grading: the checks, and verdicts on sources."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GradeSources", "declared_checks", "grade_sources"]
 
-#: Gradings of small exercises that take as long as starting one more process for them.
+#: How many gradings of small exercises take as long as starting one more process.
 _WORTH_A_GRADER = 15
 
 GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator[tuple[int, Verdict]]]"
@@ -37,8 +37,8 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
     """Grade sources as a grading run would, on every processor.
 
     The seed is fixed: the same files get the same verdicts, whichever of them are done first. Most sources
-    are the model solution with a few definitions after it. A check that asks for no function which these
-    change, directly or through others, ends as it does for the model, and is not run again.
+    are the model solution with a few definitions after it. A check that uses none of the changed functions,
+    directly or through others, has the same result as for the model, and is not run again.
 
     Args:
         sources: exercise and submission of each.
@@ -74,7 +74,7 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
 
 @dataclass(frozen=True, slots=True)
 class _Model:
-    """The model solution, its verdict, and which functions each check asked it for."""
+    """The model solution, its verdict, and the functions that each check used."""
 
     source: str
     verdict: Verdict
@@ -88,7 +88,7 @@ class _Model:
             return cls(source.rstrip(), verdict, dict(session.asked))
 
     def concerned(self, source: bytes) -> tuple[str, ...]:
-        """Ids of the checks that can see what a source changes; empty stands for all."""
+        """Ids of the checks that a source's changes can affect; empty means all."""
         changed = _changed(source.decode("utf-8", "replace"), self.source)
         if not changed or self.verdict.state != "graded" or not self.verdict.passed:
             return ()
@@ -104,7 +104,7 @@ class _Model:
         own = {check.id: check for check in verdict.checks}
         checks = tuple(own.get(check.id, check) for check in self.verdict.checks)
         score, most = sum(check.points for check in checks), self.verdict.max_score
-        passed = score >= exercise.pass_mark * most - 1e-9  # as in GradingSession: rounding, not mercy
+        passed = score >= exercise.pass_mark * most - 1e-9  # as in GradingSession: only for rounding
         return msgspec.structs.replace(verdict, checks=checks, score=score, max_score=most, passed=passed)
 
 

@@ -1,4 +1,4 @@
-"""What the graders of a course catch, as a page: every wrong solution beside the check that finds it.
+"""The page of what a course's graders catch: every wrong solution with the check that finds it.
 
 The page repeats what ``mutants.toml`` declares; the audit proves it, by grading them all.
 """
@@ -43,7 +43,7 @@ def kill_table(catalog: Catalog) -> str:
 
 
 def audit_page(catalog: Catalog, findings: Findings) -> None:
-    """Report a page that is not of the exercises as they are."""
+    """Report a page that is out of date."""
     page = _page(catalog)
     if page.is_file() and page.read_text(encoding="utf-8") != kill_table(catalog):
         findings.add(
@@ -98,7 +98,7 @@ def _section(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
-    """What known wrong programs are told, by task, and each that is told something else."""
+    """The diagnoses of known wrong programs, by task, and each wrong diagnosis."""
     table = read_confusion(catalog, exercise)
     if table is None:
         return []

@@ -1,4 +1,4 @@
-"""Whether each wrong solution is caught as its author said: by that check, with that diagnosis, alone."""
+"""Whether each wrong solution is caught as declared: by that check, with that diagnosis, and only there."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["Fault", "MutantOutcome", "judge", "mutant_path", "run_mutants"]
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One way in which a grading did not end as it should; ``key`` is the key of mutants.toml to look at."""
+    """One unexpected result of a grading; ``key`` is the key of mutants.toml that it concerns."""
 
     message: str
     fix: str
@@ -35,10 +35,10 @@ class MutantOutcome:
 
     Attributes:
         caught_by: ids of the checks that did not pass, in order.
-        diagnosis: what the check it names diagnosed; None if that check passed.
+        diagnosis: the diagnosis of the check it names; None if that check passed.
         message, help: what the student would read there.
         lost: points lost.
-        faults: empty if all is as declared.
+        faults: empty if everything is as declared.
     """
 
     mutant: Mutant
@@ -96,7 +96,7 @@ def outcome_of(mutant: Mutant, verdict: Verdict) -> MutantOutcome:
 
 
 def judge(mutant: Mutant, verdict: Verdict) -> tuple[Fault, ...]:
-    """Everything that is not as the mutant's entry says; empty if it is."""
+    """Everything that differs from the mutant's entry; empty if nothing does."""
     if verdict.state != "graded":
         why = verdict.error.message if verdict.error else verdict.state
         return (Fault(f"could not be graded: {why}", "A mutant is wrong code that runs; correct it."),)

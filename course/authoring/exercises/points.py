@@ -1,7 +1,7 @@
-"""What the checks of an exercise add up to: written into ``exercise.toml``, and refused there once it is old.
+"""Sums over the checks of an exercise: written into ``exercise.toml``, and refused there when stale.
 
-A student's wheel has no hidden checks, so their number and points are data there. Nobody adds them up by
-hand: the markers of the checks say what each is worth.
+A student's wheel has no hidden checks, so their number and points are data there. They are computed from the
+markers of the checks, which say what each is worth.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class _Sum:
     Attributes:
         where: its key, as steps from the top of the file.
         about: what it is, in words.
-        written, due: what stands there, and what the checks come to.
+        written, due: the value in the file, and the sum over the checks.
     """
 
     where: tuple[str | int, ...]
@@ -62,7 +62,7 @@ def _sums(exercise: Exercise, checks: tuple[CheckSource, ...]) -> Iterator[_Sum]
 
 
 def audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
-    """Report each number that is not what the checks come to."""
+    """Report each number that differs from the sum over the checks."""
     path = exercise.checks_path.with_name("exercise.toml")
     lines = read_document(path, Exercise).lines
     for one in _sums(exercise, checks):
@@ -80,7 +80,7 @@ def audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: 
 
 
 def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write what the checks come to; None if it stands there already.
+    """Write the sums over the checks; None if they are there already.
 
     Raises:
         ContentError: a file is missing, is not Python, or a check lacks its markers.

@@ -1,7 +1,7 @@
-"""What only grading can show: the stub fails, the solution and its variants pass, each mutant is caught.
+"""The proofs that need grading: the stub fails, the solution and its variants pass, each mutant is caught.
 
-Every submission is graded with all checks, as in a grading run. A verdict that is not what it should be
-becomes a problem at the file, and where possible the line, that an author would open first.
+Every submission is graded with all checks, as in a grading run. A wrong verdict becomes a problem at the
+file, and where possible the line, that an author would open first.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ def _add(
 
 
 class Prover:
-    """Reports what the gradings of one exercise's proofs do not bear out."""
+    """Reports every proof of one exercise that its grading does not confirm."""
 
     def __init__(
         self, exercise: Exercise, checks: tuple[CheckSource, ...], mutants_toml: Path, findings: Findings
@@ -251,7 +251,7 @@ class Prover:
             self._findings.add(proof.path, None, proof.role, message, "It must score full marks.")
 
     def _judge_words(self, verdict: Verdict) -> None:
-        """What a hidden check says holds no value that redaction is there to hide."""
+        """The words of a hidden check contain no value that redaction must hide."""
         for check in verdict.checks:
             if check.visibility is Visibility.HIDDEN and check.status is Status.FAIL:
                 for number in _leaks(check, self._public):
@@ -274,7 +274,7 @@ class Prover:
 
 
 def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
-    """Numbers in a check's words that give something away: decimals no student has, and its own values."""
+    """Numbers in a check's words that reveal something: decimals unknown to students, and its own values."""
     words = f"{check.message} {check.help}"
     for match in DECIMAL.finditer(words):
         if match[0] not in public:

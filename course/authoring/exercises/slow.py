@@ -1,6 +1,6 @@
 """How long the slow public checks of an exercise take, measured and written into ``exercise.toml``.
 
-From it follows how long ``course check`` waits for a function that may hang; see ``Exercise.patience``.
+It determines how long ``course check`` waits for a function that may hang; see ``Exercise.patience``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _LEAST = 0.4
 
 
 def audit_slow(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
-    """Report checks that are said to be slow and are not there."""
+    """Report slow checks that do not exist."""
     known = {check.id for check in checks if not check.hidden}
     for check in sorted(exercise.slow.keys() - known):
         path = exercise.checks_path.with_name("exercise.toml")
@@ -52,14 +52,14 @@ def measured(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
 
 
 def due(written: dict[str, float], most: dict[str, float]) -> dict[str, float]:
-    """What is to be written, from what is and from what was measured: in tenths, rounded up."""
+    """The value to write, from the present and the measured one: in tenths, rounded up."""
     kept = {check: old for check, old in written.items() if _LEAST * old <= most.get(check, 0.0) <= old}
     slow = {check: math.ceil(10 * seconds) / 10 for check, seconds in most.items() if seconds > QUICK}
     return dict(sorted({**slow, **kept}.items()))
 
 
 def write_slow(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Measure, and write what is due; None if it stands there already."""
+    """Measure, and write the new value; None if it is there already."""
     slow = due(exercise.slow, measured(catalog, exercise))
     if slow == exercise.slow:
         return None

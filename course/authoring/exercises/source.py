@@ -141,7 +141,7 @@ def _check(node: Function, path: Path, *, hidden: bool) -> CheckSource:
 
 
 def quoted_numbers(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Decimal numbers in words that a student reads of a check, hidden or not: line and number.
+    """Decimal numbers in a check's words for the student, hidden or not: line and number.
 
     Those words are ``message=`` and ``help=`` anywhere, the texts of a ``Diagnosis``, and texts given by
     position to ``fail`` and ``expect_true``.

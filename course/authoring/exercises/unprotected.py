@@ -1,6 +1,6 @@
-"""A submission run in this very process, with the interface checks use and no protection whatever.
+"""A submission run in this process, with the interface that checks use and no protection.
 
-It serves for programs of the course's own: to see what every known wrong one is told, to calibrate checks,
+It is only for the course's own programs: to find the diagnosis of every known wrong one, to calibrate checks,
 and as the unprotected side of the benchmark. It reproduces what the boundary does to values (tuples become
 lists, numpy scalars plain numbers, arrays are copied) so that a check cannot come to rely on something that
 would not cross.
@@ -53,7 +53,7 @@ class LocalSubmission:
         return frozenset(name for name, value in vars(self._module).items() if callable(value))
 
     def begin_check(self, task: str = "", patience: float | None = None) -> None:  # noqa: ARG002 - of the interface
-        """Forget what the last check asked for; there is no deadline."""
+        """Forget which functions the last check used; there is no deadline."""
         self.asked = set()
 
     def printed(self) -> str:
@@ -68,7 +68,7 @@ class LocalSubmission:
         return self._inspect(name, args, kwargs).value
 
     def call_inspect(self, name: str, *args: Any) -> Inspected:
-        """Call it, and say what became of the arguments."""
+        """Call it, and report its value and its arguments after the call."""
         return self._inspect(name, args, {})
 
     def call_each(self, name: str, calls: Any) -> list[Any]:
@@ -76,7 +76,7 @@ class LocalSubmission:
         return [self.call(name, *args) for args in calls]
 
     def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None, keep: Any = None) -> Any:
-        """Hand a state through the student's function."""
+        """Pass a state through the student's function."""
         function = self._function(name)
         escaped: list[BaseException] = []
         given = [[_given(arg, escaped) for arg in args] for args in calls]
@@ -171,7 +171,7 @@ def _given(value: Any, escaped: list[BaseException]) -> Any:
 
 
 def _crossing(value: Any) -> Any:
-    """What a value handed to a callback arrives as; a callback that comes back is itself again."""
+    """The form in which a value arrives at a callback; a callback that is passed back arrives unchanged."""
     return getattr(value, "original", value) if callable(value) else _plain(value)
 
 

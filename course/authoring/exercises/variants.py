@@ -1,4 +1,4 @@
-"""The submissions that prove an exercise: its stub, its solution, and what is made from the solution.
+"""The submissions that prove an exercise: its stub, its solution, and the variants of the solution.
 
 A file in ``accepted/`` or ``mutants/`` holds only the definitions that differ. It is appended to the model
 solution, so that its definitions win.

@@ -1,1 +1,1 @@
-"""What the course checks of its lessons: prose, links, and every cell run with its recorded output."""
+"""How the course checks its lessons: prose, links, and every cell against its recorded output."""

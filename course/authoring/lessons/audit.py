@@ -1,7 +1,7 @@
 """The audit of lessons.
 
-The syllabus and the files agree, heads name what exists, texts parse, links lead on, and every number that is
-quoted or printed is what the lesson's own code gives today.
+The syllabus and the files agree, the heads name what exists, texts parse, links work, and every quoted or
+printed number is what the lesson's own code gives.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def _audit_figures(path: Path, blocks: tuple[Block, ...], findings: Findings) ->
 
 
 def _audit_numbers(path: Path, findings: Findings) -> None:
-    """Recorded output and quoted numbers are what the cells give."""
+    """Recorded output and quoted numbers agree with the cells."""
     run = run_lesson(path)
     for cell in run.cells:
         if not cell.agrees:

@@ -1,4 +1,4 @@
-"""Runs the code of a lesson, and holds its text to what the code gives.
+"""Runs the code of a lesson, and compares its text with the results.
 
 The cells of a lesson run in order in one namespace. What they print is compared with what the lesson
 records, and each number in the prose, ``[0.0890](=error)``, with the value of its expression, to the digits
@@ -58,7 +58,7 @@ class ValueRun:
 
 @dataclass(frozen=True, slots=True)
 class LessonRun:
-    """Everything that running a lesson tells."""
+    """The results of running a lesson."""
 
     cells: tuple[CellRun, ...]
     values: tuple[ValueRun, ...]
@@ -95,7 +95,7 @@ def run_lesson(path: Path) -> LessonRun:
 
 
 def update_outputs(path: Path) -> int:
-    """Write what the cells print today into the lesson; numbers in the prose stay the author's business.
+    """Write the cells' present output into the lesson; numbers in the prose are left to the author.
 
     Returns:
         How many recorded outputs changed.

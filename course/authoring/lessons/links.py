@@ -1,4 +1,4 @@
-"""Whether every link of the course leads somewhere.
+"""Whether every link of the course works.
 
 Three kinds are checked: ``lesson:ID`` and ``exercise:ID``, which work wherever the course is installed;
 ``#anchor`` alone or behind one of those; and files beside the text. Links to the web are left alone: the
@@ -51,14 +51,14 @@ class LinkChecker:
             self._check(path, line, target)
 
     def check_reading(self, path: Path, exercise: Exercise) -> None:
-        """The sections that an ``exercise.toml`` sends its students to."""
+        """The sections to which an ``exercise.toml`` refers."""
         lines = read_document(path, Exercise).lines
         for index, task in enumerate(exercise.task):
             if task.read:
                 self._check(path, lines.line(("task", index, "read")), f"lesson:{task.read}")
 
     def check_question(self, document: Document[Question]) -> None:
-        """The section that a question of the quiz sends a student to."""
+        """The section to which a quiz question refers."""
         self._check(document.path, document.lines.line(("lesson",)), f"lesson:{document.value.lesson}")
 
     def _check(self, path: Path, line: int | None, target: str) -> None:

@@ -1,4 +1,4 @@
-"""What a lesson must have, must not have and must point at, beyond being parsable.
+"""The rules for lessons beyond the format: what a lesson must have, must not have and must refer to.
 
 The audit asks ``findings`` for every lesson; each finding names a line and the fix. Whether code cells print
 what is recorded is a different question, answered by running them: ``course.authoring.lessons.cells``.
@@ -140,7 +140,7 @@ def _dead_pointers(
 
 
 def _unread_values(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
-    """Links to a value that were not read as links, so that a reader would see their source."""
+    """Links to a value that were not parsed as links, so that a reader would see their source."""
     for block, inline in b.walk_inlines(_without_code_spans(blocks)):
         if isinstance(inline, b.Text) and _UNREAD_VALUE.search(inline.text):
             yield Finding(
@@ -151,7 +151,7 @@ def _unread_values(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
 
 
 def _unproduced_numbers(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
-    """Numbers in prose that no code gives: neither a value, nor a constant of one of the code cells.
+    """Numbers in prose that no code produces: neither a value, nor a constant of a code cell.
 
     Mathematics, code, years, sources and alternative texts are left out; a constant of the code is what
     the author chose, and may be quoted as such.

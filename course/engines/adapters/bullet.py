@@ -1,8 +1,8 @@
 """Bullet 2.84 as panda3d carries it: single precision, bodies with joints as constraints.
 
-Restitutions and frictions of two bodies are multiplied. ``doPhysics`` has a step of its own, 1/60 s unless it
-is told another one, and interpolates in between. It is told here to take the time it is given as one step
-(``max_substeps`` 0); otherwise what it reports lags behind by up to a step.
+Restitutions and frictions of two bodies are multiplied. ``doPhysics`` has its own step, 1/60 s by default,
+and interpolates in between. Here it takes the given time as one step (``max_substeps`` 0); otherwise its
+results lag by up to a step.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class BulletWorld:
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self._dt = scene.dt
-        # A world reads them while it is made; the next one may want others.
+        # A world reads them when it is created; the next one may need others.
         ConfigVariableInt("bullet-solver-iterations").setValue(options.get("iterations", _ITERATIONS))
         ConfigVariableBool("bullet-split-impulse").setValue(bool(options.get("split_impulse")))
         self.world = bullet.BulletWorld()
@@ -39,9 +39,9 @@ class BulletWorld:
         self._root = NodePath("scene")
         self._ccd = bool(options.get("ccd"))
         self._contact_distance = options.get("contact_distance")
-        # The product of two equal coefficients is to be the one that acts.
+        # The product of two equal coefficients must be the one that acts.
         self._friction, self._restitution = math.sqrt(scene.friction), math.sqrt(scene.restitution)
-        # Bodies of a chain share no group with anything, themselves included.
+        # Bodies of a chain share no group with any body, including themselves.
         self._mask = BitMask32.allOff() if scene.pivots else BitMask32.allOn()
         self.bodies = [self._add(body) for body in scene.bodies]
         if scene.floor:
@@ -72,7 +72,7 @@ class BulletWorld:
         node = self._node(shape, body.position)
         node.setMass(body.mass)
         node.setInertia(Vec3(body.inertia, body.inertia, body.inertia))
-        # A body that has fallen asleep costs nothing and drifts nowhere: it would measure the sleep.
+        # A sleeping body costs nothing and does not drift, so the test would measure the sleep.
         node.setDeactivationEnabled(False)
         node.setLinearVelocity(Vec3(*body.velocity))
         if self._contact_distance is not None:

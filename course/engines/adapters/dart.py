@@ -1,7 +1,7 @@
 """DART: jointed bodies in joint coordinates, contacts as one exact complementarity problem; double precision.
 
-Restitutions of two bodies are multiplied; of two frictions the smaller one acts. Free bodies are jointed too:
-each is a skeleton whose joint leaves everything free.
+The restitutions of two bodies are multiplied; of two frictions the smaller one acts. Free bodies are jointed
+too: each is a skeleton with a free joint.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class DartWorld:
         self.world = world = dart.simulation.World()
         world.setTimeStep(scene.dt)
         world.setGravity(list(scene.gravity))
-        # A body that has fallen asleep costs nothing and drifts nowhere: it would measure the sleep.
+        # A sleeping body costs nothing and does not drift, so the test would measure the sleep.
         sleep = world.getDeactivationOptions()
         sleep.mEnabled = False
         world.setDeactivationOptions(sleep)

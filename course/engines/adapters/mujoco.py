@@ -1,8 +1,8 @@
 """MuJoCo: bodies in joint coordinates, contacts that are slightly soft.
 
-It has no coefficient of restitution; how much a contact bounces is a damping ratio (``solref``). Friction of
-two geoms is the larger of the two. Energy needs velocities of the moment: after a step, MuJoCo's derived
-quantities are still those of the step's beginning, so ``motion`` brings them up to date first.
+It has no coefficient of restitution; how much a contact bounces is a damping ratio (``solref``). The friction
+of two geoms is the larger of the two. The energy needs present velocities: after a step, MuJoCo's derived
+quantities are still those at the beginning of the step, so ``motion`` updates them first.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def _xml(scene: Scene, options: Mapping[str, Any]) -> str:
 
 
 def _contact(scene: Scene, options: Mapping[str, Any]) -> str:
-    """How a contact gives way."""
+    """The softness of a contact."""
     if options.get("stiff"):
         return f'solref="{2.0 * scene.dt!r} 1" solimp="0.99 0.99 0.001"'
     if "spring" not in options:
@@ -105,11 +105,11 @@ def _contact(scene: Scene, options: Mapping[str, Any]) -> str:
 
 @functools.cache
 def damping_ratio(restitution: float) -> float:
-    """The damping ratio with which a spring and a damper give back a share of the speed.
+    """The damping ratio with which a spring and a damper return a fraction of the speed.
 
-    A contact cannot pull, so it ends when its force has sunk to zero, which is before the spring is relaxed:
-    ln e = -(z / w) (pi - atan2(2 z w, w² - z²)) with w = sqrt(1 - z²), in units of the frequency. The formula
-    without that end, e = exp(-pi z / w), gives a ball back too much of its speed.
+    A contact cannot pull, so it ends when its force has dropped to zero, which is before the spring is
+    relaxed: ln e = -(z / w) (pi - atan2(2 z w, w² - z²)) with w = sqrt(1 - z²), in units of the frequency.
+    The formula without that end, e = exp(-pi z / w), returns too much of the ball's speed.
 
     Args:
         restitution: e, above 0.21 (there z is 1 / sqrt(2)) and up to 1.

@@ -1,8 +1,8 @@
 """ODE, as panda3d carries it: single precision, stepped with its iterative solver (``quickStep``).
 
-Contacts are joints that live for one step; ``autoCollide`` makes them without a detour through Python.
-Friction comes out as a pyramid that the normal force scales. A constraint force mixing of next to nothing
-makes the single precision solver divide by nothing and ends the process, so it stays at ODE's own default.
+Contacts are joints that exist for one step; ``autoCollide`` makes them without going through Python. Friction
+acts as a pyramid that scales with the normal force. With an almost zero constraint force mixing, the single
+precision solver divides by zero and ends the process, so it stays at ODE's own default.
 
 An exception inside a callback of panda3d is printed and dropped; the one callback here cannot fail.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ADAPTER", "OdeAdapter", "OdeWorld"]
 
-#: At most so many points between two bodies; two cubes face to face have at most eight.
+#: The maximum number of points between two bodies; two cubes face to face have at most eight.
 _POINTS = 8
 
 

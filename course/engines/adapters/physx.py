@@ -1,7 +1,7 @@
 """PhysX 5 on the processor, through sapien; single precision.
 
-Two materials' coefficients are averaged. By default contacts slower than 2 m/s do not bounce, the joints
-of an articulation have friction and its links are braked.
+Two materials' coefficients are averaged. By default contacts slower than 2 m/s do not bounce, the joints of
+an articulation have friction, and its links are damped.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class PhysxWorld:
         part.attach(shape)
         part.mass = body.mass
         part.inertia = np.full(3, body.inertia, dtype=np.float32)
-        # A body that has fallen asleep costs nothing and drifts nowhere: it would measure the sleep.
+        # A sleeping body costs nothing and does not drift, so the test would measure the sleep.
         part.sleep_threshold = 0.0
         if self._iterations:
             part.solver_position_iterations = self._iterations

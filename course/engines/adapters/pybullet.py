@@ -1,6 +1,6 @@
 """PyBullet: Bullet 3 for robots, double precision, jointed bodies in joint coordinates.
 
-Restitutions and frictions of two bodies are multiplied. Every body it makes is braked by the air, in its
+Restitutions and frictions of two bodies are multiplied. By default it damps every body like air, in its
 motion and in its spin (0.04 each); a joint of a robot has a motor that holds it, which is switched off here.
 """
 
@@ -22,7 +22,7 @@ __all__ = ["ADAPTER", "PybulletAdapter", "PybulletWorld"]
 
 
 class PybulletWorld:
-    """A scene in a physics server of its own, without a window."""
+    """A scene in its own physics server, without a window."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self._scene = scene
@@ -38,7 +38,7 @@ class PybulletWorld:
             solver["contactERP"] = options["contact_erp"]
         if solver:
             p.setPhysicsEngineParameter(**solver, physicsClientId=server)
-        # The product of two equal coefficients is to be the one that acts.
+        # The product of two equal coefficients must be the one that acts.
         self._surface = {
             "lateralFriction": math.sqrt(scene.friction),
             "restitution": math.sqrt(scene.restitution),
@@ -87,7 +87,7 @@ class PybulletWorld:
         p.changeDynamics(made, link, **self._surface, **extra, physicsClientId=self._server)
 
     def _chain(self, scene: Scene) -> list[tuple[int, int]]:
-        """One articulated body; a link's frame is its hinge, its centre lies off it."""
+        """One articulated body; a link's frame is at its hinge, away from its centre."""
         server, n = self._server, len(scene.bodies)
         hinges = [(0.0, 0.0, 0.0), *scene.pivots]
         made = p.createMultiBody(

@@ -1,7 +1,7 @@
 """pymunk: Chipmunk, an engine in the plane. x and z of a scene are its x and y.
 
-Its defaults are made for worlds measured in pixels: bodies may overlap by 0.1 of whatever the unit is before
-anything pushes them apart. Friction and restitution of two shapes are multiplied.
+Its defaults are made for worlds measured in pixels: bodies may overlap by 0.1 units before they are pushed
+apart. Friction and restitution of two shapes are multiplied.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class PymunkWorld:
         space.gravity = (scene.gravity[0], scene.gravity[2])
         space.iterations = options.get("iterations", space.iterations)
         space.collision_slop = options.get("collision_slop", space.collision_slop)
-        # The product of two equal coefficients is to be the one that acts.
+        # The product of two equal coefficients must be the one that acts.
         self._friction, self._restitution = math.sqrt(scene.friction), math.sqrt(scene.restitution)
         self._chain = bool(scene.pivots)
         self.bodies = [self._add(body) for body in scene.bodies]

@@ -1,6 +1,6 @@
-"""Rapier: a young engine in Rust, single precision, that cuts every step into substeps of its own (four).
+"""Rapier: a recent engine in Rust, single precision, that divides every step into its own substeps (four).
 
-Of two materials' coefficients it takes the average unless told otherwise, so equal ones act as they are.
+It averages the coefficients of two materials by default, so equal ones act unchanged.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Small tests whose right answer is known, the same for every engine: ``scenario`` lists them all."""
+"""Small tests with known right answers, the same for every engine: ``scenario`` lists them all."""

@@ -1,4 +1,4 @@
-"""Scenarios in which things touch: restitution, friction, stacks and walls."""
+"""Scenarios with contact: restitution, friction, stacks and walls."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ __all__ = ["PHASES", "SPEEDS", "STARTS", "bounce", "boxes", "boxes_scene", "clas
            "slide", "small_drop", "stack", "stick", "thin_wall"]  # fmt: skip
 
 G = 9.81
-#: An impact is met at this many phases of a step, evenly spread (quick: half as many). Where in a step a body
-#: arrives decides how deep it is found, and with it what many engines make of the impact.
+#: An impact is met at this many phases of a step, evenly spread (quick: half as many). The moment within a
+#: step at which a body arrives decides how deep the overlap is, and with it the impact in many engines.
 PHASES = 8
 #: Of the balls at the thin wall, m/s.
 SPEEDS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 400.0)

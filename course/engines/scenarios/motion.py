@@ -1,4 +1,4 @@
-"""Scenarios in which nothing touches: what is wrong there is the integrator, or a joint."""
+"""Scenarios without contact: errors there come from the integrator or a joint."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _LOOK_S = 1.0 / 30.0
 #: Where the arms of the double pendulum start, degrees from hanging. More than one, since it is chaotic.
 STARTS_DEG = (90.0, 92.0, 94.0, 96.0, 98.0)
 
-#: A step is borne as long as the energy never changes by more than this, per cent.
+#: A step is acceptable as long as the energy never changes by more than this, per cent.
 KEPT_PERCENT = 10.0
 
 
@@ -71,7 +71,7 @@ def _path(n: int, dt: float) -> Array:
 
 
 def pendulum(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
-    """How far a swinging ball strays from its true path, in per cent of the rod."""
+    """How far a swinging ball deviates from its true path, in per cent of the rod."""
     n = round(SWING_S / dt)
     scene = Scene((_bob(math.pi / 2),), pivots=((0.0, 0.0, 0.0),), dt=dt)
     world = build(scene)
@@ -89,7 +89,7 @@ def pendulum(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
 def double_pendulum(build: Build, dt: float, quick: bool) -> Measured:
     """The largest change of energy within ten seconds, per cent; the median over five starts (quick: three).
 
-    The change at the end would depend on where the swing happens to be then, its sign included.
+    The change at the end would depend on the phase of the swing at that moment, even in its sign.
     """
     starts = STARTS_DEG[:3] if quick else STARTS_DEG
     runs = [_energy_change(build, dt, math.radians(degrees)) for degrees in starts]
@@ -101,8 +101,8 @@ def double_pendulum(build: Build, dt: float, quick: bool) -> Measured:
 def long_step(build: Build, dt: float, quick: bool) -> Measured:
     """The longest step with which the double pendulum keeps its energy to 10 % for ten seconds, ms.
 
-    Steps of 1, 2, 4, 8 and 16 times ``dt`` are tried, up to the first that fails. A run that ends in what
-    is not a number has failed. Of the starts, the one that bears least counts.
+    Steps of 1, 2, 4, 8 and 16 times ``dt`` are tried, up to the first that fails. A run that ends in a value
+    that is not a number has failed. The start with the shortest step counts.
     """
     starts = STARTS_DEG[:3] if quick else STARTS_DEG
     samples = [1000.0 * _longest(build, dt, math.radians(degrees)) for degrees in starts]

@@ -1,7 +1,7 @@
-"""Small tests whose right answer is known, the same for every engine.
+"""Small tests with known right answers, the same for every engine.
 
-Each one builds its scenes, runs them and boils the outcome down to one number beside its truth. A scene names
-the friction and the restitution that are to act; what an engine has to be told is the adapter's matter.
+Each one builds its scenes, runs them and reduces the outcome to one number, to be compared with the right
+one. A scene gives the friction and the restitution that must act; the adapter finds the values to set.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BOXES", "DT", "IMPACTS", "SCENARIOS", "Outcome", "Scenario", "get"]
 
-#: The step that comparisons use unless told otherwise, s.
+#: The default step of comparisons, s.
 DT = 1.0 / 240.0
 #: The scenario that measures speed; everything else measures accuracy.
 BOXES = "boxes"
@@ -32,13 +32,13 @@ IMPACTS = ("clash", "bounce", "small-drop")
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What one run gave.
+    """The result of one run.
 
     Attributes:
         value: the number that is compared.
         samples: what it is the mean or the median of: one for each phase of the step, or each start; empty
             where there is one run.
-        details: what else was seen on the way.
+        details: further results.
     """
 
     value: float
@@ -52,7 +52,7 @@ class Scenario:
 
     Attributes:
         id, title: what it is called.
-        question: to be answered before the numbers are seen.
+        question: a question to answer before seeing the numbers.
         quantity: what ``value`` is.
         unit: of ``value`` and ``truth``; "%" and "mm" are meant for reading.
         truth: the right value; None where there is none (a speed), inf for "whatever comes".
@@ -60,8 +60,8 @@ class Scenario:
         digits: decimals worth showing.
         measure: given how to build a scene, the step (s) and whether it should be quick, gives an Outcome.
         planar: an engine in the plane can do it.
-        converges: its error against the step is worth a curve, because nothing but the integrator is in it.
-        better: the value nearer the truth is better, or the larger one.
+        converges: a curve of its error against the step makes sense, because only the integrator matters.
+        better: whether the value nearer the truth is better, or the larger one.
     """
 
     id: str
@@ -89,7 +89,7 @@ class Scenario:
         return Outcome(value, samples, details)
 
     def error(self, value: float) -> float | None:
-        """How far a value is from the truth, in the scenario's unit; None where nothing is known."""
+        """How far a value is from the truth, in the scenario's unit; None if the truth is unknown."""
         if self.truth is None or not math.isfinite(self.truth):
             return None
         return value - self.truth

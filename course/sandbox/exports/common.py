@@ -1,4 +1,4 @@
-"""What every export has to decide: the plane becomes an upright slice of space, and bodies get a depth.
+"""What all exports share: the plane becomes a vertical slice of space, and bodies get a depth.
 
 x stays x, y becomes z (up), and y, the third dimension, is held or left alone.
 """
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 __all__ = ["DEPTH", "checked_parts", "gravity_of", "moment_3d", "number", "surface_of"]
 
-#: Half the depth of everything, in m: a body that is flat here has to be some length there.
+#: Half the depth of every body, in m, because bodies that are flat here need a depth there.
 DEPTH = 0.05
-#: Stands for an infinite moment of inertia, as a multiple of the mass, in m².
+#: Replaces an infinite moment of inertia, as a multiple of the mass, in m².
 _NEVER_TURNS = 1e6
 
 
 def checked_parts(chosen: Chosen, target: str) -> tuple[Part, ...]:
-    """The bodies of a scene, if another engine can start with all of them.
+    """The bodies of a scene, if another engine can create all of them at the start.
 
     Raises:
         UsageError: some appear only later, or are driven by wheels.

@@ -1,9 +1,9 @@
 """Gives the models of an exported world the velocities they start with.
 
-Gazebo Sim has nothing in a world file for that: it passes over ``<state>`` (gz-sim issue 50), and what its
-velocity controllers are told they hold for ever (gz-sim pull request 2265). So each model with a velocity
-carries a plugin that loads this file, a system in Python for Gazebo Sim 8 (Harmonic) and later. It lies
-beside the world and imports nothing of the course.
+A world file of Gazebo Sim cannot do that: it ignores ``<state>`` (gz-sim issue 50), and its velocity
+controllers keep a velocity for ever (gz-sim pull request 2265). So each model with a velocity has a plugin
+that loads this file, a system in Python for Gazebo Sim 8 (Harmonic) and later. It lies beside the world and
+imports nothing of the course.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 Each movable body gets two slides and a hinge, which is a plane. MuJoCo has no coefficient of restitution: its
 contacts are springs with damping, and the damping is chosen so that one contact of two bodies rebounds as the
-scene says. It would take the larger friction of a pair where this engine multiplies, so every pair that can
-touch is written out with its own numbers.
+scene says. It takes the larger friction of a pair where this engine multiplies, so every pair that can touch
+is listed with its own numbers.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _NOTE = (
     " Written by `course sandbox export`. A plane in space: x is x, z is up, y is held. Velocities at the"
     " start are in the key frame `start`: load it with mj_resetDataKeyframe. "
 )
-#: Frequency of a contact's spring times the step: a contact lasts a dozen steps, as MuJoCo's solver likes it.
+#: Frequency of a contact's spring times the step: a contact lasts a dozen steps, which suits MuJoCo's solver.
 _STIFF = 0.25
-#: How much of a contact is the spring's and how much the solver's; close to 1 is rigid.
+#: The weight of the spring against the solver in a contact; close to 1 is rigid.
 _IMPEDANCE = "0.999 0.999 0.001"
 _MOST_PAIRS = 5000
 
@@ -64,7 +64,7 @@ def mjcf(chosen: Chosen) -> bytes:
 
 
 def damping_ratio(restitution: float) -> float:
-    """The damping of a spring that sends a mass back with this share of its speed, 0 to 1.
+    """The damping of a spring that returns a mass with this fraction of its speed, 0 to 1.
 
     Half a period of a damped spring leaves exp(-pi zeta / sqrt(1 - zeta²)) of the speed; solved for zeta.
     Source: Nagurka and Huang, "A mass-spring-damper model of a bouncing ball", 2004.

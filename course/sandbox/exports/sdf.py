@@ -1,9 +1,9 @@
 """A scene as an SDF world, which Gazebo Sim reads.
 
-Bodies that nothing holds slide on rails and turn on a hinge, so that they stay in the plane; bodies that
-joints hold together are links of one model, and each other one is a model of its own. SDF has restitution and
-friction for each surface and leaves it to the physics engine how a pair's come about. Velocities at the start
-are set by ``gazebo_start.py``, which has to lie beside the world.
+Free bodies slide on rails and turn on a hinge, so that they stay in the plane; bodies connected by joints are
+links of one model, and each other body is its own model. SDF has restitution and friction for each surface,
+and the physics engine combines those of a pair. ``gazebo_start.py``, which must be in the world's folder,
+sets the velocities at the start.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def sdf(chosen: Chosen) -> bytes:
 
 
 def start_script(world: bytes) -> bytes | None:
-    """What has to lie beside a world as ``START``; None if all its bodies start at rest."""
+    """The content of ``START``, a file beside the world; None if all its bodies start at rest."""
     if START.encode() not in world:
         return None
     return Path(__file__).with_name(START).read_bytes()

@@ -1,4 +1,4 @@
-"""How bodies are held in an SDF world: on rails that keep them in the plane, or by the joints of the scene.
+"""How bodies are constrained in an SDF world: by rails that keep them in the plane, or by the scene's joints.
 
 Gazebo's engine builds a model as a tree: each link is the child of one joint (gz-physics issue 25). So a body
 that nothing holds slides on two rails, along x and along z, and turns on the second; what hangs from it, or

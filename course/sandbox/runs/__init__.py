@@ -1,1 +1,1 @@
-"""Runs to keep: unseen and measured, recorded and replayed, filmed, described in sentences."""
+"""Runs that are kept: measured without a picture, recorded and replayed, filmed, described in sentences."""

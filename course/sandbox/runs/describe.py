@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["account", "momentum", "sentence", "sentences"]
 
-#: A pair that touches again within this long is not told about each time, in s.
+#: A pair that touches again within this time, in s, is not reported each time.
 _PATIENCE = 0.05
 #: Changes of energy below this share are not worth a clause.
 _WORTH = 0.005
@@ -38,7 +38,7 @@ def _place(value: float) -> str:
 
 
 def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
-    """What is worth telling, and at the end how much was left out.
+    """The events worth reporting, and at the end how many were left out.
 
     Args:
         events: in order.
@@ -64,7 +64,7 @@ def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
 
 
 def account(receipt: Receipt) -> list[str]:
-    """The receipt in sentences."""
+    """The energy account in sentences."""
     had = receipt.start + receipt.given
     lines = [
         f"Energy at the start {_joule(receipt.start)}"
@@ -86,7 +86,7 @@ def account(receipt: Receipt) -> list[str]:
 
 
 def momentum(done: Run) -> list[str]:
-    """What became of the momentum, in a sentence."""
+    """The change of the momentum, in a sentence."""
     (px, py, _), (qx, qy, _) = done.momentum_before, done.momentum_after
     size = max(abs(px), abs(py), abs(qx), abs(qy), 1e-12)
     now = f"({qx if abs(qx) > 1e-9 * size else 0.0:.4g}, {qy if abs(qy) > 1e-9 * size else 0.0:.4g}) kg m/s"

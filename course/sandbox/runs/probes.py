@@ -1,4 +1,4 @@
-"""Numbers read off a run: what a scene's probes ask for."""
+"""Numbers read from a run: the scene's probes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ class Probes:
     """Watches a world and answers its scene's probes at the end.
 
     Args:
-        world: before its first step. It must keep a receipt: that is where states of each step come from.
+        world: before its first step. It must keep an energy account, because the states of each step come
+            from there.
         chosen: its scene, with the parameters that went into it.
     """
 
@@ -72,7 +73,7 @@ class Probes:
         return (value - self._start[probe.name] * probe.change) * probe.scale
 
     def _watch(self, block: Block) -> None:
-        """Pick what probes with a moment of their own are after."""
+        """Pick the values of probes that have their own moment."""
         if self._times is None:
             self._times = self._moments()
         for probe in self._scene.probe:
@@ -90,7 +91,7 @@ class Probes:
                     self._found[probe.name] = self._value(probe, block.states[row])
 
     def _moments(self) -> dict[str, float]:
-        """When probes look, by the settings that time began to pass with: until then they may change."""
+        """When probes read, by the settings at the first step: until then they may change."""
         given = {p.name: p.time for p in self._scene.probe if p.time is not None}
         values: Mapping[str, float] = {}
         if any(isinstance(time, str) for time in given.values()):

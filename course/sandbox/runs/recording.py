@@ -1,4 +1,4 @@
-"""Recordings: a scene, what was done to it, and enough hashes to say where a replay leaves the same path.
+"""Recordings: a scene, the user's actions, and enough hashes to say where a replay differs.
 
 One JSON Lines file: a head with the whole scene in it (so that a later edit of the scene cannot change
 what is replayed), a line for each thing done by hand, a line with a hash every so many steps, and an end.
@@ -41,7 +41,7 @@ class Head(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag="hea
 
 
 class Input(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag="input"):
-    """Something done by hand, before the step after ``tick``."""
+    """An action of the user, before the step after ``tick``."""
 
     tick: int
     what: str
@@ -66,7 +66,7 @@ Line = Head | Input | Hash | End
 
 
 class Recording:
-    """Writes down what happens to a world, from its first step on.
+    """Records what happens to a world, from its first step on.
 
     Args:
         world: before its first step.
@@ -167,7 +167,7 @@ def read(path: Path) -> Replay:
 
 
 def replay(recorded: Replay) -> Difference:
-    """Do everything again, and compare."""
+    """Repeat everything, and compare."""
     here = _versions()
     then = recorded.head.versions
     other = {

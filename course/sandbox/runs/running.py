@@ -1,4 +1,4 @@
-"""A run without a view: everything that happened, and the answer to the scene's question."""
+"""A run without a view: all events, and the answer to the scene's question."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _MOST_ROWS = 200_000
 
 
 class Run(msgspec.Struct, frozen=True, kw_only=True):
-    """What a run gave.
+    """The results of a run.
 
     Attributes:
         duration: simulated time, in s.

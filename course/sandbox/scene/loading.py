@@ -1,4 +1,4 @@
-"""Scenes from files: the course's own by id, a student's by path, and either with parameters set."""
+"""Scenes from files: the course's own by id, a student's by path, with parameters set."""
 
 from __future__ import annotations
 
@@ -153,12 +153,12 @@ def unchanged(scene: Scene) -> Chosen:
 
 
 def with_settings(chosen: Chosen, settings: Mapping[str, float]) -> Chosen:
-    """The same with the settings that are in force in its world by now."""
+    """The same with the present settings of its world."""
     return msgspec.structs.replace(chosen, settings=dict(settings))
 
 
 def question(chosen: Chosen) -> str:
-    """What the scene asks, with the numbers it has; "" if it asks nothing.
+    """The scene's question, with its numbers; "" if it has none.
 
     Raises:
         UsageError: a formula in it has no value for these settings.
@@ -175,7 +175,7 @@ def _read(path: Path) -> Document[Scene]:
 
 
 def _check_formulas(document: Document[Scene]) -> None:
-    """What is said, and when is looked, have values: as the scene is, and at both ends of what can be set."""
+    """The formulas of texts and times have values: for the scene as it is, and at both ends of each range."""
     scene = document.value
     texts: dict[tuple[str | int, ...], str] = {
         ("probe", i, "time"): f"{{{probe.time}}}"
@@ -243,7 +243,7 @@ def _unknown(name: str) -> NotFoundError:
 
 
 def _put_in(scene: Scene, settings: dict[str, object]) -> tuple[Scene, dict[str, float], dict[str, float]]:
-    """The scene with its parameters in their places; what is left goes to the world."""
+    """The scene with its parameters put in; the other settings go to the world."""
     parameters = {parameter.name: parameter for parameter in scene.parameter}
     seed = settings.pop("seed", scene.seed)
     given = {name: value for name, value in settings.items() if name in parameters}

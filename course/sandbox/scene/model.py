@@ -26,7 +26,7 @@ __all__ = [
     "Wheels",
 ]
 
-#: Beyond these a scene is a slip of the finger; 10 km and 10 km/s are far outside anything drawn.
+#: Values beyond these are typing errors; 10 km and 10 km/s are far outside anything drawn.
 Length = Annotated[float, Meta(gt=0, le=1e4)]
 Coordinate = Annotated[float, Meta(ge=-1e4, le=1e4)]
 Speed = Annotated[float, Meta(ge=-1e4, le=1e4)]
@@ -42,11 +42,11 @@ Point = tuple[Coordinate, Coordinate]
 
 
 class Material(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What something is made of.
+    """The material of a body.
 
     Attributes:
-        restitution: 1 keeps the speed of approach, 0 none of it. Between two shapes the values are
-            multiplied, so two balls of 0.8 part with 0.64 of it.
+        restitution: 1 keeps the speed of approach, 0 none of it. The values of two shapes are multiplied, so
+            two balls of 0.8 separate with 0.64 of it.
         friction: Coulomb's coefficient; also multiplied.
         density: in kg/m², mass per area, since bodies are flat.
     """
@@ -88,7 +88,7 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """One body, or a row or grid of equal ones, which are then called name-1, name-2 and so on.
 
     Attributes:
-        name: what events and probes call it.
+        name: its name in events and probes.
         shape: a circle needs ``radius``, a box ``size``, a polygon ``points`` (convex, around the body's
             position), a segment two ``points`` and a ``thickness``.
         material: the name of one of the scene's materials.
@@ -137,7 +137,7 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Joint(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What holds two bodies together, or one to the world.
+    """A connection of two bodies, or of one body to the world.
 
     Attributes:
         kind: a rod keeps the distance of its two anchors, a pivot keeps them together.
@@ -157,7 +157,7 @@ class Joint(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Floor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The ground of a scene seen from above: it rubs against everything that slides on it.
+    """The ground of a scene seen from above, with friction on everything that slides on it.
 
     Attributes:
         friction: Coulomb's coefficient.
@@ -180,7 +180,7 @@ class Parameter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class Probe(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Something that is read off a run.
+    """A number that is read from a run.
 
     Attributes:
         quantity: what; ``contacts`` counts them, ``contact_time`` is that of the first one, ``count`` is how
@@ -232,7 +232,7 @@ class Prediction(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         probe: what answers it.
         unit: of the answer.
         theory: a formula for it in parameters, ``g``, ``step`` and ``body.mass`` and the like.
-        why: where the formula comes from, and what a wrong guess usually thought.
+        why: where the formula comes from, and the usual reasoning behind a wrong guess.
         near: a guess this close to the simulation counts as right; a fraction of the answer.
         near_abs: the same as a number, for answers near zero.
         agrees: how far simulation and theory may be apart, as a fraction of the theory.

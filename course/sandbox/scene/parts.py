@@ -1,4 +1,4 @@
-"""A scene laid out: every body with its place, outline, mass and moment, as plain numbers.
+"""A scene in numbers: every body with its position, outline, mass and moment of inertia.
 
 The world builds pymunk's bodies from these, and the exports write them into other engines' files, so that all
 of them start from the same numbers.
@@ -22,7 +22,7 @@ __all__ = ["Part", "layout", "spawned"]
 
 Vector = tuple[float, float]
 
-#: Colours in turn for bodies that name none; told apart by people who see no red or green as well.
+#: Colours in turn for bodies that name none; distinguishable for colour-blind people.
 PALETTE = ("#4477aa", "#ee6677", "#ccbb44", "#66ccee", "#aa3377", "#228833")
 FIXED_COLOUR = "#8a8f98"
 

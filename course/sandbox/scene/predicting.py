@@ -51,7 +51,7 @@ def compare(
     Args:
         asked: the scene's question.
         simulation: the number the run gave.
-        values: what the names in formula and texts stand for.
+        values: the values of the names in formula and texts.
         guess: the student's number.
 
     Raises:

@@ -1,4 +1,4 @@
-"""What a scene has to keep that its types cannot say: references, shapes that are whole, ranges that fit."""
+"""The rules for a scene that its types cannot express: references, complete shapes, fitting ranges."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["check_scene", "matching"]
 
-#: What ``body.field`` may mean in a formula.
+#: The fields that ``body.field`` may name in a formula.
 FIELDS = ("x", "y", "vx", "vy", "mass", "radius", "restitution", "friction")
 #: What a formula may use besides parameters and bodies.
 WORDS = ("g", "step", "iterations", "duration", "left", "right")

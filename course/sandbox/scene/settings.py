@@ -1,4 +1,4 @@
-"""What can be changed about any running world, and how far."""
+"""The settings that can be changed in any running world, and their ranges."""
 
 from __future__ import annotations
 

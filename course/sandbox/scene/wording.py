@@ -1,8 +1,8 @@
 """Texts of a scene that hold numbers: ``{restitution}``, ``{speed * step:.2f}``.
 
-A number that a setting changes is never written out in a question or its explanation, or the text would be
-false as soon as it is changed. The formulas are those of ``course.sandbox.scene.expression``, and no text
-is ever handed to ``str.format``, whose fields reach into objects.
+A number that a setting can change is never written out in a question or its explanation, because the text
+would then become false. The formulas are those of ``course.sandbox.scene.expression``, and no text is ever
+handed to ``str.format``, whose fields reach into objects.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def fill(text: str, values: Mapping[str, float]) -> str:
 
     Args:
         text: formulas are in braces, with a format such as ``.2f`` after a colon where four digits are wrong.
-        values: what each name stands for; see ``course.sandbox.scene.loading.values_of``.
+        values: the value of each name; see ``course.sandbox.scene.loading.values_of``.
 
     Raises:
         UsageError: one is no formula, names something unknown or has no value, or a brace is left over.

@@ -1,1 +1,1 @@
-"""Ways to look at one world. Each view is imported when it is asked for."""
+"""Ways to look at one world. Each view is imported only when it is used."""

@@ -1,4 +1,4 @@
-"""What a view tells in words: events as they happen, and how the prediction came out."""
+"""The text of a view: events as they happen, and the result of the prediction."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Experiment", "Narrator"]
 
-#: Sentences that a view opened later still gets.
+#: Sentences that a view gets when it is opened later.
 _KEPT = 60
-#: A pair that touches again within this long, in s, is not told about again.
+#: A pair that touches again within this time, in s, is not reported again.
 _PATIENCE = 0.05
-#: Contacts and stops told of at once, and in a second of real time; more than that nobody reads.
+#: Contacts and stops that are reported at once, and per second of real time; a reader cannot follow more.
 _BURST, _RATE = 10.0, 4.0
 #: Events kept for the probes of one run.
 _MOST = 50_000
@@ -56,8 +56,8 @@ class Narrator:
 
         Args:
             events: in order.
-            now: real time in s. Of contacts and stops only so many are told each second; the others are
-                counted.
+            now: real time in s. Only a limited number of contacts and stops is reported each second; the
+                others are counted.
         """
         self._free = min(_BURST, self._free + _RATE * (now - self._then))
         self._then = now
@@ -76,7 +76,7 @@ class Narrator:
         return lines
 
     def _again(self, event: Event) -> bool:
-        """Whether a contact is too soft, or its pair was told about a moment ago."""
+        """Whether a contact is too soft, or its pair was reported a moment ago."""
         pair = (event.a, event.b)
         since = event.t - self._last.get(pair, -1.0)
         self._last[pair] = event.t
@@ -101,9 +101,8 @@ def _line(event: Event) -> dict[str, Any]:
 class Experiment:
     """A guess before the run, and theory, guess and simulation side by side after it.
 
-    What is compared is the run that was watched, as long as the user moved no body: a theory says
-    nothing about a ball that the user threw. Settings may be changed before the first step; theory takes them
-    into account.
+    The run on the screen is compared, as long as the user moved no body: the theory is not about a ball that
+    the user threw. Settings may be changed before the first step; theory takes them into account.
 
     Args:
         world: before its first step.
@@ -192,12 +191,12 @@ class Experiment:
         return True
 
     def _now(self) -> Chosen:
-        """The scene with the settings in force."""
+        """The scene with the present settings."""
         return with_settings(self._chosen, self._world.settings)
 
     @property
     def question(self) -> str:
-        """What the scene asks, with the settings in force; "" if it asks nothing."""
+        """The scene's question, with the present settings; "" if it has none."""
         if self._asked[0] != self._world.settings:  # a layout of every body, and pages ask in each frame
             try:
                 text = question(self._now())

@@ -1,8 +1,9 @@
-"""What is computed at the author's desk and shipped with an exercise: ``hypotheses.json``.
+"""What the author's machine computes and an exercise ships: ``hypotheses.json``.
 
-The wheel has no solutions. So that a diagnosis at home is as good as in a grading run, this writes what each
-known wrong program answers to the questions of an exercise, as fingerprints, and what its public checks
-expect for their fixed inputs. The audit refuses a file that is older than what it was made from.
+The wheel has no solutions. So that a diagnosis at home is as good as in a grading run, this module writes the
+answers of each known wrong program to the questions of an exercise, as fingerprints, and the expected values
+of its public checks for their fixed inputs. The audit refuses a file that is older than what it was made
+from.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ _MOST_PAIRS = 260
 
 
 def build(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write the table of an exercise; None if its checks speak for themselves.
+    """Write the table of an exercise; None if it has no questions.
 
     Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``; a warm-up has none.
     """
@@ -56,7 +57,7 @@ def build(catalog: Catalog, exercise: Exercise) -> Path | None:
 
 
 def digest(catalog: Catalog, exercise: Exercise) -> str:
-    """Over all that the table of an exercise is computed from."""
+    """A digest of everything that the table of an exercise is computed from."""
     solutions = solutions_folder(catalog, exercise)
     own, theirs = SOURCES
     files = [exercise.readme_path.with_name(name) for name in own] + [solutions / name for name in theirs]
@@ -96,7 +97,7 @@ def table_of(catalog: Catalog, exercise: Exercise) -> Table:
 
 
 def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]]) -> tuple[Row, ...]:
-    """All programs with one mistake, and as many with two, spread evenly over what there is."""
+    """All programs with one mistake, and a limited number with two, spread evenly over all of them."""
     every = [row for known in rows.values() for row in known.values()]
     single = [row for row in every if len(row.codes) == 1]
     double = [row for row in every if len(row.codes) > 1]
@@ -104,9 +105,10 @@ def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]]) -> tuple[Ro
 
 
 def _sums(questions: ModuleType, task: str, function: Callable[..., Any]) -> dict[str, tuple[float, ...]]:
-    """What a function answers to the questions of its task, by name, where it answers so each time.
+    """A function's answers to the questions of its task, by name, if they are the same each time.
 
-    One that draws from a generator of its own is known by no answer, and would be another in every table.
+    A function that draws from its own generator gives different answers each time, so it cannot be
+    recognised.
     """
     local: Any = LocalSubmission("", replaced={task: function})
     within = getattr(questions, "WITHIN", {}).get(task)
@@ -125,7 +127,8 @@ def hypotheses_of(
 ) -> Iterator[tuple[str, tuple[str, ...], Callable[..., Any]]]:
     """Task, codes and function of every known wrong program: the mutants, then ``hypotheses.py``.
 
-    Mutants whose diagnosis has no words of the exercise's own are left out: reading a value shows it.
+    Mutants whose diagnosis is not in the exercise's own words are left out: they are found while reading a
+    value.
     """
     solution = solution_path(catalog, exercise)
     told = words(exercise.id).entries

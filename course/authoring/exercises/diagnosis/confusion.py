@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 FILE = "confusion.json"
-#: Of the programs with two mistakes every so many-th is tried: there are thousands.
+#: Only every n-th program with two mistakes is tried, because there are thousands.
 _EVERY = 100
 
 
@@ -71,7 +71,7 @@ class Confusion(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class _Rehearsal(GradingSession):
-    """A session over one wrong program after the other, run in this process."""
+    """A session that grades one wrong program after the other, in this process."""
 
     program: tuple[str, Callable[..., Any]]
     source: str
@@ -133,7 +133,7 @@ def _tried(
 
 
 def _main(said: list[str], codes: tuple[str, ...], kind: Callable[[str], str]) -> str:
-    """What a student with several failed checks is told: the one story, else the first cause, else a fact."""
+    """The diagnosis for several failed checks: the common one, else the first cause, else a fact."""
     if set(said) & set(codes):
         wrong = [code for code in said if code and code not in codes and kind(code) == "cause"]
         return wrong[0] if wrong else next(code for code in codes if code in said)
@@ -145,12 +145,12 @@ def _main(said: list[str], codes: tuple[str, ...], kind: Callable[[str], str]) -
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """How the programs of one task fare.
+    """How the programs of one task are diagnosed.
 
     Attributes:
-        named: told a mistake that they have, under whichever of the names of the same program.
-        general: told what is broken and not by what, or that a value is of the wrong kind, or nothing.
-        otherwise: told a mistake that they have not.
+        named: diagnosed with a mistake that they have, under any name of the same program.
+        general: diagnosed with a consequence, with a wrong kind of value, or not at all.
+        otherwise: diagnosed with a mistake that they do not have.
         survived: no check fails; a program with two mistakes may be right by chance.
     """
 
@@ -169,12 +169,12 @@ class Tally:
 
 
 def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
-    """How the programs of these rows fare."""
+    """How the programs of these rows are diagnosed."""
     return sum((Tally(**{fate(row): row.count}) for row in rows), Tally())
 
 
 def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
-    """Tells of a row under which word of ``Tally`` its programs are counted."""
+    """Says under which field of ``Tally`` the programs of a row are counted."""
     own, names = words(exercise.id), _names(exercise)
 
     def fate(row: Reported) -> str:
@@ -188,7 +188,7 @@ def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
 
 
 def _names(exercise: Exercise) -> set[tuple[str, str, str]]:
-    """(task, code, code) of programs with one mistake that answer every question alike."""
+    """(task, code, code) of programs with one mistake and the same answers to every question."""
     found = set()
     for name, rows in read_table(exercise.readme_path.with_name(TABLE)).rows.items():
         task = name.partition(".")[0]  # parts of a task are "task.part"

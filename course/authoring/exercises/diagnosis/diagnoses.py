@@ -1,4 +1,4 @@
-"""The audit of an exercise's diagnoses: the table is up to date, and codes and words go with each other."""
+"""The audit of an exercise's diagnoses: the table is up to date, and codes and entries match."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    """Report a stale table, codes without words, and words without a code that anything gives."""
+    """Report a stale table, codes without words, and entries whose code is never given."""
     words_path = exercise.readme_path.with_name(WORDS)
     table_path = exercise.readme_path.with_name(FILE)
     if not words_path.is_file():

@@ -1,1 +1,1 @@
-"""The sandbox in a terminal: half blocks, a mouse or keys, and the accounts beside the picture."""
+"""The sandbox in a terminal: half blocks, a mouse or keys, and the energy account beside the picture."""

@@ -85,7 +85,7 @@ _Functions = Annotated[
         "--function", metavar="'NAME(ARGUMENTS)'", help="A function that it asks for; as often as needed."
     ),
 ]
-_Title = Annotated[str, typer.Option("--title", metavar="WORDS", help="What people call it.")]
+_Title = Annotated[str, typer.Option("--title", metavar="WORDS", help="Its title, for readers.")]
 _Summary = Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")]
 
 
@@ -365,7 +365,7 @@ def mutants(
     ] = None,
     table: Annotated[
         Path | None,
-        typer.Option("--table", metavar="FILE", help="Write what is caught by what, as Markdown."),
+        typer.Option("--table", metavar="FILE", help="Write which check catches which mutant, as Markdown."),
     ] = None,
 ) -> int:
     """Show the feedback for each wrong solution.

@@ -153,7 +153,7 @@ def _completion(console: Console, option: str, shell: str) -> int:
         console.raw(get_completion_script(prog_name="course", complete_var=variable, shell=shell) + "\n")
         return 0
     _, path = install(shell=shell, prog_name="course", complete_var="_COURSE_COMPLETE")
-    console.line(f"Completion for {shell} is in {path}; it works once a new shell is started.")
+    console.line(f"Completion for {shell} is in {path}; it works in a new shell.")
     return 0
 
 

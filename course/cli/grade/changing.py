@@ -103,13 +103,15 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
-        console.note(f"{done.up_to_date} were graded by these very graders; --all grades them too.")
+        console.note(f"{done.up_to_date} were graded by these same graders; --all grades them too.")
     if done.kept:
         console.note(f"{done.kept} had nothing that could be graded, and stay as they are.")
     if done.faults:
-        console.line(f"{done.faults} hit a fault of the grader and are marked for regrading.")
+        console.line(f"{done.faults} failed because of a fault of the grader and are marked for regrading.")
     if dry_run and done.changes:
-        console.note("Nothing was changed. Without --dry-run it is, and the old results are kept.")
+        console.note(
+            "Nothing was changed. Without --dry-run the scores change, and the old results are kept."
+        )
 
 
 def override(
@@ -151,14 +153,14 @@ def override(
         counts = f"{_points(now.score)} of {format_points(now.max_score)} counts"
         console.line((f"{one_line(student)} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
     if dry_run:
-        console.note("Nothing was changed: without --dry-run it is.")
+        console.note("Nothing was changed; leave out --dry-run to change it.")
     return 0
 
 
 def late(
     out: Out,
     policy: Annotated[
-        Path | None, typer.Option("--policy", metavar="FILE", help="Late policy (TOML) to put in force.")
+        Path | None, typer.Option("--policy", metavar="FILE", help="Late policy (TOML) to apply from now on.")
     ] = None,
     times: Annotated[
         Path | None,
@@ -167,7 +169,7 @@ def late(
     roster: Annotated[
         Path | None, typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days.")
     ] = None,
-    clear: Annotated[bool, typer.Option("--clear", help="Put no policy in force.")] = False,
+    clear: Annotated[bool, typer.Option("--clear", help="Remove the late policy.")] = False,
     reason: Reason = "",
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show whose score would change; change nothing.")
@@ -271,7 +273,7 @@ def _show_late(
     console: Console, results: Results, found: list[LateOne], unknown_time: int, unknown: list[str]
 ) -> None:
     if results.policy is None:
-        console.line("No late policy is in force; add one with --policy FILE.")
+        console.line("There is no late policy; add one with --policy FILE.")
     for item in found:
         if item.late is None:
             words = "late, says the download, and not by how much; give its time with --times"

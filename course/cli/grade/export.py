@@ -40,7 +40,7 @@ def export(
         one_of("--format", *FORMATS, AUTOGRADER),
     ] = "csv",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="PATH", help="Where; in OUT if left out.")
+        Path | None, typer.Option("-o", "--output", metavar="PATH", help="File to write; in OUT if left out.")
     ] = None,
     roster: Annotated[
         Path | None,

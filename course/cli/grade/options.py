@@ -36,7 +36,7 @@ Against = Annotated[
     typer.Option(
         "--against",
         metavar="RUN|SNAPSHOT",
-        help="With the graders of that run; `log` lists them.",
+        help="Use the graders of that run; `log` lists them.",
         autocompletion=run_numbers,
     ),
 ]

@@ -67,7 +67,9 @@ def run(
     isolation: Protection = "auto",
     seed: Annotated[
         int | None,
-        typer.Option("--seed", min=0, max=LARGEST_SEED, help="Draw hidden inputs as an earlier run did."),
+        typer.Option(
+            "--seed", min=0, max=LARGEST_SEED, help="Draw the same hidden inputs as an earlier run."
+        ),
     ] = None,
     layout: Layout = "auto",
     roster: RosterFile = None,
@@ -118,7 +120,7 @@ def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...]
     if not summary.edited:
         return
     names = ", ".join(summary.edited)
-    console.line((f"The graders were edited since these scores were given: {names}.", "bold"))
+    console.line((f"The graders were edited after these scores were given: {names}.", "bold"))
     console.line(f"No score was changed by that. With the graders as they are now, {len(changes)} would:")
     for change in changes[:_MOST_TROUBLED]:
         show_change(console, change)
@@ -130,7 +132,9 @@ def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...]
 def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
     if local_cluster is not None and scheduler is not None:
         raise UsageError(
-            "--local-cluster and --scheduler are two clusters.", help="Name one of them.", code="two_clusters"
+            "--local-cluster and --scheduler name two clusters.",
+            help="Name one of them.",
+            code="two_clusters",
         )
     if jobs > 1 and (local_cluster is not None or scheduler is not None):
         raise UsageError(

@@ -35,17 +35,21 @@ def assign(
     student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
     file: Annotated[
         str | None,
-        typer.Argument(metavar="FILE", help="As it is listed, or a path; into a zip with a slash."),
+        typer.Argument(
+            metavar="FILE", help="A name from the list, or a path; a path into a zip has a slash."
+        ),
     ] = None,
     exercise: Annotated[
         str | None,
-        typer.Option("--exercise", metavar="ID", help="If it does not follow.", autocompletion=exercise_ids),
+        typer.Option(
+            "--exercise", metavar="ID", help="Needed if it is not clear.", autocompletion=exercise_ids
+        ),
     ] = None,
     accept_names: Annotated[
-        bool, typer.Option("--accept-names", help="Take every match that is proposed.")
+        bool, typer.Option("--accept-names", help="Accept every proposed match.")
     ] = False,
     reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with each result.")] = "",
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade, show, and keep nothing.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade and show, but store nothing.")] = False,
     jobs: Jobs = 1,
     isolation: Isolation = "auto",
 ) -> int:
@@ -139,7 +143,9 @@ def _show_unsettled(console: Console, left: list[Unsettled]) -> None:
     proposed = sum(any(one.proposed for one in item.found.candidates) for item in left)
     console.line((f"{len(left)} to settle; {proposed} with a match.", "bold"))
     if proposed:
-        console.note("--accept-names takes the matches; --dry-run shows first what they would get.")
+        console.note(
+            "--accept-names accepts the matches; with --dry-run it only shows the scores they would get."
+        )
 
 
 def log(
@@ -179,8 +185,10 @@ def _short(text: str) -> str:
 
 def salvage(
     out: Out,
-    to: Annotated[Path, typer.Option("--to", metavar="NEW", help="Folder for what is whole; must be new.")],
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what there is; write nothing.")] = False,
+    to: Annotated[Path, typer.Option("--to", metavar="NEW", help="Folder for the intact rows; must be new.")],
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Report what can be recovered; write nothing.")
+    ] = False,
 ) -> int:
     """Recover the intact parts of a damaged gradebook and its backups.
 
@@ -194,7 +202,7 @@ def salvage(
     console = current()
     if to.exists():
         raise UsageError(
-            f"{to} exists already; nothing was touched.", help="Name a new folder.", code="out_exists"
+            f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
         )
     folder = private_folder() if dry_run else to
     folder.mkdir(parents=True, exist_ok=True)

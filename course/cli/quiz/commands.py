@@ -45,7 +45,7 @@ AnswersOption = Annotated[
     typer.Option(metavar="FILE", help="Answers from a TOML or JSON file; nothing is asked."),
 ]
 SeedOption = Annotated[
-    int | None, typer.Option(metavar="N", help="Which variants, numbers and order; drawn if left out.")
+    int | None, typer.Option(metavar="N", help="Chooses variants, numbers and order; random if left out.")
 ]
 QuestionsOption = Annotated[
     bool, typer.Option("--questions", help="Print the questions and a file to fill in; nothing is asked.")
@@ -81,9 +81,9 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     screen.show_mark(console, len(posed))
     screen.show_keys(console)
     if resumed:
-        console.line(f"Going on with the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
+        console.line(f"Continuing the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
     if not _ask_all(console, desk, attempt, posed):
-        console.line("The attempt waits for you: `course quiz take` goes on with it.")
+        console.line("Your attempt is kept: `course quiz take` continues it.")
         return INTERRUPTED
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
@@ -95,7 +95,7 @@ def _check_options(
         check_seed(seed)
     if answers is not None and questions:
         raise UsageError(
-            "--questions prints what is asked and --answers answers it; give one of them.",
+            "--questions prints the questions and --answers answers them; give one of the two.",
             help=f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE.",
         )
     if answers is None and not questions and command == "take":
@@ -224,7 +224,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     for number, question in enumerate(posed, start=1):
         one = screen.ask(console, question, number, len(posed))
         if one is None:
-            console.line("What is left stays due: `course quiz review` goes on with it.")
+            console.line("The rest stays due: `course quiz review` continues with it.")
             return INTERRUPTED
         marked.append(_reviewed(desk, question, one.id, seed))
         screen.show_marked(console, marked[-1], number)
@@ -259,7 +259,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
         console.line((f"{len(marked) - len(missed)} of {len(marked)} right.", "bold"))
     elif not due:
         console.line(
-            "Nothing is under review: what an attempt misses comes here."
+            "Nothing is under review: questions that you miss in an attempt come here."
             if desk.history.finished
             else "Nothing is under review yet: take the quiz first."
         )

@@ -88,8 +88,10 @@ def play(
     scene: Annotated[str, _SCENE],
     settings: Annotated[list[str] | None, _SET] = None,
     web: Annotated[bool, typer.Option("--web", help="In a browser, on this machine only.")] = False,
-    headless: Annotated[bool, typer.Option("--headless", help="Unseen, as fast as it goes.")] = False,
-    describe: Annotated[bool, typer.Option("--describe", help="Tell the run in sentences.")] = False,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Show no picture; run as fast as possible.")
+    ] = False,
+    describe: Annotated[bool, typer.Option("--describe", help="Describe the run in sentences.")] = False,
     guess: Annotated[
         float | None, typer.Option("--guess", metavar="NUMBER", help="Your answer to the scene's question.")
     ] = None,
@@ -117,7 +119,7 @@ def play(
     ] = None,
     port: Annotated[int, typer.Option("--port", help="For --web; 0 takes a free one.")] = 0,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="For --web: only say the address.")
+        bool, typer.Option("--no-browser", help="For --web: only print the address.")
     ] = False,
 ) -> int:
     """Play a scene, or run it unseen.
@@ -188,7 +190,8 @@ def export(
         ),
     ],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; else to the screen.")
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="File to write; the screen if left out."),
     ] = None,
     settings: Annotated[list[str] | None, _SET] = None,
 ) -> int:

@@ -37,7 +37,9 @@ _TYPED = re.compile(r"^command: .*$", re.MULTILINE)
 def bug(
     out: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FILE", help="Where to; course-bug.txt here if left out."),
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="File to write; course-bug.txt here if left out."
+        ),
     ] = None,
 ) -> int:
     """Write what a fault report needs into a file.
@@ -54,9 +56,9 @@ def bug(
         console.line(f"There was another {written.path}; it is kept at {written.backup.backup}.")
     console.line(f"Wrote {written.path}")
     console.line(
-        "It holds a traceback." if crash else "No crash of the course was found: it has no traceback."
+        "It contains a traceback." if crash else "No crash of the course was found: it has no traceback."
     )
-    console.note("Read it before you pass it on: what an error says can quote your own files.")
+    console.note("Read it before you pass it on: error messages can quote your own files.")
     console.emit(Bug(file=written, traceback=crash is not None))
     return 0
 

@@ -80,7 +80,8 @@ def demo() -> int:
         before, after = (_motion(console, session, source) for source in sources)
     if before.verdict.all_pass or not after.verdict.all_pass:
         raise InternalError(
-            "The demonstration went wrong: the mistake must fail its checks and the mended file pass them.",
+            "The demonstration failed: the file with the mistake must fail its checks, and the corrected "
+            "file pass them.",
             help="Run `course doctor`; if it finds nothing, please report this.",
             code="demo_failed",
         )

@@ -34,7 +34,7 @@ _LEVELS = {
 
 def doctor(
     repair: Annotated[
-        bool, typer.Option("--repair", help="Set a damaged record of progress aside and start a new one.")
+        bool, typer.Option("--repair", help="Set a damaged progress record aside and start a new one.")
     ] = False,
 ) -> int:
     """Say what works on this machine.

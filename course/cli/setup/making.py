@@ -24,7 +24,7 @@ __all__ = ["init"]
 
 def init(
     folder: Annotated[
-        Path | None, typer.Argument(metavar="DIR", help="Where; the current folder if left out.")
+        Path | None, typer.Argument(metavar="DIR", help="The folder; the current one if left out.")
     ] = None,
     surroundings: Annotated[
         str | None,

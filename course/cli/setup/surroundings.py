@@ -60,7 +60,7 @@ def usable(requirement: str | None) -> str | None:
     ):
         raise UsageError(
             f"--requirement {requirement[:80]!r}: this is nothing that pip could install.",
-            help="Give what stands behind `pip install`: an address, a path or a name.",
+            help="Give what you would write after `pip install`: an address, a path or a name.",
             code="bad_requirement",
         )
     return requirement

@@ -94,7 +94,8 @@ def run(
         typer.Argument(metavar="NAME", help="See `course sim list`.", autocompletion=simulation_ids),
     ] = None,
     everything: Annotated[
-        bool, typer.Option("--all", help="The four of the introduction, in order, and what they show.")
+        bool,
+        typer.Option("--all", help="Run the four of the introduction, in order, and say what they show."),
     ] = False,
     settings: Annotated[
         list[str] | None,

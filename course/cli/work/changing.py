@@ -104,7 +104,7 @@ def reset(
 
 
 def update(
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be done.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print what would be done.")] = False,
 ) -> int:
     """Bring newer course content in.
 
@@ -118,7 +118,7 @@ def update(
     for change in changes:
         console.line(_sentence(here, change, dry_run=dry_run))
     if not any(change.action in {"replace", "beside"} for change in changes):
-        console.line("Everything here is as new as the course that is installed.")
+        console.line("Everything here is up to date with the installed course.")
     elif dry_run:
         console.note("Nothing was changed. To do it: course update")
     if not dry_run:

@@ -41,7 +41,7 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 def submit(
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Where; in the workspace if left out."),
+        typer.Option("-o", "--output", metavar="FILE", help="File to write; in the workspace if left out."),
     ] = None,
     warm_ups: Annotated[
         bool, typer.Option("--warm-ups", help="The warm-ups you worked on go in, too; they do not count.")

@@ -257,13 +257,13 @@ class ReaderApp(TasksApp):
         from course.reading.finding import find
 
         if not self._wanted:
-            self.say("/ looks for words.")
+            self.say("/ searches for words.")
             return
         place = self.page.place() or Place()
         blocks = [hit.block for hit in find(self.progress, self._wanted)]
         following = [block for block in blocks if block > place.block] or blocks
         if not following or self.page.book is None:
-            self.say(f"{self._wanted!r} is not in this lesson; / looks in all.")
+            self.say(f"{self._wanted!r} is not in this lesson; / searches all lessons.")
             return
         self._show(self.page.book.layout.row(Place(following[0])))
 

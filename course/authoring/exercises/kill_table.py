@@ -104,9 +104,9 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
         return []
     lines = [
         "",
-        "What known wrong programs are told, by `course author build --confusion`: the right formula with",
-        "one of its terms, or with two, in another form. *Named*: a mistake that the program has. *General*:",
-        "what is broken and not by what. *Otherwise*: a mistake that it has not.",
+        "The diagnoses of known wrong programs, by `course author build --confusion`. Each is the right formula",
+        "with one or two of its terms changed. *Named*: a mistake that the program has. *General*: what is",
+        "broken, but not why. *Otherwise*: a mistake that it does not have.",
         "",
         "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",
         "|---|---|---|---|---|---|---|",
@@ -122,12 +122,12 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
                     cells = (f"`{task.id}`", number, where, t.named, t.general, t.otherwise, t.survived)
                     lines.append(f"| {' | '.join(map(str, cells))} |")
     off = [
-        f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} is told `{row.said}` ({where})"
+        f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} is diagnosed as `{row.said}` ({where})"
         for scope, where in wheres.items()
         for row in table.rows[scope]
         if fate(row) == "otherwise"
     ]
-    return [*lines, "", *(["Told otherwise:", "", *off] if off else [])]
+    return [*lines, "", *(["Diagnosed otherwise:", "", *off] if off else [])]
 
 
 def _about(path: Path) -> str:

@@ -178,7 +178,7 @@ def late(
     """Set the late policy, and show who is late.
 
     The policy is kept in the gradebook and applied at every export; the scores of the checks never change.
-    Without options it shows the policy in force.
+    Without options it shows the present policy.
     """
     from course.cli.grade.replies import GradeLate
     from course.grading.results.journal import Recording, recorded
@@ -273,7 +273,7 @@ def _show_late(
     console: Console, results: Results, found: list[LateOne], unknown_time: int, unknown: list[str]
 ) -> None:
     if results.policy is None:
-        console.line("There is no late policy; add one with --policy FILE.")
+        console.line("No late policy is set; add one with --policy FILE.")
     for item in found:
         if item.late is None:
             words = "late, says the download, and not by how much; give its time with --times"

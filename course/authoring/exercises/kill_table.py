@@ -104,9 +104,9 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
         return []
     lines = [
         "",
-        "The diagnoses of known wrong programs, by `course author build --confusion`. Each is the right formula",
-        "with one or two of its terms changed. *Named*: a mistake that the program has. *General*: what is",
-        "broken, but not why. *Otherwise*: a mistake that it does not have.",
+        "The diagnoses of known wrong programs, by `course author build --confusion`. Each program is the",
+        "right formula with one or two of its terms changed. *Named*: a mistake that the program has.",
+        "*General*: what is broken, but not why. *Otherwise*: a mistake that it does not have.",
         "",
         "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",
         "|---|---|---|---|---|---|---|",
@@ -122,7 +122,7 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
                     cells = (f"`{task.id}`", number, where, t.named, t.general, t.otherwise, t.survived)
                     lines.append(f"| {' | '.join(map(str, cells))} |")
     off = [
-        f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} is diagnosed as `{row.said}` ({where})"
+        f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} gets `{row.said}` ({where})"
         for scope, where in wheres.items()
         for row in table.rows[scope]
         if fate(row) == "otherwise"

@@ -91,7 +91,7 @@ def test_a_second_update_has_nothing_to_do(course, workspace, write, newer_conte
     course("update")
     before = {p: d for p, d in _all_files(workspace).items() if p.suffix != ".sqlite"}
     ran = course("update")
-    assert "as new as the course" in ran.out
+    assert "up to date with the installed course" in ran.out
     assert {p: d for p, d in _all_files(workspace).items() if p.suffix != ".sqlite"} == before
 
 

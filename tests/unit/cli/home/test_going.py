@@ -106,7 +106,7 @@ def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_w
     reader().at(Place(), second.block)  # back to the top, on the whole screen
     assert "Going on" not in course("lesson", "twice-as-much", "--page").out
     reader().at(Place(second.block + 1), second.block + 1)
-    assert "Continuing with page 2" in course("lesson", "twice-as-much", "--page").out
+    assert "Going on with page 2" in course("lesson", "twice-as-much", "--page").out
     assert "Going on" not in course("lesson", "twice-as-much", "--page").out, "it was read to its end"
 
 

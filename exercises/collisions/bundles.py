@@ -9,6 +9,7 @@ import numpy as np
 from course.grading import kit
 
 probes = kit.companion("collisions", "probes")
+tracks = kit.companion("collisions", "tracks")
 paths = kit.companion("collisions", "paths")
 engine = kit.companion("collisions", "engine")
 _questions = kit.companion("collisions", "questions")
@@ -228,7 +229,7 @@ def samples(value, t_end, h, names, given, width=None):
             input=given,
             message="The number of samples is not one more than the number of steps.",
             help="N = round(t_end / h) steps connect N + 1 states.",
-            diagnose=lambda rows=rows: probes.of_count(len(kit.as_list(rows)), t_end, h, kit.as_vector(t)),
+            diagnose=lambda rows=rows: tracks.of_count(len(kit.as_list(rows)), t_end, h, kit.as_vector(t)),
         )
     t = kit.as_array(t, (n + 1,), names[0])
     shape = (n + 1,) if width is None else (n + 1, width)
@@ -243,7 +244,7 @@ def samples(value, t_end, h, names, given, width=None):
         input=given,
         message="The times are not 0, h, 2h, ... up to t_end.",
         help="The time of sample i is i * h.",
-        diagnose=lambda: probes.of_times(t, h),
+        diagnose=lambda: tracks.of_times(t, h),
     )
     return t, x, v
 
@@ -270,7 +271,7 @@ def expect_head_on(scene, truth, value, t_end, h, message, help=""):
             input=given,
             message=message,
             help=help,
-            diagnose=lambda: probes.of_head_on(scene, truth, t, x, v, h),
+            diagnose=lambda: tracks.of_head_on(scene, truth, t, x, v, h),
         )
     return t, x, v
 
@@ -305,6 +306,6 @@ def expect_drop(scene, truth, value, t_end, h, message, help=""):
             input=given,
             message=message,
             help=help,
-            diagnose=lambda: probes.of_drop(scene, truth, t, z, v, h),
+            diagnose=lambda: tracks.of_drop(scene, truth, t, z, v, h),
         )
     return t, z, v

@@ -7,7 +7,7 @@ import pytest
 from course.grading import kit
 
 bundles = kit.companion("collisions", "bundles")
-probes, engine = bundles.probes, bundles.engine
+tracks, engine = bundles.tracks, bundles.engine
 
 
 @pytest.mark.task(bundles.SPHERES)
@@ -133,7 +133,7 @@ def test_friction_absent(submission, draw):
         "friction_absent",
         draw,
         "Where nothing rubs (no coefficient, no slip, no impact), or next to it, the velocities are wrong.",
-        "With no slip there is no direction to oppose: divide by |vt| only if it is not zero.",
+        "Friction needs mu > 0, a slip and an approach; without one of them the result is that of `resolve`.",
     )
 
 
@@ -258,7 +258,7 @@ def test_head_on_pymunk(submission, draw):
             input=given,
             message="Your balls and pymunk's are further apart than pymunk's own error explains.",
             help="Compare with straight lines that bend at the time of contact.",
-            diagnose=lambda: probes.of_head_on(scene, truth, t, x, v, h),
+            diagnose=lambda: tracks.of_head_on(scene, truth, t, x, v, h),
         )
 
 
@@ -302,5 +302,5 @@ def test_drop_pymunk(submission, draw):
         input=given,
         message="Your ball and pymunk's are further apart than pymunk's own error explains.",
         help="Compare with parabolas that meet at the times of contact.",
-        diagnose=lambda: probes.of_drop(scene, truth, t, z, v, h),
+        diagnose=lambda: tracks.of_drop(scene, truth, t, z, v, h),
     )

@@ -328,6 +328,7 @@ def _mended(rng):
     some = [(head_on(rng, "meet"), float(rng.uniform(0.006, 0.02))) for _ in range(3)]
     ends = (1.0, some[1][0].restitution, 0.0)
     pairs = [(replace(scene, restitution=e), h) for (scene, h), e in zip(some, ends, strict=True)]
+    pairs += [(head_on(rng, kind), float(rng.uniform(0.006, 0.02))) for kind in ("chase", "slow")]
     return [*((scene, 150 * h, h) for scene, h in pairs), early(rng)]
 
 

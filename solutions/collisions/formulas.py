@@ -269,6 +269,45 @@ def _strikes_if(meets):
     return lambda ma, mb, va, vb, e: right(ma, mb, va, vb, e) if meets(va, vb) else 0.0
 
 
+def _approach_by(meets):
+    """On a line: whether they approach is decided by ``meets(va, vb)``, the impulse by their difference."""
+    always = _line(acts=lambda c: True)
+    return lambda ma, mb, va, vb, e: always(ma, mb, va, vb, e) if meets(va, vb) else 0.0
+
+
+def _approach_in_space(meets, **terms):
+    """The same in space, by ``meets`` of their parts along the normal."""
+    always = _impact(acts=lambda c: True, **terms)
+
+    def resolve(ma, mb, va, vb, n, *rest):
+        va, vb, n = _array(va), _array(vb), _array(n)
+        return always(ma, mb, va, vb, n, *rest) if meets(va @ n, vb @ n) else (va, vb)
+
+    return resolve
+
+
+_BY_ONE = (
+    lambda va, vb: va > 0,
+    lambda va, vb: vb < 0,
+    lambda va, vb: va > 0 or vb < 0,
+    lambda va, vb: abs(va) > abs(vb),
+)
+
+
+def _one_after_the_other(ma, mb, va, vb, n, e, mu=0.0):
+    """The impulse on b is computed with a's new velocity."""
+    va, vb, n = _array(va), _array(vb), _array(n)
+    if (va - vb) @ n <= 0:
+        return va, vb
+    va = va - (1 + e) * ((va - vb) @ n) / _give(ma, mb) / ma * n
+    return va, vb + (1 + e) * ((va - vb) @ n) / _give(ma, mb) / mb * n
+
+
+def _speed_of(speed):
+    """On a line: the impulse of ``speed(va, vb)``, where they approach."""
+    return lambda ma, mb, va, vb, e: (1 + e) * speed(va, vb) / _give(ma, mb) if va > vb else 0.0
+
+
 # -- the moment of contact ------------------------------------------------------------------------------
 
 
@@ -284,6 +323,8 @@ def _moment(
     overlap_square=None,
     roots=lambda room, speed2: math.sqrt(room / speed2),
     middle=lambda nearing, speed2: nearing / speed2,
+    closing_of=lambda va, vb: va - vb,
+    real=lambda room: room,
 ):
     """The first (root -1) or second (+1) time at which the centres are as far apart as the radii reach.
 
@@ -293,7 +334,7 @@ def _moment(
     overlap_square = overlap_square or square
 
     def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-        apart, closing = _array(xb) - _array(xa), _array(va) - _array(vb)
+        apart, closing = _array(xb) - _array(xa), closing_of(_array(va), _array(vb))
         reach, speed2 = radii(ra, rb), float(closing @ closing)
         nearing = float(apart @ closing)
         if apart @ apart <= overlap_square(reach) and overlap != "ignored":
@@ -302,7 +343,7 @@ def _moment(
             return none
         nearest = nearing / speed2  # when the centres come closest; the rest is Pythagoras
         miss = apart - nearest * closing
-        room = square(reach) - float(miss @ miss)
+        room = real(square(reach) - float(miss @ miss))
         if room < 0:
             return none
         t = middle(nearing, speed2) + root * roots(room, speed2)
@@ -331,6 +372,21 @@ def _gap_over_speed(xa, va, ra, xb, vb, rb, dt):
     if apart @ u <= 0 or speed == 0:
         return None
     return max(gap, 0.0) / speed if gap <= speed * dt else None
+
+
+def _mixed(right_root):
+    """b without its factor 2 beside b² - 4 a c, over 2 a or, with ``right_root``, the other way round."""
+
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
+        a, b, c = float(v @ v), float(x @ v), float(x @ x) - (ra + rb) ** 2
+        if b >= 0 or c <= 0:
+            return 0.0 if b < 0 else None
+        room = b * b - a * c if right_root else b * b - 4 * a * c
+        t = (-b - math.sqrt(max(room, 0.0))) / (2 * a)
+        return t if room >= 0 and 0 <= t <= dt else None
+
+    return time_of_impact
 
 
 def _at_the_end_only(exact):
@@ -439,6 +495,8 @@ _FRICTIONS = {
         ("FRICTION_WITHOUT_MU", lambda p, s, v, g, mu: _coulomb(p, s, v, g, 1.0)),
         ("FRICTION_STOPS_HALF_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, v / g / 2) * _unit(s)),
         ("FRICTION_STOPS_HALF_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, v / (2 * g)) * _unit(s)),
+        ("FRICTION_SPINS", lambda p, s, v, g, mu: -min(mu * p, v / g * 2 / 7) * _unit(s)),
+        ("FRICTION_SPINS", lambda p, s, v, g, mu: -min(mu * p, v / g / 3) * _unit(s)),
         ("FRICTION_STOPS_TWICE_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, 2 * v / g) * _unit(s)),
         ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
@@ -452,6 +510,7 @@ _FRICTIONS = {
         ("FRICTION_NOT_RELATIVE", lambda va, vb, s, n: vb - (vb @ n) * n),
         ("FRICTION_NOT_RELATIVE", lambda va, vb, s, n: s + 2 * (va - (va @ n) * n)),
         ("FRICTION_NOT_ACROSS", lambda va, vb, s, n: vb - va),
+        ("FRICTION_NOT_ACROSS", lambda va, vb, s, n: vb - va - (vb - va) @ n),
         ("FRICTION_NOT_ACROSS", lambda va, vb, s, n: s - 2 * ((vb - va) @ n) * n),
     ),
 }
@@ -628,12 +687,19 @@ TERMS = {
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room) / speed2),
                 ("ROOT_TERM_WRONG", lambda room, speed2: room / speed2),
             ),
+            "closing_of": (
+                ("MOTION_NOT_RELATIVE", lambda va, vb: -vb),
+                ("MOTION_NOT_RELATIVE", lambda va, vb: va),
+                ("MOTION_NOT_RELATIVE", lambda va, vb: va + vb),
+                ("MOTION_NOT_RELATIVE", lambda va, vb: -va - vb),
+                ("TIME_NEGATED", lambda va, vb: vb - va),
+            ),
+            "real": (("MISS_IS_A_NUMBER", abs), ("MISS_IS_A_NUMBER", lambda room: max(room, 0.0))),
             "middle": (
                 ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing),
                 ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing / math.sqrt(speed2)),
                 ("MIDDLE_TERM_WRONG", lambda nearing, speed2: 2 * nearing / speed2),
                 ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing / speed2 / 2),
-                ("MIDDLE_TERM_WRONG", lambda nearing, speed2: -nearing / speed2),
             ),
         },
     ),
@@ -654,9 +720,17 @@ OTHERS = {
     "impulse_1d": [
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va > 0 > vb)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
+        *((("APPROACH_BY_ONE_BODY",), _approach_by(meets)) for meets in _BY_ONE),
+        *((("APPROACH_BY_ONE_BODY",), _strikes_if(meets)) for meets in _BY_ONE),
+        (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va)),
+        (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: -vb)),
+        (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va + vb)),
+        (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: abs(va) + abs(vb))),
     ],
     "resolve": [
         (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
+        *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
+        (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
         (("NORMAL_REVERSED",), _reversed(_impact())),
         (("EACH_BODY_ALONE",), _each_alone),
         (("RETURNS_SWAPPED",), _swapped(_impact())),
@@ -667,6 +741,7 @@ OTHERS = {
     "resolve_with_friction": [
         (("NORMAL_REVERSED",), _reversed(_impact(friction=_coulomb))),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
+        *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets, friction=_coulomb)) for meets in _BY_ONE),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
@@ -684,6 +759,8 @@ OTHERS = {
     "time_of_impact": [
         (("TUNNELS",), _at_the_end_only(exact=False)),
         (("TUNNELS",), _at_the_end_only(exact=True)),
+        (("QUADRATIC_MIXED",), _mixed(right_root=False)),
+        (("QUADRATIC_MIXED",), _mixed(right_root=True)),
         (("MISSES_COUNT_AS_HITS",), _head_on_always),
         (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),

@@ -58,6 +58,8 @@ def _head_on(
     overlaps=False,
     clock=lambda i, h: i * h,
     slow=None,
+    waits=lambda gap, va, vb: max(gap, 0.0) / (va - vb),
+    leaves=lambda h, wait: h - wait,
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
@@ -83,10 +85,11 @@ def _head_on(
                 xa, xb = xa + va * h, xb + vb * h
                 va, vb = collide(m, va, vb, e)
             elif meets:
-                wait = max(gap, 0.0) / closing
+                wait = waits(gap, va, vb)
                 xa, xb = xa + va * wait, xb + vb * wait
                 va, vb = collide(m, va, vb, e)
-                xa, xb = xa + va * (h - wait) * rest, xb + vb * (h - wait) * rest
+                left = leaves(h, wait) * rest
+                xa, xb = xa + va * left, xb + vb * left
             else:
                 xa, xb = xa + va * h, xb + vb * h
             rows.append((xa, xb, va, vb))
@@ -119,6 +122,12 @@ _HEAD_ON = {
     "passes": (("PASSES_THROUGH", True),),
     "first": (("INITIAL_STATE_MISSING", False),),
     "overlaps": (("TUNNELS", True),),
+    "waits": (
+        ("MOMENT_IN_STEP_WRONG", lambda gap, va, vb: max(gap, 0.0) / (abs(va) + abs(vb))),
+        ("MOMENT_IN_STEP_WRONG", lambda gap, va, vb: max(gap, 0.0) / max(abs(va), abs(vb))),
+        ("MOMENT_IN_STEP_WRONG", lambda gap, va, vb: max(gap, 0.0) / (va - vb) / 2),
+    ),
+    "leaves": (("TIME_LEFT_WRONG", lambda h, wait: h), ("TIME_LEFT_WRONG", lambda h, wait: wait)),
     "slow": formulas.TERMS["resolve"][2]["slow"],
 }
 
@@ -140,6 +149,9 @@ def _drop(
     launches=True,
     passes=False,
     falls_on=1.0,
+    leaves=lambda h, v, speed, up, g: h - (v + speed) / g,
+    lands=None,
+    depth=lambda z, low: max(z - low, 0.0),
 ):
     """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
 
@@ -157,9 +169,9 @@ def _drop(
             if resting:
                 z_next, v_next = (low, 0.0) if holds else (z_next, v_next)
             elif z_next < low and not passes:
-                speed = math.sqrt(max(v**2 + 2 * down * max(z - low, 0.0), 0.0))
-                left = h - (v + speed) / down
-                up = rebound(e) * speed
+                speed = math.sqrt(max(v**2 + 2 * down * depth(z, low), 0.0))
+                up = rebound(e) * (lands(v, v_next) if lands else speed)
+                left = leaves(h, v, speed, up, down)
                 resting = calm and up <= slowest * g * h
                 if late:
                     v_next = 0.0 if resting else rebound(e) * abs(v_next)
@@ -209,5 +221,16 @@ _DROP = {
     "first": (("INITIAL_STATE_MISSING", False),),
     "launches": (("LAUNCH_IGNORED", False),),
     "falls_on": (("REST_OF_STEP_WITHOUT_GRAVITY", 0.0),),
-    "passes": (("PASSES_THROUGH", True),),
+    "leaves": (
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: h - (v + up) / g),
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: (v + speed) / g),
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: h - speed / g),
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: h),
+    ),
+    "lands": (
+        ("SPEED_AT_STEP_END", lambda v, v_next: abs(v_next)),
+        ("SPEED_AT_STEP_START", lambda v, v_next: abs(v)),
+    ),
+    "depth": (("FALLS_TO_ZERO", lambda z, low: z),),
+    "passes": (("FALLS_THROUGH_FLOOR", True),),
 }

@@ -20,7 +20,7 @@ from course.scoring.checks.plugin import MARKERS
 ROOT = Path(__file__).parents[3]
 HERE = ROOT / "exercises" / "collisions"
 bundles = kit.companion("collisions", "bundles")
-probes, paths, engine = bundles.probes, bundles.paths, bundles.engine
+probes, paths, engine, tracks = bundles.probes, bundles.paths, bundles.engine, bundles.tracks
 formulas = kit.reference("collisions", "formulas")
 motions = kit.reference("collisions", "motions")
 draws = kit.reference("collisions", "draws")
@@ -156,7 +156,7 @@ def test_a_pair_that_parts_and_is_struck_all_the_same_is_recognised():
     scene = paths.HeadOn((1.0, 2.0), (-1.0, 1.0), (-1.0, 1.0), 0.5, 0.5)
     t = 0.1 * np.arange(11)
     x, v = scene.at(t, 0.55, (-0.5, 0.5))
-    assert probes.of_head_on(scene, motions.meeting(scene), t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
+    assert tracks.of_head_on(scene, motions.meeting(scene), t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
 
 
 def test_a_pair_that_is_struck_again_and_again_is_recognised():
@@ -165,11 +165,9 @@ def test_a_pair_that_is_struck_again_and_again_is_recognised():
     x, v = (array.copy() for array in path(scene, t))
     v[12:] = v[12:, ::-1] / 3
     v[15:] = v[15:, ::-1] / 2
-    assert (
-        probes.of_head_on(scene, motions.meeting(scene), t, x + 0.01, v, 0.1).code == "INITIAL_STATE_MISSING"
-    )
+    assert tracks.of_head_on(scene, motions.meeting(scene), t, x + 0.01, v, 0.1).code == "INITIAL_STATE_WRONG"
     x[12:] += 0.1
-    assert probes.of_head_on(scene, motions.meeting(scene), t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
+    assert tracks.of_head_on(scene, motions.meeting(scene), t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
 
 
 GARBAGE = [
@@ -297,7 +295,7 @@ def test_a_pair_that_meets_within_the_first_step_and_passes_is_told_so():
     scene = paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5)
     t = 0.05 * np.arange(21)
     x, v = scene.at(t, math.inf, None)
-    found = probes.of_head_on(scene, motions.meeting(scene), t, x, v, 0.05)
+    found = tracks.of_head_on(scene, motions.meeting(scene), t, x, v, 0.05)
     assert found.code == "FIRST_STEP_MISSED"
 
 
@@ -306,4 +304,4 @@ def test_a_ball_that_stays_on_the_floor_it_is_thrown_from_is_told_so():
     t = h * np.arange(51)
     still = np.full(51, 0.2), np.concatenate([[2.5], np.zeros(50)])
     truth = motions.bounces(scene, 0.51, h)
-    assert probes.of_drop(scene, truth, t, *still, h).code == "LAUNCH_IGNORED"
+    assert tracks.of_drop(scene, truth, t, *still, h).code == "LAUNCH_IGNORED"

@@ -1,0 +1,258 @@
+"""What the path of a simulation of ``collisions`` shows of the mistake behind it.
+
+When a path bends, how fast it goes on, and how it ends: of families of mistakes, as in ``probes.py``.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+_probes = kit.companion("collisions", "probes")
+named = _probes.named
+
+#: What restitution may have become, as a share of the speed of approach.
+_PARTINGS = (
+    ("RESTITUTION_SQUARED", lambda e: e * e),
+    ("RESTITUTION_AS_ENERGY", math.sqrt),
+    ("RESTITUTION_IGNORED", lambda e: 1.0),
+    ("RESTITUTION_IGNORED", lambda e: 0.0),
+    ("ONLY_THE_REBOUND", lambda e: e - 1),
+    ("RESTITUTION_SIGN_FLIPPED", lambda e: -e),
+)
+
+# -- the head-on simulation -----------------------------------------------------------------------------
+
+
+@np.errstate(all="ignore")
+def of_head_on(scene, truth, t, x, v, h):
+    """What a head-on path of the right length does instead. truth: ``paths.Meeting``; x, v: shape (n, 2)."""
+    if np.isnan(x).any() or np.isnan(v).any():
+        return named("INFINITE_MASS_NAN") if math.inf in scene.m else None
+    if not np.allclose(x[0], scene.x0, atol=1e-9) or not np.allclose(v[0], scene.v0, atol=1e-9):
+        return named(_first_row(x, scene.x0, scene.at([h], truth.contact, truth.after)[0][0]))
+    straight, _ = scene.at(t, math.inf, None)
+    if np.allclose(x, straight, atol=1e-9) and truth.contact < t[-1]:
+        met = np.any(np.abs(straight[:, 1] - straight[:, 0]) <= 2 * scene.radius)
+        if truth.contact < h:
+            return named("FIRST_STEP_MISSED")  # scenes that meet later come before, and were right
+        return named("PASSES_THROUGH" if met else "TUNNELS")
+    if truth.contact == math.inf:  # they part from the start
+        return named("IMPULSE_ON_SEPARATING") if np.any(v != v[0]) else None
+    code = _of_wait(scene, truth, t, x, h)
+    if not code and not np.allclose(v[-1], truth.after, atol=1e-8):
+        code = _of_speeds(scene, v)
+    elif not code:
+        code = _of_timing(scene, truth, t, x, v, h)
+    return named(code) if code else None
+
+
+def _first_row(x, start, later):
+    """What a path holds in its first row, which is not the initial state. later: where it is one step on."""
+    if len(x) > 2 and np.array_equal(x, np.broadcast_to(x[-1], x.shape)) and not np.allclose(x[0], start):
+        return "ROWS_ALL_THE_SAME"
+    missing = np.allclose(x[0], later, atol=1e-8) or not np.any(x[0])
+    return "INITIAL_STATE_MISSING" if missing else "INITIAL_STATE_WRONG"
+
+
+def _of_wait(scene, truth, t, x, h):
+    """Whether all is right but that the bodies stand still after the impact until the next sample."""
+    lost = math.ceil(truth.contact / h - 1e-9) * h - truth.contact
+    for wait in (lost, lost + h):  # a whole step where the contact falls on a sample
+        # Where the impact itself falls on a sample, the two sides of it are a matter of taste.
+        away = np.abs(t - truth.contact) > 1e-9
+        path = scene.at(t, truth.contact, truth.after, wait)[0]
+        if wait > 1e-9 and np.allclose(x[away], path[away], rtol=1e-9, atol=1e-8):
+            return "REST_OF_STEP_LOST"
+    return None
+
+
+def _of_speeds(scene, v):
+    """The velocities at the end are wrong ones: which?"""
+    impacts = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
+    if len(impacts) > 1 and v[impacts[1], 0] <= v[impacts[1], 1]:  # the second one while they move apart
+        return "IMPULSE_ON_SEPARATING"
+    if math.inf in scene.m:
+        return None
+    kept = abs(float(np.dot(scene.m, v[-1] - scene.v0))) < 1e-8 * float(np.dot(scene.m, np.abs(scene.v0)))
+    if kept:
+        parting = (v[-1, 1] - v[-1, 0]) / (scene.v0[0] - scene.v0[1])
+        same = (
+            c
+            for c, becomes in _PARTINGS
+            if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9)
+        )
+        codes = set(same)
+        if len(codes) == 1:  # where e is 0 or 1, several look alike
+            return codes.pop()
+    if _probes.energy(*scene.m, *v[-1]) > _probes.energy(*scene.m, *scene.v0) * (1 + 1e-9):
+        return "ENERGY_CREATED"
+    return None if kept else "MOMENTUM_LOST"
+
+
+def _of_timing(scene, truth, t, x, v, h):
+    """The velocities are right in the end: when did they change, and how long did the balls go on?"""
+    path = scene.at(t, truth.contact, truth.after)[0]
+    if np.allclose(x, path, rtol=1e-9, atol=1e-8):
+        return "VELOCITIES_LATE"
+    later = t > truth.contact + h + 1e-9
+    off = (x - path)[later]
+    if not len(off) or not np.allclose(off, off[0], atol=1e-8):
+        return None
+    # Another moment of the impact moves each ball by its change of velocity, another rest of the step
+    # by its velocity after it.
+    before, after = np.array(scene.v0), np.array(truth.after)
+    delay, shift = _share(off[0], before - after), _share(off[0], after)
+    if delay is not None:
+        at = (truth.contact + delay) / h
+        sample = delay > 0 and math.isclose(at, round(at), abs_tol=1e-6)
+        return "IMPACT_AT_SAMPLE" if sample else "MOMENT_IN_STEP_WRONG"
+    return None if shift is None else "TIME_LEFT_WRONG"
+
+
+def _share(off, way):
+    """How often ``way`` fits into ``off``; None if they do not lie along one another, or nothing is off."""
+    share = float(off @ way) / (float(way @ way) or 1.0)
+    fits = np.allclose(off, share * way, atol=1e-8) and abs(share) > 1e-9
+    return share if fits else None
+
+
+# -- the drop -------------------------------------------------------------------------------------------
+
+
+@np.errstate(all="ignore")
+def of_drop(scene, truth, t, z, v, h):
+    """What a path of the right length does instead. truth: ``paths.Bounces``; z, v: shape (n,)."""
+    if not np.all(np.isfinite(z)) or not np.all(np.isfinite(v)):
+        return None
+    if not math.isclose(z[0], scene.z0, abs_tol=1e-9) or not math.isclose(v[0], scene.v0, abs_tol=1e-9):
+        later = scene.at([h], truth.times, truth.speeds)[0][0]
+        return named(_first_row(z[:, None], scene.z0, later))
+    before = t < (truth.times[0] if truth.times else math.inf)
+    fall = scene.z0 + scene.v0 * t - scene.g * t * t / 2
+    off = z - fall
+    if before.sum() > 2 and not np.allclose(off[before], 0.0, atol=1e-8):
+        code = _drop_flight(scene, t, z, v, h, before, off)
+        return named(code) if code else None
+    if np.allclose(z, fall, rtol=1e-9, atol=1e-8):
+        return named("FALLS_THROUGH_FLOOR")
+    code = (
+        _drop_late(scene, truth, t, z, v, fall)
+        or _drop_rebound(scene, truth, t, z, v)
+        or _drop_end(scene, truth, t, z, v)
+        or _drop_impact(scene, truth, t, z, v)
+    )
+    return named(code) if code else None
+
+
+def _drop_flight(scene, t, z, v, h, before, off):
+    """What is wrong before the first contact."""
+    if scene.v0 > 0 and scene.z0 == scene.radius:
+        if np.all(z[before] <= scene.radius + 1e-9):
+            return "LAUNCH_IGNORED"
+        if math.isclose(v[1], scene.restitution * scene.v0 - scene.g * h, abs_tol=1e-8):
+            return "LAUNCH_IS_BOUNCE"
+    drift = np.abs(np.abs(off) - scene.g * h * t / 2)
+    return "EULER_IN_FLIGHT" if np.all(drift[before] < 1e-6) else None
+
+
+def _drop_late(scene, truth, t, z, v, fall):
+    """Whether the first bounce comes at the sample after its contact, with the speed that the ball has there.
+
+    Samples on which a contact falls, and bounces after which it rests, say nothing.
+    """
+    if not truth.times or not truth.speeds[0]:
+        return None
+    k = int(np.searchsorted(t, truth.times[0]))
+    if k >= len(t) or t[k] - truth.times[0] < 1e-9:
+        return None
+    down = scene.v0 - scene.g * t[k]
+    there = math.isclose(z[k], fall[k], abs_tol=1e-9) or math.isclose(z[k], scene.radius, abs_tol=1e-9)
+    turned = any(math.isclose(v[k], speed, rel_tol=1e-8) for speed in (down, -down * scene.restitution))
+    return "IMPACT_AT_SAMPLE" if there and turned else None
+
+
+def _drop_rebound(scene, truth, t, z, v):
+    """The share of its speed with which the ball leaves its first contact, if that is a known wrong one."""
+    if len(truth.times) < 1 or not truth.speeds[0]:
+        return None
+    speed = truth.speeds[0]
+    k = int(np.searchsorted(t, truth.times[0]))
+    if k >= len(t) or z[k] < scene.radius - 1e-9:
+        return None
+    rebound = math.sqrt(max(v[k] ** 2 + 2 * scene.g * (z[k] - scene.radius), 0.0)) / scene.fastest
+    if math.isclose(rebound * scene.fastest, speed, rel_tol=1e-8):
+        return None
+    e = scene.restitution
+    if math.isclose(rebound * scene.fastest, e * abs(scene.v0 - scene.g * t[k]), rel_tol=1e-8):
+        return "SPEED_AT_STEP_END"
+    from_zero = math.sqrt(scene.fastest**2 + 2 * scene.g * scene.radius)
+    if math.isclose(rebound * scene.fastest, e * from_zero, rel_tol=1e-8):
+        return "FALLS_TO_ZERO"
+    names = (code for code, becomes in _PARTINGS[:3] if math.isclose(rebound, becomes(e), rel_tol=1e-8))
+    return next(names, None)
+
+
+def _drop_end(scene, truth, t, z, v):
+    """How it ends, if it goes right until it may rest."""
+    path = scene.at(t, truth.times, truth.speeds)[0]
+    wrong = np.flatnonzero(np.abs(z - path) > 1e-8)
+    rests = np.abs(z - scene.radius) < 1e-9
+    if len(wrong) and t[wrong[0]] < truth.may:
+        still = rests[wrong[0] :].all() and np.all(v[wrong[0] :] == 0.0)
+        return "RESTS_TOO_EARLY" if still else None
+    late = t > truth.must
+    if not late.any():
+        return None
+    if np.all(v[late] == 0.0) and np.all(z[late] == z[-1]) and not rests[-1]:
+        return "RESTS_ELSEWHERE"
+    if np.any(z[late] < scene.radius - 1e-9) and z[-1] < scene.radius - 1e-6:
+        return "SINKS_THROUGH_FLOOR"
+    return "RESTING_JITTER" if np.any(~rests[late]) or np.any(v[late] != 0.0) else None
+
+
+def _drop_impact(scene, truth, t, z, v):
+    """What happens around the first contact, if the flight before it is right."""
+    if not truth.times:
+        return None
+    k = int(np.searchsorted(t, truth.times[0]))  # the first sample at or after the contact
+    if k >= len(t):
+        return None
+    stuck = math.isclose(z[k], scene.radius, abs_tol=1e-9)
+    if stuck and abs(v[k] - truth.speeds[0]) < 1e-8:
+        return "REST_OF_STEP_LOST"
+    total = scene.g * z + v * v / 2
+    start = scene.g * scene.z0 + scene.v0**2 / 2
+    if np.max(total) > start * (1 + 1e-6):
+        return "GAINS_ENERGY"
+    # The ball left the floor at the speed it should: for how long has it flown?
+    up = truth.speeds[0]
+    left = (up - v[k]) / scene.g
+    flies = up and math.isclose(z[k], scene.radius + up * left - scene.g * left**2 / 2, abs_tol=1e-8)
+    return "TIME_LEFT_WRONG" if flies and abs(left - (t[k] - truth.times[0])) > 1e-8 else None
+
+
+# -- samples --------------------------------------------------------------------------------------------
+
+
+def of_count(rows, t_end, h, t=()):
+    """What gives ``rows`` samples for a duration. t: the times that came with them, in any form."""
+    exact = t_end / h
+    if rows and len(t) and math.isclose(float(t[0]), h, rel_tol=1e-9):
+        return named("INITIAL_STATE_MISSING")
+    if rows == round(exact) + 1:
+        return None
+    if rows == int(exact) + 1:
+        return named("TRUNCATED_STEP_COUNT")
+    by_one = abs(rows - round(exact) - 1) == 1 or rows == int(exact)
+    return named("OFF_BY_ONE_SAMPLE") if by_one else None
+
+
+def of_times(t, h):
+    """What is wrong with times of the right number."""
+    if len(t) > 1 and math.isclose(t[0], h):
+        return named("INITIAL_STATE_MISSING")
+    return named("TIME_ACCUMULATES") if np.allclose(t, h * np.arange(len(t)), atol=1e-5 * h) else None

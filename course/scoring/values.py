@@ -102,7 +102,9 @@ def as_text(value: Any, name: str = "the result") -> str:
 
 def as_list(value: Any, name: str = "the result", length: int | None = None) -> list[Any]:
     """A list or tuple (or the rows of an array), of the given length if one is given."""
-    if isinstance(value, np.ndarray) and value.ndim:
+    if isinstance(value, np.ndarray):
+        if not value.ndim:
+            _refuse_shape(value, name, "(n, ...)")
         value = list(value)
     if not isinstance(value, list | tuple):
         _refuse(value, name, "a list", "a list" if length is None else f"a list of {length}")
@@ -125,16 +127,20 @@ def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") 
     if array is None:
         _refuse(value, name, "an array of numbers", f"numbers of shape {_spelled(shape)}")
     if array.ndim != len(shape) or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True)):
-        raise CheckFailed(
-            Finding(
-                message=f"{_capital(name)} has the wrong shape.",
-                help="Print its `numpy.shape` and compare it with the shape in the README's contract.",
-                diagnosis="WRONG_SHAPE",
-                expected=f"shape {_spelled(shape)}",
-                actual=f"shape {array.shape}",
-            )
-        )
+        _refuse_shape(array, name, _spelled(shape))
     return array
+
+
+def _refuse_shape(array: Array, name: str, wanted: str) -> NoReturn:
+    raise CheckFailed(
+        Finding(
+            message=f"{_capital(name)} has the wrong shape.",
+            help="Print its `numpy.shape` and compare it with the shape in the README's contract.",
+            diagnosis="WRONG_SHAPE",
+            expected=f"shape {wanted}",
+            actual=f"shape {array.shape}",
+        )
+    )
 
 
 def as_vector(value: Any, d: int | None = None, name: str = "the result") -> Array:

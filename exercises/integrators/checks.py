@@ -11,6 +11,7 @@ from course.grading import kit
 from course.physics import invariants, systems
 
 probes = kit.companion("integrators", "probes")
+cases = kit.companion("integrators", "cases")
 
 
 def _signed(draw, low, high, d=1):
@@ -183,7 +184,9 @@ def test_integrate_counts(submission, draw):
             "ValueError",
             input=given,
             message="integrate raises ValueError for a duration that is a whole number of steps.",
-            diagnose=lambda: probes.named("REFUSES_DIVISIBLE"),
+            diagnose=lambda t_end=t_end: probes.named(
+                "REFUSES_DIVISIBLE" if t_end else "REFUSES_NO_DURATION"
+            ),
         )
         t, q, v = kit.as_tuple(value, ("t", "q", "v"))
         for rows, name in ((t, "t"), (q, "q"), (v, "v")):
@@ -196,6 +199,15 @@ def test_integrate_counts(submission, draw):
                 help="In floating point, t_end / h may come out just below or above a whole number.",
                 diagnose=lambda: probes.of_count(submission),
             )
+        kit.as_array(q, (n + 1, 1), "q"), kit.as_array(v, (n + 1, 1), "v")
+
+
+@pytest.mark.task("integrate")
+@pytest.mark.points(0)
+def test_integrate_refusals(submission, draw):
+    """integrate refuses durations that are no whole number of steps (no points here, two when graded)"""
+    durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.000002, 0.2)) if draw is None else cases.refused(draw)
+    cases.expect_refusals(submission, (np.array([1.0]), np.array([0.0])), durations)
 
 
 def _awkward(draw):
@@ -235,13 +247,40 @@ def test_observed_order_slope(submission, draw):
         )
 
 
+@pytest.mark.task("observed_order")
+@pytest.mark.points(0)
+def test_observed_order_scattered(submission, draw):
+    """All points count where they scatter, however small (no points here, six in the grading run)"""
+    points = [
+        ([0.1, 0.05, 0.02, 0.01], [0.02, 0.03, 0.004, 0.006]),
+        ([0.3, 0.04, 0.006, 0.0009], [2e-3, 9e-7, 3e-10, 4e-13]),
+    ]
+    if draw is not None:
+        points = [(hs.tolist(), errors.tolist()) for hs, errors in cases.scattered(draw)]
+    values = submission.call_each("observed_order", [(np.array(hs), np.array(e)) for hs, e in points])
+    for value, (hs, errors) in zip(values, points, strict=True):
+        kit.expect_close(
+            value,
+            invariants.convergence_order(hs, errors),
+            abs=1e-8,
+            source="rounding: the least-squares slope is one number",
+            quantity="order",
+            input={"hs": hs, "errors": errors},
+            message="Through points that scatter, observed_order does not return the least-squares slope.",
+            help="Fit one line to all points, each error over its own step.",
+            diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(value, hs, errors),
+        )
+
+
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(5)
 def test_stable_step_verlet(submission, draw):
     """max_stable_step finds velocity Verlet's limit, h*omega = 2, for any omega"""
     verlet = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
     omegas = (
-        (1.0, 3.7, 0.2) if draw is None else tuple(draw.uniform((0.8, 3.0, 0.1), (1.2, 9.0, 0.3)).tolist())
+        (1.0, 50.0, 0.1)
+        if draw is None
+        else tuple(draw.uniform((0.8, 45.0, 0.1), (1.2, 60.0, 0.15)).tolist())
     )
     values = submission.call_each("max_stable_step", [(verlet, omega) for omega in omegas])
     for value, omega in zip(values, omegas, strict=True):
@@ -258,6 +297,35 @@ def test_stable_step_verlet(submission, draw):
             diagnose=lambda value=value, omega=omega: probes.of_stability(
                 submission, value, verlet, omega, 2.0
             ),
+        )
+
+
+@pytest.mark.task("max_stable_step")
+@pytest.mark.points(0)
+def test_stable_step_ends(submission, draw):
+    """Zero, infinity, narrow unstable ranges, slow growth (no points here, seven in the grading run)"""
+    euler = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
+    calm = systems.LinearStep([0.5, 0.02], [0.1], [0.0], [0.4])
+    starts, growing = (0.6, 0.92, 1.37, 2.15, 3.3), 2.6
+    if draw is not None:
+        starts, growing = cases.starts(draw), float(draw.uniform(1.0, 5.0))
+    maps = [(euler, 0.0, "one that is unstable at every step"), (calm, math.inf, "one that never is")]
+    maps += [(cases.pocket(low), low, "one that is unstable in a narrow range") for low in starts]
+    maps += [(cases.slow_growth(growing), growing, "one whose growth is slow")]
+    values = submission.call_each("max_stable_step", [(step, 1.3) for step, _, _ in maps])
+    for value, (step, limit, kind) in zip(values, maps, strict=True):
+        kit.expect_close(
+            value,
+            limit / 1.3,
+            rel=0.01,
+            source="the contract's 1 %",
+            quantity="largest stable step",
+            units="s",
+            input={"step": kind, **step.params(), "omega": 1.3},
+            message="The largest stable step of a made-up map is wrong.",
+            help="Walk up from 0.05/omega in increments of less than 0.25/omega; stable means a spectral "
+            "radius of at most 1 + 1e-8.",
+            diagnose=lambda case=(value, step, 1.3, limit): probes.of_stability(submission, *case),
         )
 
 
@@ -322,40 +390,8 @@ def test_integrate_arguments(submission):
 
 
 def _expect_clean(submission, task):
-    """A step changes none of its arguments, returns arrays of its own and takes whole numbers."""
-    system, t, h = systems.Oscillator(2.0), 0.5, 0.2
-    whole = np.array([2, -1]), np.array([1, 3])
-    args = [system, t, *(part.astype(float) for part in whole), h]
-    given = {"omega": 2.0, "t": t, "q": whole[0], "v": whole[1], "h": h}
-    inspected = submission.call_inspect(task, *args)
-    wanted = kit.as_pair(inspected.value, 2)
-    kit.expect_untouched(
-        args,
-        inspected,
-        names=["", "", "q", "v", ""],
-        mutated=probes.named("MUTATES_INPUT"),
-        shared=probes.named("RETURNS_ARGUMENT"),
-        input=given,
-    )
-    result = kit.expect_accepts(
-        lambda: submission.call(task, system, t, *whole, h),
-        "TypeError",
-        input=given,
-        message="The step fails on a state of whole numbers.",
-        diagnose=lambda: probes.of_whole_numbers(submission, task),
-    )
-    for actual, expected, name in zip(kit.as_pair(result, 2), wanted, ("q_next", "v_next"), strict=True):
-        kit.expect_array(
-            actual,
-            expected,
-            rel=1e-12,
-            source="the same step from the same state as floats",
-            quantity=name,
-            input=given,
-            message="From a state of whole numbers the step gives a different result than from the same "
-            "state as floats.",
-            diagnose=lambda: probes.of_whole_numbers(submission, task),
-        )
+    """What ``cases.expect_clean`` asks, on a spring."""
+    cases.expect_clean(submission, task, systems.Oscillator(2.0), 0.5, ([2, -1], [1, 3]), 0.2)
 
 
 #: Numbers of steps for drawn springs: at these the slopes of correct methods keep within the same limits.

@@ -44,6 +44,8 @@ def of_step(submission, task, run=None):
     """
     if _mixes_arguments(submission, task):
         return named("ACCEL_ARGUMENTS_MIXED")
+    if _looks_elsewhere(submission, task):
+        return named("TIME_OUTSIDE_STEP")
     if not all(map(np.all, map(np.isfinite, _generic(submission, task)))):
         return None  # the check says that it is nan, or infinite; nothing else may be read off it
     if _remembers(submission, task):
@@ -77,12 +79,28 @@ def _weights(submission, task):
     return "WEIGHTS_DO_NOT_ADD_UP" if wrong else None
 
 
+def _calls(submission, task):
+    """What accel is called with in a step where it is zero."""
+    accel = kit.counted(lambda *args, **names: np.zeros(2))
+    kit.attempt(lambda: submission.call(task, accel, _T, _Q, _V, _H))
+    return accel.calls
+
+
+def _looks_elsewhere(submission, task):
+    """Whether accel is called with a time before the step or after it, and with none inside."""
+    times = [
+        kit.attempt(lambda args=args: kit.as_number(args[0])) for args in _calls(submission, task) if args
+    ]
+    return bool(times) and not any(t is None or _T - 1e-9 <= t <= _T + _H + 1e-9 for t in times)
+
+
 def _mixes_arguments(submission, task):
     """Whether accel gets a vector in the time's place, or the velocity in the position's."""
     # Without acceleration the velocity stays what it is in the whole step, and no position equals it.
-    accel = kit.counted(lambda *args, **names: np.zeros(2))
-    kit.attempt(lambda: submission.call(task, accel, _T, _Q, _V, _H))
-    places = ([kit.attempt(lambda arg=arg: kit.as_vector(arg, 2)) for arg in call] for call in accel.calls)
+    places = (
+        [kit.attempt(lambda arg=arg: kit.as_vector(arg, 2)) for arg in call]
+        for call in _calls(submission, task)
+    )
     return any(
         len(place) == 3 and (place[0] is not None or (place[1] is not None and np.allclose(place[1], _V)))
         for place in places
@@ -198,7 +216,7 @@ def of_count(submission):
         rows.append(len(kit.as_vector(t)) - n - 1)
     if rows[0] == rows[1] and abs(rows[0]) == 1:
         return named("OFF_BY_ONE_SAMPLE")
-    return named("TRUNCATED_STEP_COUNT") if rows == [0, 0] else None
+    return named("COUNT_NOT_ROUNDED") if rows == [0, 0] else None
 
 
 def of_rows(t, q, v, h, states):
@@ -241,6 +259,11 @@ def _later_rows(q, v, states):
     q_true, _ = states
     if np.allclose(q[:-1], q_true[:-1]) and not np.any(q[-1]) and not np.any(v[-1]):
         return "LAST_STEP_MISSING"
+    first = [np.allclose(rows[1], true[1]) for rows, true in zip((q, v), states, strict=True) if len(q) > 1]
+    if len(q) > 1 and np.allclose(q[1], states[1][1]) and np.allclose(v[1], states[0][1]) and not all(first):
+        return "STEP_RESULT_SWAPPED"
+    if any(first) and not all(first):
+        return "ROW_HALF_RIGHT"
     carried = len(q) <= 2 or not (np.allclose(q[2:], q[1]) and np.allclose(v[2:], v[1]))
     return None if carried else "STATE_NOT_CARRIED"
 
@@ -290,12 +313,18 @@ def of_stability(submission, value, step, omega, limit):
         return named("RETURNS_Z")
     if _same(flipped, spiral):  # a search that takes no notice of the step
         return named("ASSUMES_ITS_LIMIT")
-    if limit == 0.0 and z > 0.0:
-        return named("NO_ZERO")
-    if limit == math.inf and 2.0 < z < math.inf:
-        return named("NO_INFINITY")
-    near = 0.7 * limit < z < 1.3 * limit
-    return named("SEARCH_TOO_COARSE") if near and 0.0 < limit < math.inf else None
+    return named(_beside(z, limit)) if z != limit else None
+
+
+def _beside(z, limit):
+    """On which side of the right one a limit lies, and how far."""
+    if limit == 0.0:
+        return "NO_ZERO"
+    if limit == math.inf:
+        return "NO_INFINITY" if z > 2.0 else "LIMIT_TOO_EARLY"
+    if abs(z - limit) < 0.25:  # as far as a search in the increments of the README may be off
+        return "SEARCH_TOO_COARSE"
+    return "LIMIT_TOO_LATE" if z > limit else "LIMIT_TOO_EARLY"
 
 
 def _same(a, b):

@@ -35,6 +35,8 @@ def _points():
     yield hs[[2, 0, 4, 1, 3]], scattered[[2, 0, 4, 1, 3]]
     yield hs[::-1], scattered[::-1]
     yield np.array([0.3, 0.04]), np.array([0.5, 0.002])
+    yield np.array([0.3, 0.21, 0.14, 0.1]), np.array([0.2, 0.5, 0.07, 0.11])  # not all grow with the step
+    yield 0.5 * 0.3 ** np.arange(7), np.array([2e-3, 9e-6, 3e-8, 5e-9, 2e-11, 6e-13, 3e-15])
 
 
 def _maps():

@@ -405,6 +405,32 @@ def _moves_twice(accel, t, q, v, h):
 
 
 #: Wrong in another way than by one or two terms: per task, codes and formula.
+
+
+def _new_on_both_sides(accel, t, q, v, h):
+    """Semi-implicit Euler with the acceleration at the predicted place, and the old place then moved anew."""
+    v_next = v + h * np.asarray(accel(t + h, q + h * v, v))
+    return q + h * v_next, v_next
+
+
+def _square_on_top(accel, t, q, v, h):
+    """Semi-implicit Euler with h²/2 a added to a position that the new velocity has moved already."""
+    a = np.asarray(accel(t, q, v))
+    return q + h * (v + h * a) + h * h / 2 * a, v + h * a
+
+
+def _one_kick_half_way(accel, t, q, v, h):
+    """Verlet's position, and one kick with the acceleration halfway to it."""
+    q_next = q + h * v + h * h / 2 * np.asarray(accel(t, q, v))
+    return q_next, v + h * np.asarray(accel(t + h / 2, (q + q_next) / 2, v))
+
+
+def _moved_by_new_velocity(accel, t, q, v, h):
+    """RK4's velocity, and the position moved with it alone."""
+    v_next = _RK4(accel, t, q, v, h)[1]
+    return q + h * v_next, v_next
+
+
 OTHERS = {
     "explicit_euler_step": [
         (("FIRST_COMPONENT_ONLY",), _one_component(_EULER)),
@@ -417,6 +443,8 @@ OTHERS = {
         (("FIRST_COMPONENT_ONLY",), _one_component(_KICK_DRIFT)),
         (("FIRST_COMPONENT_ONLY",), _one_component(_DRIFT_KICK)),
         (("POSITION_MOVED_TWICE",), _moves_twice),
+        (("NEW_ON_BOTH_SIDES",), _new_on_both_sides),
+        (("SQUARE_TERM_ON_TOP",), _square_on_top),
         (("SEMI_IMPLICIT_IS_EULER",), _EULER),
         (("SEMI_IMPLICIT_IS_VERLET",), _KDK),
         (("SEMI_IMPLICIT_IS_VERLET",), _DKD),
@@ -426,6 +454,7 @@ OTHERS = {
         (("FIRST_COMPONENT_ONLY",), _one_component(_KDK)),
         (("FIRST_COMPONENT_ONLY",), _one_component(_DKD)),
         (("VERLET_IS_EULER",), _EULER),
+        (("ONE_KICK_HALF_WAY",), _one_kick_half_way),
         (("VERLET_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
         (("VERLET_IS_SEMI_IMPLICIT",), _DRIFT_KICK),
         (("VERLET_IS_RK4",), _RK4),
@@ -443,6 +472,7 @@ OTHERS = {
         (("STAGE_TIMES_FROZEN",), _at(_DKD, 0)),
     ],
     "rk4_step": [
+        (("POSITION_BY_NEW_VELOCITY",), _moved_by_new_velocity),
         (("FIRST_COMPONENT_ONLY",), _one_component(_RK4)),
         (("RK4_IS_EULER",), _EULER),
         (

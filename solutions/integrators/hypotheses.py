@@ -110,6 +110,7 @@ _LOOP = {
         ("TIME_ACCUMULATES", lambda t_end, h: len(np.arange(0, t_end, h))),
     ),
     "refuses": (
+        ("REFUSES_NO_DURATION", lambda x: x <= 0),
         ("DURATION_NOT_CHECKED", lambda x: False),
         ("DURATION_NOT_CHECKED", lambda x: abs(x - round(x)) > 0.01),
         ("DURATION_NOT_CHECKED", lambda x: abs(x - round(x)) > 0.1),
@@ -211,6 +212,10 @@ def _slopes():
     yield on("HALVING_ASSUMED", lambda x, y: float(np.mean(-np.diff(y)) / np.log(2)))
     yield on("HALVING_ASSUMED", lambda x, y: float((y[0] - y[-1]) / np.log(2)))
     yield on("HALVING_ASSUMED", lambda x, y: float((y[0] - y[1]) / np.log(2)))
+    yield on("PAIRS_BROKEN", lambda x, y: _slope(np.sort(x), np.sort(y)))
+    yield on("PAIRS_BROKEN", lambda x, y: _slope(np.sort(x), y))
+    for least in (1e-6, 1e-8, 1e-10, 1e-12, 1e-14):
+        yield on("POINTS_LEFT_OUT", lambda x, y, low=math.log(least): _slope(x[y > low], y[y > low]))
     yield on("ORDER_OFF_BY_ONE", lambda x, y: _slope(x, y) - 1)
     yield on("ORDER_OFF_BY_ONE", lambda x, y: _slope(x, y) + 1)
     yield on("SLOPE_NOT_CENTRED", lambda x, y: float((x - x.mean()) @ y / (x @ x)))
@@ -301,6 +306,7 @@ _SEARCH = {
     ),
     "limit": (
         ("TOLERANCE_TOO_TIGHT", 1.0 - 1e-12),
+        ("TOLERANCE_TOO_LOOSE", 1.001),
         ("TOLERANCE_TOO_LOOSE", 1.05),
         ("TOLERANCE_TOO_LOOSE", 1.01),
         ("TOLERANCE_TOO_LOOSE", 1.1),

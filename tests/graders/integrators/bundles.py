@@ -15,6 +15,7 @@ from course.grading import kit
 from course.physics import invariants, systems
 
 probes = kit.companion("integrators", "probes")
+cases = kit.companion("integrators", "cases")
 formulas = kit.reference("integrators", "formulas")
 
 EXPLICIT, SEMI, VERLET, RK4 = (
@@ -171,44 +172,10 @@ def expect_formula(submission, task, result, accel, t, q, v, h):
 
 
 def expect_clean(submission, task, rng):
-    """A step changes none of its arguments, returns arrays of its own and takes whole numbers."""
+    """What ``cases.expect_clean`` asks, on a driven pendulum."""
     system = systems.DrivenPendulum(*rng.uniform(1.0, 3.0, 4).tolist())
     t, h = rng.uniform(0.2, 2.0), rng.uniform(0.1, 0.3)
-    whole = rng.integers(1, 5, 2), rng.integers(-4, 0, 2)
-    floats = [part.astype(float) for part in whole]
-    args = [system, t, *floats, h]
-    given = {**system.params(), "t": t, "q": whole[0], "v": whole[1], "h": h}
-    inspected = submission.call_inspect(task, *args)
-    q_next, v_next = kit.as_pair(inspected.value, 2)
-    kit.expect_untouched(
-        args,
-        inspected,
-        names=["", "", "q", "v", ""],
-        mutated=probes.named("MUTATES_INPUT"),
-        shared=probes.named("RETURNS_ARGUMENT"),
-        input=given,
-    )
-    result = kit.expect_accepts(
-        lambda: submission.call(task, system, t, *whole, h),
-        "TypeError",
-        input=given,
-        message="The step fails on a state of whole numbers.",
-        diagnose=lambda: probes.of_whole_numbers(submission, task),
-    )
-    for actual, expected, name in zip(
-        kit.as_pair(result, 2), (q_next, v_next), ("q_next", "v_next"), strict=True
-    ):
-        kit.expect_array(
-            actual,
-            expected,
-            rel=1e-12,
-            source="the same step from the same state as floats",
-            quantity=name,
-            input=given,
-            message="From a state of whole numbers the step gives a different result than from the same "
-            "state as floats.",
-            diagnose=lambda: probes.of_whole_numbers(submission, task),
-        )
+    cases.expect_clean(submission, task, system, t, (rng.integers(1, 5, 2), rng.integers(-4, 0, 2)), h)
 
 
 def expect_symplectic(submission, task, rng):

@@ -288,7 +288,8 @@ def test_observed_order_least_squares(submission, rng):
     hs = 0.3 * np.cumprod(rng.uniform(0.4, 0.8, 7))
     errors = rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 4.5) * np.exp(rng.normal(0.0, 0.2, 7))
     message = "Through points that scatter, observed_order is not the least-squares slope."
-    bundles.expect_slopes(submission, [(hs, errors, message)])
+    points = [(hs, errors), *bundles.cases.scattered(rng)]
+    bundles.expect_slopes(submission, [(*given, message) for given in points])
 
 
 @pytest.mark.task("observed_order")
@@ -333,8 +334,12 @@ def test_stable_step_limits(submission, rng):
     )
     message = "The largest stable step of a map is wrong."
     steps = [(systems.LinearStep(qq, qp, pq, qq if pp is None else pp), z) for qq, qp, pq, pp, z in maps]
+    steps.append((bundles.cases.slow_growth(c), c))
+    # Springs so slow or so fast that a range in seconds is not one in h omega.
+    omegas = rng.permutation(rng.uniform((0.1, 0.2, 2.0, 45.0), (0.15, 20.0, 20.0, 60.0)))
     bundles.expect_limits(
-        submission, [(step, rng.uniform(0.2, 20.0), limit, message) for step, limit in steps]
+        submission,
+        [(step, float(omega), limit, message) for (step, limit), omega in zip(steps, omegas, strict=True)],
     )
 
 
@@ -353,7 +358,10 @@ def test_stable_step_pocket(submission, rng):
         "For a map that is unstable in a range of steps and stable again beyond it, the result is not the "
         "start of that range."
     )
-    bundles.expect_limits(submission, [(step, rng.uniform(0.2, 20.0), low, message)])
+    narrow = [
+        (bundles.cases.pocket(low), rng.uniform(0.2, 20.0), low, message) for low in bundles.cases.starts(rng)
+    ]
+    bundles.expect_limits(submission, [(step, rng.uniform(0.2, 20.0), low, message), *narrow])
 
 
 @pytest.mark.task("max_stable_step")

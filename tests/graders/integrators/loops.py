@@ -73,20 +73,9 @@ def _awkward(rng):
 
 
 def expect_refusals(submission, rng):
-    """Durations that end between two samples are refused, whether well between or a thousandth of a step."""
+    """Durations that end between two samples are refused, however short the steps and however many."""
     state = bundles.signed(rng, 0.5, 1.5), bundles.signed(rng, 0.5, 1.5)
-    for excess in (rng.uniform(0.2, 0.8), 1e-3):
-        h = rng.uniform(0.05, 0.2)
-        t_end = (int(rng.integers(5, 30)) + excess) * h
-        kit.expect_raises(
-            lambda t_end=t_end, h=h: submission.call(
-                "integrate", probes.IDENTITY, systems.Oscillator(1.0), *state, t_end, h
-            ),
-            "ValueError",
-            input={"t_end": t_end, "h": h},
-            message="integrate does not raise ValueError for a duration that is not a whole number of steps.",
-            diagnose=lambda: probes.named("DURATION_NOT_CHECKED"),
-        )
+    bundles.cases.expect_refusals(submission, state, bundles.cases.refused(rng))
 
 
 def expect_whole_numbers(submission, rng):

@@ -142,7 +142,7 @@ def test_of_an_energy_that_is_not_a_number_nothing_is_said():
 
 
 COUNTING = {
-    "TRUNCATED_STEP_COUNT": lambda t_end, h: int(t_end / h),
+    "COUNT_NOT_ROUNDED": lambda t_end, h: int(t_end / h),
     "OFF_BY_ONE_SAMPLE": lambda t_end, h: round(t_end / h) - 1,
     None: lambda t_end, h: round(t_end / h) + 3,
 }

@@ -1,0 +1,125 @@
+"""What public and hidden checks of ``integrators`` ask alike: drawn cases, and expectations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course.grading import kit
+from course.physics.systems import LinearStep, Oscillator
+
+probes = kit.companion("integrators", "probes")
+
+
+def refused(rng):
+    """(t_end, h) that are no whole number of steps: by much, by a thousandth of a short step, by 1e-5 steps.
+
+    A difference in seconds, or one relative to the number of steps, would let the last two pass.
+    """
+    found = [((int(rng.integers(5, 30)) + rng.uniform(0.2, 0.8)) * 0.1, 0.1)]
+    for excess in (1e-3, 1e-5):
+        h = float(rng.uniform(1e-4, 3e-4))
+        found.append(((int(rng.integers(300, 500)) + excess) * h, h))
+    return [(float(t_end), h) for t_end, h in found]
+
+
+def scattered(rng):
+    """(hs, errors) whose errors do not all grow with the step, and such as are smaller than any rounding."""
+    hs = 0.3 * np.cumprod(rng.uniform(0.5, 0.8, 6))
+    up_and_down = np.exp(rng.uniform(0.8, 1.6, 6) * np.array([-1, 1, -1, 1, -1, 1]))
+    yield hs, rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 1.5) * up_and_down
+    hs = 0.3 * np.cumprod(rng.uniform(0.08, 0.3, 5))
+    yield hs, hs ** rng.uniform(3.0, 4.5) * np.exp(rng.normal(0.0, 0.3, 5))
+
+
+def starts(rng):
+    """Where narrow unstable ranges begin, h omega: at so many places that a coarse search steps over one."""
+    return tuple(rng.uniform(0.6, 4.0, 8).tolist())
+
+
+def pocket(low):
+    """A map that is unstable in h omega from ``low`` to ``low`` + 0.27 and stable around it."""
+    high = low + 0.27
+    curve = 1.5 / (low * high)
+    return LinearStep([1 - curve * low * high, curve * (low + high), -curve], [0.0], [0.0], [0.2])
+
+
+def slow_growth(limit):
+    """A map that grows beyond h omega = ``limit``, by a hundred thousandth at 1 % beyond."""
+    return LinearStep([1 - 1e-3, 1e-3 / limit], [0.0], [0.0], [0.2])
+
+
+# -- expectations ---------------------------------------------------------------------------------------
+
+
+def expect_refusals(submission, state, durations):
+    """Each (t_end, h) raises ValueError."""
+    for t_end, h in durations:
+        kit.expect_raises(
+            lambda t_end=t_end, h=h: submission.call(
+                "integrate", probes.IDENTITY, Oscillator(1.0), *state, t_end, h
+            ),
+            "ValueError",
+            input={"t_end": t_end, "h": h},
+            message="integrate does not raise ValueError for a duration that is not a whole number of steps.",
+            diagnose=lambda: probes.named("DURATION_NOT_CHECKED"),
+        )
+
+
+def expect_clean(submission, task, system, t, whole, h):
+    """A step changes none of its arguments, returns arrays of its own and takes whole numbers (``whole``).
+
+    It calls accel by position: an accel may have other names for its arguments.
+    """
+    whole = [np.array(part) for part in whole]
+    args = [system, t, *(part.astype(float) for part in whole), h]
+    given = {**system.params(), "t": t, "q": whole[0], "v": whole[1], "h": h}
+    inspected = submission.call_inspect(task, *args)
+    wanted = kit.as_pair(inspected.value, 2)
+    _expect_by_position(submission, task)
+    kit.expect_untouched(
+        args,
+        inspected,
+        names=["", "", "q", "v", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input=given,
+    )
+    result = kit.expect_accepts(
+        lambda: submission.call(task, system, t, *whole, h),
+        "TypeError",
+        input=given,
+        message="The step fails on a state of whole numbers.",
+        diagnose=lambda: probes.of_whole_numbers(submission, task),
+    )
+    for actual, expected, name in zip(kit.as_pair(result, 2), wanted, ("q_next", "v_next"), strict=True):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            source="the same step from the same state as floats",
+            quantity=name,
+            input=given,
+            message="From a state of whole numbers the step gives a different result than from the same "
+            "state as floats.",
+            diagnose=lambda: probes.of_whole_numbers(submission, task),
+        )
+
+
+def _expect_by_position(submission, task):
+    """accel is called by position, as ``accel(t, q, v)``: its own names for them may be others."""
+    by_name = set()
+
+    def accel(*args, **names):
+        by_name.update(names)
+        return np.zeros(2)
+
+    kit.attempt(
+        lambda: submission.call(
+            task, kit.counted(accel), 0.6, np.array([0.7, -0.4]), np.array([0.3, 1.1]), 0.31
+        )
+    )
+    kit.expect_true(
+        not by_name,
+        "The step calls accel with arguments by name.",
+        diagnose=probes.named("ACCEL_BY_KEYWORD"),
+    )

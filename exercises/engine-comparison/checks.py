@@ -150,6 +150,8 @@ def test_choose_by_report(submission, draw):
             (reports, [], "balsa"),
             (reports, [need("order", ">=", 2)], "cork"),
             (reports, [need("symplectic", "==", True)], "anvil"),
+            (reports, [need("restitution", "==", 0.6)], "anvil"),
+            (_priced(cork=5e9, anvil=8e9, balsa=1e9), needs, "cork"),
             (reports, [need("order", ">=", 2), need("deterministic", "==", True)], "anvil"),
             (reports, [need("max_stable_step", ">=", 0.6), need("linear_damping", "<=", 2.0)], "balsa"),
             (
@@ -214,6 +216,11 @@ def test_choose_by_numbers(submission, draw):
     needs = [need("order", ">=", 2), need("linear_damping", "<=", 0.5)]
     swapped = {"balsa": reports["anvil"], "ode": reports["balsa"], "mujoco": reports["cork"]}
     told = asked(draw, [(reports, needs, "cork"), (swapped, needs, "mujoco")])
+    # Famous names that fit and are not the cheapest; these names stay in a grading run.
+    told += [
+        ({name: reports["anvil"], "kifo": reports["cork"], "zaru": reports["balsa"]}, needs, "kifo")
+        for name in measured.ENGINES
+    ]
     choosing.expect_choices(submission, told)
     choosing.expect_untouched(submission, *told[0][:2])
 

@@ -66,9 +66,10 @@ def _expect_kind(case: Any, key: str) -> None:
     """The value is there and of its kind; it is kept as a plain number or bool."""
     value = case.measured(key)
     if value is None:
+        there = isinstance(case.report, dict) and key in case.report
         kit.fail(
-            f"`{key}` is not in the report yet.",
-            diagnose=probes.named("NOT_MEASURED"),
+            f"`{key}` is None for one of the engines." if there else f"`{key}` is not in the report yet.",
+            diagnose=probes.named("MEASURED_AS_NONE" if there else "NOT_MEASURED"),
             input={"engine": case.name},
         )
     if key in ("symplectic", "deterministic"):

@@ -162,7 +162,11 @@ def _choices():
             op, value = ops[int(rng.integers(len(ops)))], known[int(rng.integers(len(known)))]
             needs.append({"key": key, "op": op, "value": value})
         asked.append((reports, needs))
-    return asked
+    dear = [
+        ({name: {**report, "cost": 1e9 * report["cost"]} for name, report in reports.items()}, needs)
+        for reports, needs in asked[:10]
+    ]
+    return [*asked, *dear]
 
 
 QUESTIONS = {"choose_engine": _choices(), "engine_facts": []}

@@ -76,6 +76,12 @@ def _nearly(report, need):
     return math.isclose(report[need["key"]], need["value"], rel_tol=0.02)
 
 
+def _no_number_equal(report, need):
+    """Two equal numbers are seldom one object."""
+    value = report.get(need["key"])
+    return meets(report, need) and not (need["op"] == "==" and isinstance(value, float))
+
+
 def _with_operators(**others):
     """Operators read as others; "" takes no notice of it."""
 
@@ -97,6 +103,7 @@ METS = {
     "ZERO_TAKEN_FOR_MISSING": (lambda report, need: bool(report.get(need["key"])) and meets(report, need),),
     "STRICT_COMPARISON": (_strictly,),
     "EQUALITY_ROUGH": (_nearly,),
+    "EQUALITY_BY_IDENTITY": (_no_number_equal,),
     "OPERATOR_CONFUSED": (
         _with_operators(le=">=", ge="<="),
         _with_operators(le="<=", ge="<=", eq="<="),
@@ -125,6 +132,13 @@ def _most_met(reports, needs, met=meets):
 
 def _some(answers):
     return any(answers) or not answers
+
+
+def _capped(most):
+    def choice(reports, needs, met=meets):
+        return choose({name: r for name, r in reports.items() if r["cost"] < most}, needs, met=met)
+
+    return choice
 
 
 def _alphabetical(reports, needs, met=meets):
@@ -165,6 +179,7 @@ CHOICES = {
         lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=0.0),
         lambda reports, needs, met=meets: choose(dict(reversed(reports.items())), needs, met=met, cost=0.0),
     ),
+    "COST_CAPPED": tuple(_capped(10.0**power) for power in range(2, 9)),
     "DEPENDS_ON_NAMES": (_alphabetical,),
     "ANY_INSTEAD_OF_ALL": (
         lambda reports, needs, met=meets: choose(reports, needs, met=met, enough=any),

@@ -243,14 +243,16 @@ def _radius(m):
     return max(abs(np.linalg.eigvals(m)))
 
 
-def _search(size=_radius, limit=1 + 1e-8, walk=0.5, last=10.0, endless=math.inf, unstable=0.0, fine=True):
+def _search(
+    size=_radius, limit=1 + 1e-8, walk=0.5, last=10.0, endless=math.inf, unstable=0.0, fine=True, **kinds
+):
     """``unstable``: what is returned where the first step fails, None for that step itself."""
 
     def measure(engine, info):
         omega = info["omega"]
 
         def stable(z):
-            return bool(size(_step(engine, info, z)) <= limit)
+            return bool(size(_step(engine, info, z, **kinds)) <= limit)
 
         low = 0.05
         if not stable(low):
@@ -324,6 +326,8 @@ _STABLE = (
     ("LIMIT_FROM_ABOVE", _jumped(10.0)),
     ("LIMIT_FROM_ABOVE", _from_above),
     ("LIMIT_FROM_ABOVE", _search(walk=4.0)),
+    ("LIMIT_NOT_SCALED", _search(scaled=False)),
+    ("LIMIT_NOT_SCALED", _search(back=False)),
     ("LIMIT_COARSE", _search(fine=False)),
     ("LIMIT_COARSE", _search(walk=0.25, fine=False)),
     ("NO_INFINITY", _search(endless=None)),

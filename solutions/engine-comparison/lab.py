@@ -132,14 +132,14 @@ def _game(rng):
 
 
 def _soft(rng):
-    """Contact that gives way: a body sinks in, creeps, and is weak on the diagonal."""
+    """Contact that gives way: a body sinks in, creeps, is weak on the diagonal, stops dead at a wall."""
     return {
         "dt": 1 / 120,
         "step": boxes.semi_implicit_euler,
         "cone": boxes.diamond_pyramid,
         "creep": _between(rng, 0.003, 0.006),
         "softness": _between(rng, 0.003, 0.008),
-        "restitution": _between(rng, 0.2, 0.5),
+        "restitution": 0.0,
     }
 
 

@@ -88,8 +88,28 @@ def at_the_limit(rng, truths):
     finite = [n for n, r in reports.items() if 0 < r["max_stable_step"] < math.inf]
     chosen = str(rng.choice(finite))
     exact = reports[chosen]
-    needs = [need(key, op, exact[key]) for key in ("max_stable_step", "restitution") for op in ("<=", ">=")]
+    needs = [
+        need(key, op, exact[key]) for key in ("max_stable_step", "restitution") for op in ("<=", ">=", "==")
+    ]
     return reports, needs, choosing.choose(reports, needs)
+
+
+def priced_high(rng, question):
+    """The same question with costs beyond any number that a search might start from."""
+    reports, needs, answer = question
+    rate = 10.0 ** float(rng.uniform(9.0, 12.0))
+    return {name: {**r, "cost": rate * r["cost"]} for name, r in reports.items()}, needs, answer
+
+
+def famous(questions):
+    """Questions in which the dearest engine that fits has the name of a famous one."""
+    told = []
+    for known, (reports, needs, answer) in zip(measured.ENGINES, questions, strict=True):
+        fitting = [name for name, r in reports.items() if all(choosing.meets(r, n) for n in needs)]
+        dearest = max(fitting, key=lambda name: reports[name]["cost"])
+        renamed = {known if name == dearest else name: report for name, report in reports.items()}
+        told.append((renamed, needs, answer))
+    return told
 
 
 def beyond_reach(rng, truths):

@@ -234,6 +234,28 @@ def _pushed_at_once(_: str, cases: list[Any]) -> bool:
     return bool(starts) and all(height > -1e-6 for height in starts)
 
 
+def _pushes(case: Any) -> list[float]:
+    """How hard the body on the floor was pushed in each run, in units of mu m g; pushes alone."""
+    weight = case.box.mu * case.box.mass * case.box.g
+    return [math.hypot(*force[:2]) / weight for *_, force in case.runs if len(force) == 3 and any(force)]
+
+
+def _pushed_softly(_: str, cases: list[Any]) -> bool:
+    """No push was harder than mu m g."""
+    pushes = [push for case in cases for push in _pushes(case)]
+    return bool(pushes) and max(pushes) < 1.05
+
+
+def _pushed_seldom(_: str, cases: list[Any]) -> bool:
+    """Too few pushes for two forces between 0 and 5 mu m g to 3 %: that takes seven halvings each."""
+    return all(0 < len(set(_pushes(case))) < 14 for case in cases)
+
+
+def _never_free(_: str, cases: list[Any]) -> bool:
+    """No run was made in the scene "free"."""
+    return any(case.runs for case in cases) and not any(True for _ in _runs(cases, "free"))
+
+
 def _dropped(_: str, cases: list[Any]) -> bool:
     """Every run on the floor without a push began above it."""
     starts = [q0[2] - c.box.radius for c, (_, q0, _, _, _, force) in _runs(cases, "floor") if not any(force)]
@@ -337,6 +359,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
     ],
     "linear_damping": [
         ("DAMPING_ASSUMED", lambda key, cases: all(case.measured(key) == 0 for case in cases)),
+        ("DAMPING_OTHER_SCENE", _never_free),
         ("DAMPING_NOT_LOG", _by_own_time(lambda c, h, n: (1 - math.exp(-c * n * h)) / (n * h))),
         ("DAMPING_NOT_LOG", _by_own_time(lambda c, h, n: 1 - math.exp(-c * n * h))),
         ("DAMPING_PER_STEP", _by_own_time(lambda c, h, n: c * h)),
@@ -355,6 +378,8 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
     "friction_anisotropy": [
         ("ANISOTROPY_ASSUMED", lambda key, cases: all(case.measured(key) == 1 for case in cases)),
         ("OTHER_STEP_THAN_DT", _other_step("floor", lambda run: any(run[5]))),
+        ("PUSHED_TOO_SOFTLY", _pushed_softly),
+        ("PUSHED_TOO_SELDOM", _pushed_seldom),
         (
             "CREEP_TAKEN_FOR_SLIP",
             _where(_creeps, lambda value, _: not math.isfinite(value) or 0.9 < value < 1.1),

@@ -159,6 +159,54 @@ def test_a_pair_that_parts_and_is_struck_all_the_same_is_recognised():
     assert tracks.of_head_on(scene, motions.meeting(scene), t, x, v, 0.1).code == "IMPULSE_ON_SEPARATING"
 
 
+def head_on_code(change):
+    """What ``tracks`` says of a right path after ``change(t, x, v, meeting)``."""
+    scene = paths.HeadOn((1.0, 2.0), (-1.0, 1.07), (1.0, -0.9), 0.5, 0.5)
+    t, meeting = 0.1 * np.arange(21), motions.meeting(scene)
+    x, v = (array.copy() for array in path(scene, t))
+    found = tracks.of_head_on(scene, meeting, t, *change(t, x, v, meeting), 0.1)
+    return found and found.code
+
+
+def test_an_impact_at_another_moment_is_told_from_a_wrong_rest_of_the_step_and_from_late_velocities():
+    change = np.array([1.0, -0.9])
+
+    def moved(way, by, t, x, v, meeting):
+        late = (t > meeting.contact)[:, None]
+        return x + late * by * way, v
+
+    def other_moment(by):
+        return lambda t, x, v, m: moved(change - np.array(m.after), by, t, x, v, m)
+
+    def to_the_sample(t, x, v, m):
+        return other_moment(math.ceil(m.contact / 0.1) * 0.1 - m.contact)(t, x, v, m)
+
+    assert head_on_code(other_moment(0.013)) == "MOMENT_IN_STEP_WRONG"
+    assert head_on_code(to_the_sample) == "IMPACT_AT_SAMPLE"
+    assert head_on_code(lambda t, x, v, m: moved(np.array(m.after), 0.03, t, x, v, m)) == "TIME_LEFT_WRONG"
+    late = lambda t, x, v, m: (x, np.where((t < m.contact + 0.1)[:, None], v[0], v))  # noqa: E731
+    assert head_on_code(late) == "VELOCITIES_LATE"
+
+
+@pytest.mark.parametrize(("height", "code"), [(0.13, "RESTS_ELSEWHERE"), (0.0, "RESTS_ELSEWHERE")])
+def test_a_ball_that_rests_elsewhere_does_not_jitter(height, code):
+    scene, h = paths.Drop(0.5, 0.0, 0.1, 0.3), 0.02
+    truth = motions.bounces(scene, 2.0 + h, h)
+    t = h * np.arange(101)
+    z, v = (array.copy() for array in scene.at(t, truth.times, truth.speeds))
+    z[t > truth.may] = height
+    assert tracks.of_drop(scene, truth, t, z, v, h).code == code
+
+
+def test_bodies_that_are_left_out_are_told_from_one_of_two_that_is_wrong():
+    calls = [draws.impact(np.random.default_rng(seed), 3) for seed in range(4)]
+    right = [formulas.RIGHT["resolve"](*call) for call in calls]
+    spared = [right[0], (calls[1][2], calls[1][3]), *right[2:]]
+    assert probes.of_calls("resolve", calls, spared, right).code == "SOME_PAIRS_SPARED"
+    half = [(a, b + 0.1) for a, b in right]
+    assert probes.of_calls("resolve", calls, half, right).code == "ONE_BODY_RIGHT"
+
+
 def test_a_pair_that_is_struck_again_and_again_is_recognised():
     scene = paths.HeadOn((1.0, 2.0), (-1.0, 1.0), (1.0, -1.0), 0.5, 0.5)
     t = 0.1 * np.arange(21)

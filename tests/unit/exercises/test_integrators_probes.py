@@ -148,6 +148,19 @@ COUNTING = {
 }
 
 
+def test_a_limit_is_too_late_too_early_or_nearly_right():
+    sides = {1.9: "SEARCH_TOO_COARSE", 3.0: "LIMIT_TOO_LATE", 1.2: "LIMIT_TOO_EARLY"}
+    assert {z: probes._beside(z, 2.0) for z in sides} == sides
+    assert probes._beside(1.0, 0.0) == "NO_ZERO"
+
+
+def test_a_step_that_asks_at_no_time_of_its_own_is_recognised():
+    def step(accel, t, q, v, h):
+        return q + h * v, v + h * np.asarray(accel(0.0, q, v))
+
+    assert probes.of_step(Fake(explicit_euler_step=step), "explicit_euler_step").code == "TIME_OUTSIDE_STEP"
+
+
 @pytest.mark.parametrize(("code", "count"), COUNTING.items(), ids=map(str, COUNTING))
 def test_the_rule_behind_a_wrong_number_of_samples_is_recognised(code, count):
     def integrate(step, accel, q0, v0, t_end, h):

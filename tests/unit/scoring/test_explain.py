@@ -166,9 +166,13 @@ def test_a_consequence_is_said_only_where_no_cause_is() -> None:
     assert told("ENERGY_GROWS", None) == "ENERGY_GROWS"
 
 
-def test_a_consequence_is_said_of_the_checks_that_saw_it_and_a_cause_of_all() -> None:
-    assert story_of(failures("ENERGY_GROWS", None), (), WORDS).bare == {"check_1"}
-    assert story_of(failures("SIGN_FLIPPED", None), (), WORDS).bare == frozenset()
+def test_a_consequence_is_said_of_the_checks_that_saw_it_and_a_cause_of_none_that_saw_another() -> None:
+    def bare(*codes: str | None) -> frozenset[str]:
+        return story_of(failures(*codes), (), WORDS).bare
+
+    assert bare("ENERGY_GROWS", None) == {"check_1"}
+    assert bare("SIGN_FLIPPED", None, "ENERGY_GROWS") == frozenset()
+    assert bare("SIGN_FLIPPED", "SIGN_FLIPPED", "MASS_SWAPPED") == {"check_2"}
 
 
 def test_of_several_causes_the_one_that_most_checks_name_is_told_and_of_as_many_none() -> None:

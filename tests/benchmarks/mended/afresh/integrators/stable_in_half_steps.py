@@ -1,0 +1,37 @@
+"""Twenty steps show the whole range."""
+
+
+def spectral_radius(step, omega, h):
+    def accel(t, q, v):
+        return -(omega**2) * q
+
+    q1, v1 = step(accel, 0.0, np.array([1.0]), np.array([0.0]), h)
+    q2, v2 = step(accel, 0.0, np.array([0.0]), np.array([omega]), h)
+    M = np.array([[q1[0], q2[0]], [v1[0] / omega, v2[0] / omega]])
+    return max(abs(np.linalg.eigvals(M)))
+
+
+def max_stable_step(step, omega):
+    first = 0.05 / omega
+    last = 10 / omega
+
+    def stable(h):
+        return spectral_radius(step, omega, h) <= 1 + 1e-8
+
+    if not stable(first):
+        return 0.0
+    good = first
+    for h in np.linspace(first, last * (1 - 1e-9), 20):
+        if not stable(h):
+            bad = h
+            break
+        good = h
+    else:
+        return math.inf
+    while bad - good > 1e-4 * good:
+        middle = (good + bad) / 2
+        if stable(middle):
+            good = middle
+        else:
+            bad = middle
+    return float(good)

@@ -315,13 +315,21 @@ def _never(rng):
     ]
 
 
+def carried(rng, call, way):
+    """The same pair on a fast train that goes along the normal, or against it (``way`` 1.0 or -1.0)."""
+    ma, mb, va, vb, n, *rest = call
+    train = way * float(rng.uniform(8.0, 12.0)) * n
+    return ma, mb, va + train, vb + train, n, *rest
+
+
 def _no_friction(rng):
     smooth = (*impact(rng, 3), 0.0)
     # Along an axis and in whole numbers the slip is exactly zero.
     axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
     n, va = side * np.eye(3)[axis], rng.integers(-4, 5, 3).astype(float)
     straight = (*masses(rng), va, va - float(rng.integers(1, 6)) * n, n, float(rng.uniform(0.2, 0.8)), 0.4)
-    return [smooth, straight, parting(friction(rng, 3, 0.6)), friction(rng, 3, 0.6)]
+    apart = [carried(rng, parting(friction(rng, 3, 0.6)), way) for way in (1.0, -1.0)]
+    return [smooth, straight, *apart, friction(rng, 3, 0.6)]
 
 
 def _mended(rng):
@@ -365,7 +373,10 @@ PUBLIC = {
     "impulse_separating": lambda rng: [*(parting(line(rng)) for _ in range(3)), line(rng)],
     "impulse_walls": lambda rng: [wall(line(rng), side) for side in (0, 1)],
     "resolve_oblique": lambda rng: [*(impact(rng, d) for d in (3, 3, 2)), slow(rng, 2)],
-    "resolve_separating": lambda rng: [parting(impact(rng, 3)), parting(impact(rng, 2)), impact(rng, 3)],
+    "resolve_separating": lambda rng: [
+        *(carried(rng, parting(impact(rng, d)), way) for d, way in ((3, 1.0), (2, -1.0))),
+        impact(rng, 3),
+    ],
     "resolve_walls": lambda rng: [wall(impact(rng, d), side) for d, side in ((2, 0), (3, 1))],
     "friction_regimes": lambda rng: [
         *(friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),

@@ -721,7 +721,7 @@ OTHERS = {
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va > 0 > vb)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
         *((("APPROACH_BY_ONE_BODY",), _approach_by(meets)) for meets in _BY_ONE),
-        *((("APPROACH_BY_ONE_BODY",), _strikes_if(meets)) for meets in _BY_ONE),
+        *((("APPROACH_BY_ONE_BODY",), _strikes_if(meets)) for meets in (*_BY_ONE[:2], _BY_ONE[3])),
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va)),
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: -vb)),
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: va + vb)),

@@ -327,7 +327,6 @@ _STABLE = (
     ("LIMIT_FROM_ABOVE", _from_above),
     ("LIMIT_FROM_ABOVE", _search(walk=4.0)),
     ("LIMIT_NOT_SCALED", _search(scaled=False)),
-    ("LIMIT_NOT_SCALED", _search(back=False)),
     ("LIMIT_COARSE", _search(fine=False)),
     ("LIMIT_COARSE", _search(walk=0.25, fine=False)),
     ("NO_INFINITY", _search(endless=None)),

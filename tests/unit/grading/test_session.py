@@ -380,7 +380,7 @@ def test_at_home_a_check_that_breaks_says_that_nothing_tells_whose_fault_it_is(
         verdict = grade(home, solution + b"\ndef double(x):\n    return [x, None]\n")
     assert verdict.state == "graded"
     assert "no model solution here" in verdict.checks[0].message
-    assert "a list with None in it" in verdict.checks[0].message
+    assert "a list or a tuple with None in it" in verdict.checks[0].message
 
 
 def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(

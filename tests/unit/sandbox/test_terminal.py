@@ -329,7 +329,7 @@ def test_the_list_of_events_tells_what_happened():
         await pilot.press("l")
         assert isinstance(app.screen, PageOverlay)
         page = app.screen.words
-        assert "the left puck meets the right puck at 3.00 m/s" in page
+        assert "the left puck and the right puck meet at 3.00 m/s" in page
 
     play("head-on", script)
 

@@ -206,7 +206,7 @@ def test_after_a_reload_a_page_knows_what_happened_before() -> None:
     scene = json.loads(data[0])
     assert scene["status"]["settings"]["restitution"] == 0.5
     assert scene["status"]["guess"] == 2
-    assert any("meets the right puck" in event["text"] for event in scene["events"])
+    assert any("the right puck meet at" in event["text"] for event in scene["events"])
     past = np.frombuffer(data[2], "<f4")
     table = past[4:].reshape(int(past[2]), int(past[3]))
     assert table[-1, 0] == pytest.approx(made.world.t, abs=0.05)
@@ -272,7 +272,7 @@ def test_a_reset_ends_the_story_of_the_run_before() -> None:
     made, page = make("head-on")
     send(made, page, "pause", on=False)
     watch(made, 1)
-    assert "meets" in json.dumps(of(told(page), "events"))
+    assert "meet at" in json.dumps(of(told(page), "events"))
     send(made, page, "reset")
     assert [message for message in of(told(page), "events") if message.get("anew")]
     late = made.join()

@@ -117,7 +117,9 @@ def _concerned(task, calls, values, truth):
         return "SOME_PAIRS_SPARED"
     if task == "impulse_1d" or (not struck and len(wrong) < 2):
         return None
-    one = any(all(_same(right[body], value[body]) for _, value, right in wrong) for body in (0, 1))
+    # A body that cannot move is always right.
+    moves = [any(np.isfinite(call[body]) for call, _, _ in wrong) for body in (0, 1)]
+    one = any(moves[body] and all(_same(y[body], x[body]) for _, x, y in wrong) for body in (0, 1))
     return "ONE_BODY_RIGHT" if one else None
 
 

@@ -264,8 +264,8 @@ def exact_plane(rng, gap):
 
 
 def gap(rng):
-    """Less than a millimetre, which every margin takes for a touch; in m."""
-    return float(10 ** rng.uniform(-3.7, -3.1))
+    """Less than a twentieth of a millimetre, which every margin takes for a touch; in m."""
+    return float(10 ** rng.uniform(-6.5, -4.3))
 
 
 def slow(rng, d):

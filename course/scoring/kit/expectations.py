@@ -140,8 +140,8 @@ _NAN = Diagnosis(
 _INFINITE = Diagnosis(
     "NOT_FINITE",
     "It is infinite, or was computed from something that is not finite.",
-    "inf comes from a division by zero, or from something that grows without bound until it overflows. Print "
-    "the intermediate results: where does it appear first?",
+    "inf comes from a division by zero, from an infinite argument as a factor, or from something that grows "
+    "until it overflows. Print the intermediate results: where does it appear first?",
 )
 
 

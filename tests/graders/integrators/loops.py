@@ -31,7 +31,7 @@ def expect_times(submission, rng):
         units="s",
         quantity="t given to the step",
         input=given,
-        message="integrate does not call the step with the time at which it starts.",
+        message="The path of a step that depends on its time is wrong.",
         help="Step number i starts at i * h.",
         diagnose=lambda: probes.of_times(told, h),
     )

@@ -147,6 +147,8 @@ def test_coverage_edges(submission, rng):
     lo = y - rng.integers(-1, 4, n) / 4
     hi = np.maximum(lo, y + rng.integers(-1, 4, n) / 4)
     lo[0] = hi[0] = y[0]
+    lo[1], hi[2] = y[1] + 1e-9, y[2] - 1e-9  # outside by less than any margin
+    hi[1], lo[2] = lo[1] + 1, hi[2] - 1
     shared.expect_coverage(submission, y, lo, hi)
 
 

@@ -38,9 +38,9 @@ __all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
 
 #: Long lines of prose are hard to read however wide the window is.
 MAX_WIDTH = 100
-#: Work that takes less than this shows nothing while it runs. In s.
 #: Columns below which a table folds its cells until nobody can read them.
 _NARROW = 60
+#: Work that takes less than this shows nothing while it runs. In s.
 PATIENCE = 0.5
 
 #: Colour repeats what a word already says; it never says anything alone.

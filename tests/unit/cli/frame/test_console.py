@@ -68,6 +68,17 @@ def test_colour_can_be_forced_into_a_pipe_and_forbidden_on_a_terminal():
     assert "\x1b[31m" not in out.getvalue()
 
 
+@pytest.mark.parametrize("columns", [40, 59])
+def test_a_narrow_window_gets_facts_in_place_of_a_table(monkeypatch, columns):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    console, out, _ = _console(environ={"NO_COLOR": "1"})
+    console.table(("Id", "Lesson", "Read"), [("numerical-integration", "How a simulator moves time", "")])
+    assert [line.rstrip() for line in out.getvalue().splitlines()] == [
+        "numerical-integration",
+        "  Lesson How a simulator moves time",
+    ]
+
+
 def test_a_table_in_a_pipe_names_every_value():
     console, out, _ = _console(terminal=False)
     console.table(("Id", "Score"), [("one", "3/4"), ("two", "")])

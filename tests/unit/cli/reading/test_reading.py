@@ -235,6 +235,17 @@ def test_colour_is_left_out_where_it_is_not_wanted(lesson: Lesson, monkeypatch: 
     assert not colours.search(written(quiet))
 
 
+def test_without_colour_code_keeps_its_marks(lesson: Lesson) -> None:
+    Path(lesson.path).write_text("+++\n+++\n\nIt takes `steps` steps.", encoding="utf-8")
+    texts = []
+    for no_color in (True, False):
+        console = console_of(60, no_color=no_color)
+        read_whole(lesson, console)
+        texts.append(written(console))
+    assert "It takes `steps` steps." in texts[0]
+    assert "It takes steps steps." in texts[1]
+
+
 def test_a_page_ends_where_a_section_or_a_prediction_does(lesson: Lesson) -> None:
     pages = lesson_pages(lesson)
     assert [page.section for page in pages] == [

@@ -82,6 +82,16 @@ def someone(monkeypatch):
     return asked
 
 
+def test_go_announces_the_command_that_it_would_run(course, workspace, someone, monkeypatch):
+    ran, steps = [], iter(["course lesson twice-as-much", "course check doubling"])
+    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda _: next(steps))
+    monkeypatch.setattr("course.cli.home.going.again", lambda words: ran.append(words) or 0)
+    monkeypatch.setattr(Console, "go_on", lambda *_: False)
+    said = course("go").out
+    assert [words[:2] for words in ran] == [["lesson", "twice-as-much"]]
+    assert "Next: course watch doubling" in said
+
+
 def test_a_lesson_that_was_read_names_the_step_that_the_dashboard_names(course, workspace, someone):
     ran = course("lesson", "twice-as-much", "--page")
     step = course("next", "--json").json["next"]["command"]

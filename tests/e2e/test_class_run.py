@@ -25,9 +25,6 @@ MODEL = (SOLUTIONS / "integrators.py").read_bytes()
 WRONG = (ATTACKS / "wrong_integrators.py").read_bytes()
 MODULE = "integrators.py"
 
-#: What it answers depends on the addresses of objects in its process, which no seed decides.
-AT_RANDOM = {"attack cached_callbacks"}
-
 pytestmark = pytest.mark.soak
 
 
@@ -148,7 +145,7 @@ def test_a_class_of_every_kind_is_graded_as_each_deserves(tmp_path: Path) -> Non
 
 
 def _scores(results: dict[str, dict[str, Any]]) -> dict[str, float]:
-    return {name: line["score"] for name, line in results.items() if name not in AT_RANDOM}
+    return {name: line["score"] for name, line in results.items()}
 
 
 def failed_tasks(line: dict[str, Any]) -> set[str]:

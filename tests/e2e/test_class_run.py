@@ -40,7 +40,7 @@ def _link(place: Path) -> None:
 def _ambiguous(place: Path) -> None:
     (place / MODULE).write_bytes(MODEL)
     (place / "integrators").mkdir()
-    (place / "integrators" / MODULE).write_bytes(MODEL)
+    (place / "integrators" / MODULE).write_bytes(WRONG)
 
 
 #: name of the student -> how the folder is filled, and the reason it cannot be graded

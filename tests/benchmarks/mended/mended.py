@@ -48,19 +48,34 @@ FATES = ("mended", "more", "not mended")
 
 
 def joined(solution: Path, mistake: Path) -> str:
-    """The model solution with a mistake's definitions in the place of its own, and without its comment."""
+    """The model solution with a mistake's definitions in the place of its own, and without its comment.
+
+    What the solution has not got (an import, a helper, a table) goes before the definition that follows it in
+    the mistake.
+    """
     lines = compose(solution, mistake).decode().splitlines()
-    places: dict[str, list[tuple[int, int]]] = {}
-    for node in ast.parse("\n".join(lines)).body:
-        names = [getattr(node, "name", None), *(getattr(t, "id", None) for t in getattr(node, "targets", []))]
-        for name in filter(None, names):
-            places.setdefault(name, []).append((node.lineno - 1, node.end_lineno or node.lineno))
-    # From below, so that the lines above stay where they are.
-    twice = sorted((found for found in places.values() if len(found) > 1), reverse=True)
     text = solution.read_text(encoding="utf-8").rstrip().splitlines()
-    for (begin, end), (own, own_end) in twice:
-        text[begin:end] = lines[own:own_end]
-    return "\n".join(text) + "\n"
+    places: dict[str, tuple[int, int]] = {}
+    new: list[str] = []
+    changes: list[tuple[int, int, list[str]]] = []
+    for node in ast.parse("\n".join(lines)).body:
+        begin, end = (
+            node.lineno - 1 - len(getattr(node, "decorator_list", [])),
+            node.end_lineno or node.lineno,
+        )
+        targets = [*getattr(node, "targets", []), getattr(node, "target", None)]
+        names = [getattr(node, "name", None), *(getattr(target, "id", None) for target in targets)]
+        if begin < len(text):
+            places |= {name: (begin, end) for name in names if name}
+        elif found := next((places[name] for name in names if name in places), None):
+            changes.append((*found, new + lines[begin:end]))
+            new = []
+        elif not isinstance(node, ast.Expr):  # its docstring
+            new += [*lines[begin:end], ""]
+    # From below, so that the lines above stay where they are.
+    for begin, end, own in sorted(changes, reverse=True):
+        text[begin:end] = own
+    return "\n".join(text + new) + "\n"
 
 
 def graded(sources: dict[str, tuple[str, str]]) -> dict[str, Verdict]:

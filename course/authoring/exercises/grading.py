@@ -92,7 +92,7 @@ class _Model:
         changed = _changed(source.decode("utf-8", "replace"), self.source)
         if not changed or self.verdict.state != "graded" or not self.verdict.passed:
             return ()
-        reach = reached_from(source)
+        reach = reached_from(source, frozenset().union(*self.asked.values()))
         return tuple(
             check.id
             for check in self.verdict.checks
@@ -110,16 +110,14 @@ class _Model:
 
 def _changed(source: str, model: str) -> frozenset[str]:
     """The names that a source defines after the model solution; empty if it is not of that kind."""
-    if not source.startswith(model):
+    if not source.startswith(f"{model}\n"):
         return frozenset()
     try:
-        tree = ast.parse(source)
+        tree = ast.parse(source.removeprefix(model))
     except (SyntaxError, ValueError):
         return frozenset()
     names: set[str] = set()
     for node in tree.body:
-        if node.lineno <= model.count("\n") + 1:
-            continue
         match node:
             case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
                 names.add(name)

@@ -42,6 +42,13 @@ def stiffer_than_told(a, x, v, h):
     return x + h * v, v
 
 
+def grows_slowly(a, x, v, h):
+    """Verlet, but every step grows, by 2e-4 or more: where it is called unstable tells limits apart."""
+    x, v = boxes.velocity_verlet(a, x, v, h)
+    growth = 1 + 2e-4 * math.exp(4.5 * h * boxes.BALSA.omega)
+    return growth * x, growth * v
+
+
 KNOWN = {"anvil": boxes.ANVIL, "balsa": boxes.BALSA, "cork": boxes.CORK}
 #: Where the largest stable step is zero, infinite, or followed by larger ones that are stable again.
 ENDS = {
@@ -55,6 +62,10 @@ APART = {
     "symplectic": (
         "an engine stiffer than it says",
         dataclasses.replace(boxes.BALSA, step=stiffer_than_told, damping=0.0),
+    ),
+    "max_stable_step": (
+        "an engine that grows slowly",
+        dataclasses.replace(boxes.BALSA, step=grows_slowly, damping=0.0),
     ),
     "deterministic": ("an engine that hardly repeats itself", dataclasses.replace(boxes.CORK, jitter=1e-3)),
 }

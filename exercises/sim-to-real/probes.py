@@ -295,14 +295,22 @@ def of_gains(submission, estimate, box, gains, success):
     looks = (
         (
             "KD_IS_RATIO",
-            lambda: _are_ratios([gains, *other]) and _would_do(kp, kp * kd, gains, estimate, box, success),
+            # The search itself is right, so heavy carts get more than light ones.
+            lambda: (
+                _are_ratios([gains, *other])
+                and other[0][0] > other[1][0]
+                and _would_do(kp, kp * kd, gains, estimate, box, success)
+            ),
         ),
         ("NO_DAMPING", lambda: kd < 0.05 * kp),
+        (
+            "ESTIMATE_IGNORED",
+            lambda: all(same[:3]) and not same[3] and _never_changes(submission, estimate, box, gains),
+        ),
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
         ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
         # Where nothing settles, gains are as good as any others, and what they depend on shows nothing.
         (failing, lambda: failing == "NO_CART_SETTLES"),
-        ("ESTIMATE_IGNORED", lambda: all(same[:3]) and not same[3]),
         (
             "GAINS_BY_FORMULA",
             lambda: same[2] and same[3] and not (same[0] or same[1]) and unmoved((sooner, box), *boxes),
@@ -312,7 +320,8 @@ def of_gains(submission, estimate, box, gains, success):
             # A quarter of a second more changes the best gains so much that no grid is too coarse to show it.
             lambda: same[2] and _is_best(kp, kd, prompt, box) and unmoved((sooner, box), (very_late, box)),
         ),
-        ("RANDOMIZATION_IGNORED", lambda: same[3] and unmoved(*boxes)),
+        # Gains that stay for heavy carts too are at the search's edge, which the box cannot move.
+        ("RANDOMIZATION_IGNORED", lambda: same[3] and not same[0] and unmoved(*boxes)),
         (failing, lambda: failing is not None),
         ("SEARCH_ENDED_EARLY", lambda: ended_early),
     )

@@ -322,7 +322,7 @@ def expect_command_closes_loop(submission, rng):
             quantity="largest drive",
             units="m/s²",
             input={**given, "time": step * k, "speeds": v},
-            message="A cart that is driven by command keeps getting faster.",
+            message="`command` asks for more than a hundred times the drive that the cart needs.",
             help="A correction must be zero at the target speed, and push towards it on both sides.",
             diagnose=ask,
         )

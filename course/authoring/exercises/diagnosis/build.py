@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
 
-__all__ = ["SOURCES", "build", "digest", "hypotheses_of", "table_of"]
+__all__ = ["SOURCES", "build", "digest", "hypotheses_of", "sums_of", "table_of"]
 
 #: Files of an exercise, and of its solution, that the table follows from.
 SOURCES = (
@@ -78,7 +78,7 @@ def table_of(catalog: Catalog, exercise: Exercise) -> Table:
     right: dict[str, set[tuple[float, ...]]] = {}
     for task in tasks:
         for function in _right(catalog, exercise, task):
-            for name, sums in _sums(questions, task, function).items():
+            for name, sums in sums_of(questions, task, function).items():
                 right.setdefault(name, set()).add(sums)
     made = Table(
         made_from=digest(catalog, exercise),
@@ -88,7 +88,7 @@ def table_of(catalog: Catalog, exercise: Exercise) -> Table:
     )
     rows: dict[str, dict[tuple[float, ...], dict[tuple[str, ...], Row]]] = {name: {} for name in right}
     for task, codes, function in hypotheses_of(catalog, exercise):
-        for name, sums in _sums(questions, task, function).items():
+        for name, sums in sums_of(questions, task, function).items():
             known = rows[name].setdefault(sums, {})
             if not is_right(made, name, sums) and not any(len(other) < len(codes) for other in known):
                 known.setdefault(codes, Row(codes, sums))
@@ -104,7 +104,7 @@ def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]]) -> tuple[Ro
     return (*single, *double[:: max(1, math.ceil(len(double) / _MOST_PAIRS))])
 
 
-def _sums(questions: ModuleType, task: str, function: Callable[..., Any]) -> dict[str, tuple[float, ...]]:
+def sums_of(questions: ModuleType, task: str, function: Callable[..., Any]) -> dict[str, tuple[float, ...]]:
     """A function's answers to the questions of its task, by name, if they are the same each time.
 
     A function that draws from its own generator gives different answers each time, so it cannot be

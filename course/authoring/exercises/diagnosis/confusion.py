@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from course.authoring.exercises.diagnosis.build import digest, hypotheses_of
+from course.authoring.exercises.diagnosis.build import digest, hypotheses_of, sums_of
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import exercise_graders, solution_path, solutions_folder
+from course.grading import kit
 from course.scoring.checks.companions import words
 from course.scoring.explain.table import FILE as TABLE
-from course.scoring.explain.table import read_table
+from course.scoring.explain.table import matching, read_table
 from course.scoring.judging.session import GradingSession, Scope, Submission
 from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Status
@@ -45,6 +46,8 @@ __all__ = [
 ]
 
 FILE = "confusion.json"
+#: Task, codes of what is wrong, and function.
+_Program = tuple[str, tuple[str, ...], "Callable[..., Any]"]
 #: Only every n-th program with two mistakes is tried, because there are thousands.
 _EVERY = 100
 
@@ -86,9 +89,8 @@ def confusion_of(
 ) -> Confusion:
     """Try every known wrong program with one mistake, and every ``every``-th with two."""
     known = list(hypotheses_of(catalog, exercise))
-    chosen = [item for item in known if len(item[1]) == 1] + [item for item in known if len(item[1]) > 1][
-        ::every
-    ]
+    chosen = [item for item in known if len(item[1]) == 1]
+    chosen += [_as_one(exercise, item) for item in [item for item in known if len(item[1]) > 1][::every]]
     rows: dict[str, tuple[Reported, ...]] = {}
     done, scopes = 0, ("public", "full")
     for scope in scopes:
@@ -100,6 +102,23 @@ def confusion_of(
                 on_progress(done, len(scopes) * len(chosen), exercise.id)
         rows[scope] = tuple(Reported(*key, count) for key, count in sorted(counts.items()))
     return Confusion(made_from=made_from(catalog, exercise), rows=rows)
+
+
+def _as_one(exercise: Exercise, program: _Program) -> _Program:
+    """A program with two mistakes; if it answers every question like one with a single mistake, it is that.
+
+    Two terms of a formula may be changed so that one mistake results: Runge and Kutta's four slopes, of which
+    only the ends count and the last starts from the first, are Heun's method.
+    """
+    task, codes, function = program
+    table = read_table(exercise.readme_path.with_name(TABLE))
+    fits = [
+        matching(table, name, sums)
+        for name, sums in sums_of(kit.companion(exercise.id, "questions"), task, function).items()
+    ]
+    if len(fits) == 1 and fits[0] and len(fits[0][0].codes) == 1:
+        codes = fits[0][0].codes
+    return task, codes, function
 
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
@@ -117,7 +136,7 @@ def _tried(
     catalog: Catalog,
     exercise: Exercise,
     scope: Scope,
-    chosen: list[tuple[str, tuple[str, ...], Callable[..., Any]]],
+    chosen: list[_Program],
 ) -> Iterator[tuple[str, tuple[str, ...], str]]:
     source = solution_path(catalog, exercise).read_text(encoding="utf-8")
     own = words(exercise.id)

@@ -210,4 +210,6 @@ def _grade(
         isolation = verdict.isolation or isolation
         if on_progress:
             on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.path.name}")
+    for prover in dict.fromkeys(prover for prover, _ in work):
+        prover.judge_hints(catalog.hints_document(prover.exercise))
     return len(work), isolation

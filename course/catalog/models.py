@@ -6,6 +6,8 @@ the files into them and says which file and line is wrong when one does not fit.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -14,12 +16,13 @@ import msgspec
 from course.ids import WARM_UPS, ExerciseId, LessonId
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection
 
 __all__ = [
     "FORMAT_VERSION",
     "CourseRef",
     "Exercise",
+    "Found",
     "Hints",
     "Lesson",
     "Mutant",
@@ -29,6 +32,7 @@ __all__ = [
     "Syllabus",
     "Task",
     "TaskHints",
+    "fields_of",
 ]
 
 #: Files that declare a newer format are refused: an older program must not half-understand them.
@@ -182,16 +186,46 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return next((task.title for task in self.task if task.id == task_id), task_id)
 
 
+#: Of the failed checks of a task: diagnosis, "" for none, and fields by name.
+Found = Iterable[tuple[str, Mapping[str, str]]]
+_FIELD = re.compile(r"\{([^{}]*)\}")
+
+
+def fields_of(sentence: str) -> frozenset[str]:
+    """The fields that a hint's sentence about the student's numbers names."""
+    return frozenset(_FIELD.findall(sentence))
+
+
 class TaskHints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The hints of one task, mildest first.
 
     Attributes:
         fits: by number of a hint, counted from 1, the diagnoses after which it is the one to give.
+        yours: by number of a hint, "any" for all that have none of their own, what it goes on to say of the
+            student's own numbers. ``{name}`` stands for a field of the failed check; of several sentences
+            the first is said whose fields are all there.
     """
 
     id: str
     hints: tuple[str, ...]
     fits: dict[str, tuple[str, ...]] = {}
+    yours: dict[str, tuple[str, ...]] = {}
+
+    def said(self, index: int, failed: Found) -> str:
+        """A hint, from 0, with the student's numbers where it has a sentence for them.
+
+        Args:
+            failed: diagnosis and fields of each failed check; one whose diagnosis the hint fits goes first.
+        """
+        fitting = self.fits.get(str(index + 1), ())
+        sentences = self.yours.get(str(index + 1), self.yours.get("any", ()))
+        for _, fields in sorted(failed, key=lambda check: check[0] not in fitting):
+            for sentence in sentences:
+                if fields.keys() >= fields_of(sentence):
+                    parts = _FIELD.split(sentence)  # words and names of fields, in turn
+                    parts[1::2] = [fields[name] for name in parts[1::2]]
+                    return f"{self.hints[index]} {''.join(parts)}"
+        return self.hints[index]
 
 
 class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -200,12 +234,12 @@ class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     format_version: int
     task: tuple[TaskHints, ...]
 
-    def of(self, task_id: str) -> Sequence[str]:
-        return next((task.hints for task in self.task if task.id == task_id), ())
+    def of(self, task_id: str) -> TaskHints:
+        return next((task for task in self.task if task.id == task_id), TaskHints(task_id, ()))
 
     def after(self, task_id: str, diagnoses: Collection[str], given: Collection[int]) -> int | None:
         """The next hint, from 0: one that fits a diagnosis, else the mildest; None if all are given."""
-        task = next((task for task in self.task if task.id == task_id), TaskHints(task_id, ()))
+        task = self.of(task_id)
         left = [index for index in range(len(task.hints)) if index not in given]
         fitting = [int(number) - 1 for number, codes in task.fits.items() if set(codes) & set(diagnoses)]
         return next((index for index in fitting if index in left), left[0] if left else None)

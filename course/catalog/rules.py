@@ -10,6 +10,7 @@ import math
 import re
 from typing import TYPE_CHECKING, Any
 
+from course.catalog.models import fields_of
 from course.errors import UsageError
 from course.ids import WARM_UPS, ExerciseId, LessonId
 
@@ -203,6 +204,21 @@ def check_hints(document: Document[Hints], exercise: Exercise) -> None:
                     f"task {entry.id} has no hint number {fitting}.",
                     fix=f"Its hints are 1 to {len(entry.hints)}.",
                 )
+        for told, sentences in entry.yours.items():
+            where = ("task", index, "yours", told)
+            if told not in ("any", *map(str, range(1, len(entry.hints) + 1))):
+                document.fail(
+                    where,
+                    f"task {entry.id} has no hint number {told}.",
+                    fix=f"Its hints are 1 to {len(entry.hints)}, or any.",
+                )
+            for sentence in sentences:
+                if not fields_of(sentence):
+                    document.fail(
+                        where,
+                        f"a sentence about the student's numbers has no field: {sentence!r}.",
+                        fix="Name one, such as {got}, or make the sentence a part of the hint.",
+                    )
 
 
 def check_rubric(document: Document[Rubric]) -> None:

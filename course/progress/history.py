@@ -13,21 +13,22 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
+from course.progress.evidence import numbers_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from datetime import datetime
 
+    from course.progress.evidence import Finding
     from course.progress.store import Event
 
-    class _Check(Protocol):
+    class _Check(Finding, Protocol):
         """What is kept of one check."""
 
         @property
         def id(self) -> str: ...
         @property
         def task(self) -> str: ...
-        @property
-        def status(self) -> str: ...
         @property
         def diagnosis(self) -> str | None: ...
 
@@ -72,6 +73,7 @@ class CheckRun:
         diagnoses: diagnosis by check id, of those that have one.
         tasks: task by check id.
         unwritten: checks that found a function as it was handed out.
+        numbers: of failed checks, by check id, as ``numbers_of`` gives them.
     """
 
     id: int
@@ -88,6 +90,7 @@ class CheckRun:
     diagnoses: Mapping[str, str]
     tasks: Mapping[str, str]
     unwritten: frozenset[str]
+    numbers: Mapping[str, Mapping[str, str]]
 
     @property
     def failed(self) -> bool:
@@ -164,14 +167,19 @@ class History:
         """Which hints of a task were shown, in that order."""
         return tuple(dict.fromkeys(hint.index for hint in self.hints if hint.task == task))
 
-    def diagnosed(self, task: str) -> frozenset[str]:
-        """What the newest run that had a check of this task thinks is wrong with it."""
-        runs = (run for run in reversed(self.runs) if task in run.tasks.values())
-        run = next(runs, None)
-        return (
-            frozenset(code for check, code in run.diagnoses.items() if run.tasks.get(check) == task)
-            if run
-            else frozenset()
+    def diagnosed(self, task: str) -> tuple[tuple[str, Mapping[str, str]], ...]:
+        """What the newest run that had a check of this task found wrong with it.
+
+        Returns:
+            diagnosis, "" for none, and numbers of each check of the task that did not pass, in their order.
+        """
+        run = next((run for run in reversed(self.runs) if task in run.tasks.values()), None)
+        if run is None:
+            return ()
+        return tuple(
+            (run.diagnoses.get(check, ""), run.numbers.get(check, {}))
+            for check, status in run.statuses.items()
+            if run.tasks.get(check) == task and status != _PASS
         )
 
     def hint_is_due(self, stub: str) -> bool:
@@ -247,9 +255,10 @@ def check_data(
     }
 
 
-def _kept(check: _Check) -> dict[str, str]:
+def _kept(check: _Check) -> dict[str, object]:
     kept = {"id": check.id, "task": check.task, "status": str(check.status)}
-    return kept | ({"diagnosis": check.diagnosis} if check.diagnosis else {})
+    more = {"diagnosis": check.diagnosis, "numbers": numbers_of(check)}
+    return kept | {key: value for key, value in more.items() if value}
 
 
 def fingerprint(source: bytes) -> str:
@@ -298,4 +307,9 @@ def _run(event: Event) -> CheckRun:
         },
         tasks={str(check.get("id")): str(check.get("task")) for check in checks},
         unwritten=frozenset(str(check.get("id")) for check in checks if check.get("diagnosis") == _UNWRITTEN),
+        numbers={
+            str(check.get("id")): {str(name): str(words) for name, words in check["numbers"].items()}
+            for check in checks
+            if isinstance(check.get("numbers"), dict)
+        },
     )

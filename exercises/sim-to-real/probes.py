@@ -295,17 +295,17 @@ def of_gains(submission, estimate, box, gains, success):
     looks = (
         (
             "KD_IS_RATIO",
-            # The search itself is right, so heavy carts get more than light ones.
-            lambda: (
-                _are_ratios([gains, *other])
-                and other[0][0] > other[1][0]
-                and _would_do(kp, kp * kd, gains, estimate, box, success)
-            ),
+            lambda: _are_ratios([gains, *other]) and _would_do(kp, kp * kd, gains, estimate, box, success),
         ),
         ("NO_DAMPING", lambda: kd < 0.05 * kp),
         (
             "ESTIMATE_IGNORED",
-            lambda: all(same[:3]) and not same[3] and _never_changes(submission, estimate, box, gains),
+            lambda: (
+                failing != "NO_CART_SETTLES"
+                and all(same[:3])
+                and not same[3]
+                and _never_changes(submission, estimate, box, gains)
+            ),
         ),
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
         ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
@@ -353,8 +353,13 @@ def _never_changes(submission, estimate, box, gains):
 
 
 def _are_ratios(pairs):
-    """Whether every kd is of the size of a good ratio kd/kp, whatever was asked."""
-    return all(0.2 < kd < 1.0 < kp for kp, kd in pairs)
+    """Whether each kd is of the size of a good ratio kd/kp, and does not grow with kp as a gain does."""
+    (most, with_most), (least, with_least) = max(pairs), min(pairs)
+    return (
+        all(0.2 < kd < 1.0 < kp for kp, kd in pairs)
+        and most > 1.3 * least
+        and with_most / with_least < math.sqrt(most / least)
+    )
 
 
 def _would_do(kp, kd, gains, estimate, box, success):

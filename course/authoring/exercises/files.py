@@ -155,7 +155,7 @@ def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> No
     document = catalog.hints_document(exercise)
     least = LEAST_HINTS_OF_WARM_UP if exercise.is_warm_up else LEAST_HINTS
     for task in exercise.task:
-        hints = document.value.of(task.id)
+        hints = document.value.of(task.id).hints
         if len(hints) < least:
             index = next((i for i, entry in enumerate(document.value.task) if entry.id == task.id), None)
             findings.add(

@@ -14,8 +14,10 @@ from course.authoring.exercises.checks import public_numbers
 from course.authoring.exercises.mutants import judge, mutant_path
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
 from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path
+from course.catalog.models import fields_of
 from course.catalog.reading import read_text
 from course.errors import ContentError
+from course.progress.evidence import numbers_of
 from course.scoring.verdict import Status, Visibility
 
 if TYPE_CHECKING:
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
 
     from course.authoring.report import Findings
     from course.catalog.load import Catalog
-    from course.catalog.models import Exercise, Mutant
+    from course.catalog.models import Exercise, Hints, Mutant
+    from course.catalog.reading import Document
     from course.scoring.verdict import CheckResult, Verdict
 
 __all__ = ["MUTANTS_EACH", "Proof", "Prover", "least_proofs", "plan"]
@@ -165,6 +168,7 @@ class Prover:
         self._mutants_toml = mutants_toml
         self._findings = findings
         self._public = public_numbers(exercise)
+        self._fields: dict[str, set[str]] = {task.id: set() for task in exercise.task}
 
     def judge(self, proof: Proof, verdict: Verdict) -> None:
         """Report what is wrong with the verdict on one proof."""
@@ -184,6 +188,22 @@ class Prover:
         else:
             self._judge_correct(proof, verdict)
         self._judge_words(verdict)
+        for check in verdict.checks:
+            self._fields.setdefault(check.task, set()).update(numbers_of(check))
+
+    def judge_hints(self, hints: Document[Hints]) -> None:
+        """Report fields that hints name and that no failed check has had. Call it after the last proof."""
+        for index, task in enumerate(hints.value.task):
+            for number, sentences in task.yours.items():
+                named = frozenset().union(*map(fields_of, sentences))
+                for field in sorted(named - self._fields.get(task.id, set())):
+                    self._findings.add(
+                        hints.path,
+                        hints.lines.line(("task", index, "yours", number)),
+                        "hints",
+                        f"no check of {task.id} that a mutant fails has the field {{{field}}}.",
+                        "A field is an input that a public check names, expected, got, ratio or at.",
+                    )
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
         """Report checks that broke instead of checking."""

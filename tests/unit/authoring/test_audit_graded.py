@@ -94,6 +94,14 @@ def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
     assert steps == [*range(9)]
 
 
+def test_a_field_that_no_failed_check_has_is_a_problem(mini: Path) -> None:
+    path = mini / "exercises/doubling/hints.toml"
+    edit(path, "[task.fits]", '[task.yours]\n2 = ["At {x} it is {got}.", "At {y} too."]\n\n[task.fits]')
+    (problem,) = audit(Catalog(), "doubling").problems
+    assert problem.where == "exercises/doubling/hints.toml:12"
+    assert "no check of double that a mutant fails has the field {y}" in problem.message
+
+
 def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini: Path) -> None:
     edit(
         mini / "exercises/halving/checks.py",

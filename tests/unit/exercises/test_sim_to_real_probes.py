@@ -173,6 +173,8 @@ def _on_a_grid(estimate, box):
         ("SEARCH_ENDED_EARLY", _on_a_grid),
         ("ESTIMATE_IGNORED", lambda estimate, box: {"kp": 7.0 * box["m"][1], "kd": 3.4 * box["m"][1]}),
         ("NO_CART_SETTLES", lambda estimate, box: {"kp": 20 * box["m"][1], "kd": 2.0}),
+        ("KD_IS_RATIO", lambda estimate, box: {"kp": 7.0 * estimate["m"][0], "kd": 0.48}),
+        ("SEARCH_ENDED_EARLY", lambda estimate, box: {"kp": min(5.0, 6.0 * estimate["m"][0]), "kd": 2.5}),
     ],
 )
 def test_gains_that_stay_the_same_are_told_why_only_as_far_as_it_is_seen(code, tune):

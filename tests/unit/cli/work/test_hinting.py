@@ -45,6 +45,28 @@ def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, 
     assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
 
 
+def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(
+    course, write, monkeypatch, tmp_path
+):
+    content = tmp_path / "content"
+    shutil.copytree(MINI_COURSE, content)
+    hints = content / "exercises" / "doubling" / "hints.toml"
+    sentences = (
+        '1 = ["At {x} it is {got}."]\n2 = ["At {x} it is {got}.", "At h = {h} it is {got}, not {expected}."]'
+    )
+    hints.write_text(hints.read_text().replace("[task.fits]", f"[task.yours]\n{sentences}\n\n[task.fits]"))
+    monkeypatch.setenv("COURSE_CONTENT", str(content))
+    write("wrong", "RIGHT")
+    course("check")
+    assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
+    write("wrong again", "RIGHT")
+    course("check")
+    told = "Try your function on a negative number too. At h = 0.05 it is 1, not 1.00000001."
+    assert course("hint", "--json").json["hint"] == told
+    again = course("hint", "--json").json
+    assert (again["reason"], again["hint"]) == ("unchanged", told)
+
+
 def test_an_untouched_stub_earns_no_hint(course, workspace):
     course("check", "doubling")
     ran = course("hint", "doubling")

@@ -46,11 +46,12 @@ def numbers_of(check: Finding) -> dict[str, str]:
         return {}
     fields = {name: _words(value) for name, value in (check.input or {}).items()}
     expected, got, fields["at"] = _compared(check.expected, check.actual)
-    if got is not None:
-        fields |= dict(zip(("expected", "got"), _apart(expected, got), strict=True))
+    right, own = _apart(expected, got)
+    fields["expected"] = "" if expected is got is None else right
+    fields["got"] = "" if got is None else own
     if _is_number(expected) and _is_number(got):
         fields["off"] = f"{'+' * (got > expected)}{_words(got - expected)}"
-        fields["ratio"] = _words(got / expected) if expected else ""
+        fields["ratio"] = _words(got / expected) if expected and got else ""
     return {name: words for name, words in fields.items() if words}
 
 
@@ -79,7 +80,7 @@ def _words(value: Any, digits: int = 4) -> str:
     if isinstance(value, int):
         return str(value) if abs(value) < _HUGE else ""
     if isinstance(value, float):
-        return f"{value:.{digits}g}"
+        return f"{value + 0.0:.{digits}g}"  # no "-0"
     if isinstance(value, list | tuple) and 0 < len(value) <= _ITEMS:
         items = [_words(item, digits) for item in value]
         return f"[{', '.join(items)}]" if all(items) else ""

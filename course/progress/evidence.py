@@ -39,19 +39,20 @@ def numbers_of(check: Finding) -> dict[str, str]:
     Returns:
         each input by its name; ``expected`` and ``got``; where they are numbers, ``off``, which is got minus
         expected, and ``ratio``, got over expected; where one entry of an array was compared, ``at``, which
-        names it. Values too long for a sentence are left out, and all of them where the check passed or is a
-        hidden one.
+        names it. None, a ratio of 0 or 1 and values too long for a sentence are left out, and all of them
+        where the check passed or is a hidden one.
     """
     if check.status != "fail" or check.visibility != "public":
         return {}
-    fields = {name: _words(value) for name, value in (check.input or {}).items()}
+    # The entries of a list may be told apart by a late digit only.
+    fields = {k: _words(x, 10 if isinstance(x, list) else 4) for k, x in (check.input or {}).items()}
     expected, got, fields["at"] = _compared(check.expected, check.actual)
     right, own = _apart(expected, got)
-    fields["expected"] = "" if expected is got is None else right
-    fields["got"] = "" if got is None else own
+    fields["expected"], fields["got"] = "" if expected is None else right, "" if got is None else own
     if _is_number(expected) and _is_number(got):
         fields["off"] = f"{'+' * (got > expected)}{_words(got - expected)}"
-        fields["ratio"] = _words(got / expected) if expected and got else ""
+        ratio = _words(got / expected) if expected and got else ""
+        fields["ratio"] = "" if ratio == "1" else ratio
     return {name: words for name, words in fields.items() if words}
 
 

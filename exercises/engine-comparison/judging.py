@@ -48,7 +48,7 @@ def expect_key(found: list[Any], key: str, spared: int) -> None:
     for case in judged:
         value, truth = case.measured(key), case.truth[key]
         words = {
-            "input": {"engine": case.name, **case.box.info()},
+            "input": {"key": key, "engine": case.name, **case.box.info()},
             "message": MESSAGES[key],
             "help": HELP[key],
             "diagnose": lambda: probes.of_key(key, judged),

@@ -232,8 +232,13 @@ def _histories(q, v, states):
         return "HISTORIES_SWAPPED"
     if np.array_equal(q, v) and np.any(q) and not np.allclose(q_true, v_true):
         return "HISTORIES_IDENTICAL"
-    whole = np.array_equal(q, np.trunc(q)) and np.array_equal(q[0], np.trunc(q_true[0]))
-    return "INTEGER_STATE" if whole and not np.array_equal(q_true, np.trunc(q_true)) else None
+    whole = [
+        np.array_equal(a, np.trunc(a)) and np.array_equal(a[0], np.trunc(b[0]))
+        for a, b in ((q, q_true), (v, v_true))
+    ]
+    # Positions that are all zero may have been left out as well as cut off.
+    seen = whole[0] and (whole[1] or np.any(q))
+    return "INTEGER_STATE" if seen and not np.array_equal(q_true, np.trunc(q_true)) else None
 
 
 def _first_row(t, q, v, h, states):

@@ -35,9 +35,10 @@ def _failed(expected=None, actual=None, **fields):
     ("expected", "got", "fields"),
     [
         (4.5, 3.75, {"expected": "4.5", "got": "3.75", "off": "-0.75", "ratio": "0.8333"}),
-        (2.0, 2.00000001, {"expected": "2", "got": "2.00000001", "off": "+1e-08", "ratio": "1"}),
+        (2.0, 2.00000001, {"expected": "2", "got": "2.00000001", "off": "+1e-08"}),
         (30, 29, {"expected": "30", "got": "29", "off": "-1", "ratio": "0.9667"}),
         (0.0, 1.0, {"expected": "0", "got": "1", "off": "+1"}),
+        (2.0, -0.0, {"expected": "2", "got": "0", "off": "-2"}),
         (1.0, float("inf"), {"expected": "1", "got": "inf"}),
         (True, False, {"expected": "True", "got": "False"}),
         ([1.0, 2], [1.0, 3], {"expected": "[1, 2]", "got": "[1, 3]"}),
@@ -47,7 +48,8 @@ def _failed(expected=None, actual=None, **fields):
             {"expected": "0.5", "got": "1", "off": "+0.5", "ratio": "2", "at": "q[2]"},
         ),
         ({"at most": 0.03}, 2.0, {"expected": "at most 0.03", "got": "2"}),
-        (None, 3.0, {"expected": "None", "got": "3"}),
+        (None, 3.0, {"got": "3"}),
+        (3.0, None, {"expected": "3"}),
         (list(range(9)), 1, {"got": "1"}),
         ("a result", "ValueError: " + 40 * "x", {"expected": "a result"}),
         (1, 10**400, {"expected": "1"}),
@@ -59,8 +61,16 @@ def test_values_are_written_for_a_sentence_or_left_out(expected, got, fields):
 
 
 def test_inputs_are_fields_by_their_names():
-    found = numbers_of(_failed(2.0, 1.0, input={"h": 0.05, "q0": [1.0, -0.5], "path": list(range(50))}))
-    assert found == {"h": "0.05", "q0": "[1, -0.5]", "expected": "2", "got": "1", "off": "-1", "ratio": "0.5"}
+    given = {"h": 1 / 30, "q0": [1e7, 1e7 + 0.3], "path": list(range(50))}
+    found = numbers_of(_failed(2.0, 1.0, input=given))
+    assert found == {
+        "h": "0.03333",
+        "q0": "[10000000, 10000000.3]",
+        "expected": "2",
+        "got": "1",
+        "off": "-1",
+        "ratio": "0.5",
+    }
 
 
 @pytest.mark.parametrize("other", [{"visibility": Visibility.HIDDEN}, {"status": Status.PASS}])

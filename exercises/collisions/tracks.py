@@ -22,8 +22,6 @@ _PARTINGS = (
     ("RESTITUTION_IGNORED", lambda e: 0.0),
     ("ONLY_THE_REBOUND", lambda e: e - 1),
     ("RESTITUTION_SIGN_FLIPPED", lambda e: -e),
-    ("IMPULSE_HALVED", lambda e: (e - 1) / 2),
-    ("IMPULSE_DOUBLED", lambda e: 2 * e + 1),
 )
 
 # -- the head-on simulation -----------------------------------------------------------------------------

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.exercises.diagnosis.build import hypotheses_of
+from course.authoring.exercises.diagnosis.confusion import as_one, fate_of, read_confusion
 from course.authoring.exercises.variants import accepted_files, solution_path
 from course.catalog.load import Catalog
 from course.grading import kit
@@ -93,6 +95,26 @@ def _summary(source: str) -> list[tuple[str, str]]:
     module: dict[str, object] = {"__name__": "program"}
     exec(compile(source, "program", "exec"), module)
     return module["summary"]()  # type: ignore[operator, no-any-return]
+
+
+def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog: Catalog) -> None:
+    """As the audit keeps the tables: made from the checks, probes and words that there are."""
+    for exercise in catalog.exercises():
+        table, fate = read_confusion(catalog, exercise), fate_of(exercise)
+        assert table is not None
+        assert set(table.rows) == {"public", "full"}
+        rows = [row for scope in table.rows.values() for row in scope]
+        assert [row for row in rows if fate(row) == "otherwise"] == []
+
+
+def test_two_changed_terms_that_make_one_known_mistake_are_that_mistake(catalog: Catalog) -> None:
+    exercise = catalog.exercise("integrators")
+    for codes, found in (
+        (("ENDS_ONLY", "STAGES_NOT_CHAINED"), ("RK4_IS_HEUN",)),
+        (("EQUAL_WEIGHTS", "WRONG_SIGN"), ("EQUAL_WEIGHTS", "WRONG_SIGN")),
+    ):
+        program = next(item for item in hypotheses_of(catalog, exercise) if item[:2] == ("rk4_step", codes))
+        assert as_one(exercise, program)[:2] == ("rk4_step", found)
 
 
 def test_there_is_a_page_of_what_graders_catch(catalog: Catalog) -> None:

@@ -37,6 +37,7 @@ __all__ = [
     "Confusion",
     "Reported",
     "Tally",
+    "as_one",
     "confusion_of",
     "fate_of",
     "made_from",
@@ -90,7 +91,7 @@ def confusion_of(
     """Try every known wrong program with one mistake, and every ``every``-th with two."""
     known = list(hypotheses_of(catalog, exercise))
     chosen = [item for item in known if len(item[1]) == 1]
-    chosen += [_as_one(exercise, item) for item in [item for item in known if len(item[1]) > 1][::every]]
+    chosen += [as_one(exercise, item) for item in [item for item in known if len(item[1]) > 1][::every]]
     rows: dict[str, tuple[Reported, ...]] = {}
     done, scopes = 0, ("public", "full")
     for scope in scopes:
@@ -104,7 +105,7 @@ def confusion_of(
     return Confusion(made_from=made_from(catalog, exercise), rows=rows)
 
 
-def _as_one(exercise: Exercise, program: _Program) -> _Program:
+def as_one(exercise: Exercise, program: _Program) -> _Program:
     """A program with two mistakes; if it answers every question like one with a single mistake, it is that.
 
     Two terms of a formula may be changed so that one mistake results: Runge and Kutta's four slopes, of which

@@ -67,7 +67,7 @@ def test_an_exercise_knows_its_files(catalog: Catalog, mini: Path) -> None:
     exercise = catalog.exercise("doubling")
     assert exercise.stub_path == mini.resolve() / "exercises" / "doubling" / "doubling.py"
     assert exercise.max_points == 10
-    assert catalog.hints(exercise).of("double")[0] == "What is a number added to itself?"
+    assert catalog.hints(exercise).of("double").hints[0] == "What is a number added to itself?"
     assert [mutant.file for mutant in catalog.mutants(exercise)][:2] == ["squares.py", "loses_the_sign.py"]
 
 

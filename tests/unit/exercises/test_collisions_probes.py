@@ -182,10 +182,22 @@ def test_an_impact_at_another_moment_is_told_from_a_wrong_rest_of_the_step_and_f
         return other_moment(math.ceil(m.contact / 0.1) * 0.1 - m.contact)(t, x, v, m)
 
     assert head_on_code(other_moment(0.013)) == "MOMENT_IN_STEP_WRONG"
+    assert head_on_code(other_moment(0.23)) is None, "in another step"
     assert head_on_code(to_the_sample) == "IMPACT_AT_SAMPLE"
     assert head_on_code(lambda t, x, v, m: moved(np.array(m.after), 0.03, t, x, v, m)) == "TIME_LEFT_WRONG"
     late = lambda t, x, v, m: (x, np.where((t < m.contact + 0.1)[:, None], v[0], v))  # noqa: E731
     assert head_on_code(late) == "VELOCITIES_LATE"
+
+
+def test_what_the_first_of_several_impacts_does_decides():
+    """Impulses of half the size come again at every step, until nothing is left of the approach."""
+
+    def halved(t, x, v, meeting):
+        left = 0.25 ** np.maximum(0, np.ceil((t - meeting.contact) / 0.1)[:, None])
+        mean = (v[0, 0] + 2 * v[0, 1]) / 3
+        return x + 0.01 * (left < 1), mean + left * (v[0] - mean)
+
+    assert head_on_code(halved) not in ("RESTITUTION_IGNORED", "ONLY_THE_REBOUND")
 
 
 @pytest.mark.parametrize(("height", "code"), [(0.13, "RESTS_ELSEWHERE"), (0.0, "RESTS_ELSEWHERE")])

@@ -202,6 +202,12 @@ def test_rows_that_are_wrong_are_described_as_they_are(code, rows):
     assert (found and found.code) == code
 
 
+def test_positions_that_are_all_zero_are_called_whole_numbers_only_if_velocities_are():
+    small = TRUE[0] / 9, TRUE[1]
+    assert probes.of_rows(0.1 * SAMPLES, 0 * small[0], small[1], 0.1, small).code == "INITIAL_STATE_MISSING"
+    assert probes.of_rows(0.1 * SAMPLES, *map(np.trunc, small), 0.1, small).code == "INTEGER_STATE"
+
+
 def test_times_that_begin_late_beside_the_right_states_are_told_from_a_missing_start():
     assert probes.of_rows(0.1 * SAMPLES + 0.1, *TRUE, 0.1, TRUE).code == "TIMES_START_LATE"
     late = [np.roll(rows, -1, axis=0) for rows in TRUE]

@@ -202,7 +202,7 @@ class Prover:
                         hints.lines.line(("task", index, "yours", number)),
                         "hints",
                         f"no check of {task.id} that a mutant fails has the field {{{field}}}.",
-                        "A field is an input that a public check names, expected, got, ratio or at.",
+                        "A field is an input that a public check names, expected, got, off, ratio or at.",
                     )
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:

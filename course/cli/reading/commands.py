@@ -83,7 +83,7 @@ def lesson(
     catalog = here.catalog if here else load_catalog()
     called, _, slug = (name or _next_unread(here, catalog)).partition("#")
     chosen = catalog.lesson_called(called)
-    section = _section(chosen, slug) if slug else None
+    section = _section(catalog, chosen, slug) if slug else None
     if code is not None:
         return _print_code(console, chosen, code)
     if no_browser:
@@ -171,11 +171,11 @@ def _fills_the_screen(console: Console) -> bool:
     return is_possible()
 
 
-def _section(chosen: Lesson, slug: str) -> Section:
+def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
     """A section of a lesson, by its slug."""
     from course.reading.parts import read_script
 
-    sections = read_script(chosen).sections
+    sections = read_script(chosen, catalog.warm_ups(chosen.id)).sections
     found = next((section for section in sections if section.slug == slug), None)
     if found is None:
         known = ", ".join(section.slug for section in sections if section.level == 2)

@@ -123,6 +123,8 @@ class FancyPrinter:
                 return self._passage(kind, inner)
             case b.CommandList(commands=commands):
                 return _commands(commands)
+            case b.Task(id=name, what=what, title=title):
+                return _commands((b.Command(f"course warmup {name}", f"{what.capitalize()}: {title}"),))
             case b.Sources(items=items):
                 return self._bullets([self._text(item) for item in items])
             case _:

@@ -8,22 +8,24 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog import blocks as b
-from course.catalog.markdown import read_blocks, read_task
+from course.catalog.markdown import read_task
 from course.cli.reading.fancy import FancyPrinter
 from course.cli.reading.plain import PlainPrinter
+from course.reading.parts import read_script
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console
 
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise, Lesson
     from course.reading.parts import Section
 
-__all__ = ["Page", "Reader", "lesson_pages", "paginate"]
+__all__ = ["Page", "Reader", "paginate"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +41,6 @@ class Page:
     section: str
     blocks: tuple[b.Block, ...]
     first: bool = False
-
-
-def lesson_pages(lesson: Lesson) -> tuple[Page, ...]:
-    """The pages of a lesson, in reading order.
-
-    Raises:
-        ContentError: the lesson cannot be read or parsed.
-    """
-    return paginate(read_blocks(Path(lesson.path)))
 
 
 class Reader:
@@ -67,7 +60,8 @@ class Reader:
         UsageError: the folder for figures cannot be written to.
 
     Attributes:
-        pages: all of its pages, in order; their number is a place to come back to.
+        script: the lesson with its warm-ups in their places.
+        pages: all of its pages, in reading order.
     """
 
     def __init__(
@@ -82,8 +76,9 @@ class Reader:
         wraps: bool = False,
     ) -> None:
         self._lesson = lesson
-        self.pages = lesson_pages(lesson)
-        everything = [block for page in self.pages for block in b.walk_blocks(page.blocks)]
+        self.script = read_script(lesson, catalog.warm_ups(lesson.id))
+        self.pages = paginate(self.script.blocks)
+        everything = b.walk_blocks(self.script.blocks)
         numbers = [block.id for block in everything if isinstance(block, b.Figure)]
         self._printer: FancyPrinter | PlainPrinter
         # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
@@ -107,8 +102,7 @@ class Reader:
 
     def show_section(self, section: Section) -> bool:
         """Print one section of the lesson; returns False, because that is not the whole lesson."""
-        blocks = [block for page in self.pages for block in page.blocks]
-        self._printer.blocks(tuple(blocks[section.start : section.end]))
+        self._printer.blocks(self.script.blocks[section.start : section.end])
         return False
 
     def show_task(self, warm_up: Exercise) -> None:

@@ -102,6 +102,9 @@ class PlainPrinter:
                     self._say(f"Try: {command.command}")
                     if command.note:
                         self._say(f"What it does: {command.note}")
+            case b.Task(id=name, what=what, title=title):
+                self._say(f"{what.capitalize()}: {title}")
+                self._say(f"Try: course warmup {name}")
             case b.Sources(items=items):
                 for number, item in enumerate(items, start=1):
                     self._say(f"Source {number}: {self._words(item)}")

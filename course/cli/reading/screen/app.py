@@ -54,6 +54,13 @@ class ReaderApp(TasksApp):
         return super()._is_offered(item)
 
     def _keys(self) -> str:
+        item, keys = self.page.item, self._keys_at_hand()
+        asks = item is not None and item.kind == "answer"  # its own keys say it
+        if asks or self._cell_that_runs is not None or self._unjudged() is None:
+            return keys
+        return f"1 right, 2 nearly, 3 wrong   {keys}"
+
+    def _keys_at_hand(self) -> str:
         item = self.page.item
         if self._cell_that_runs is not None or (item is not None and item.kind in {"cell", "task"}):
             return super()._keys()
@@ -180,12 +187,16 @@ class ReaderApp(TasksApp):
         if question is not None:
             self._answered(question, "")
 
+    def _unjudged(self) -> Item | None:
+        """The first answer in sight whose prediction is not judged yet."""
+        answers = (one for one in self.page.items() if one.kind == "answer")
+        return next((one for one in answers if self._is_offered(one)), None)
+
     def action_judge(self, key: str) -> None:
         """How good a prediction was, in the reader's own judgement."""
         item = self.page.item
         if item is None or item.kind != "answer":  # the cell above it is at hand
-            answers = (one for one in self.page.items() if one.kind == "answer")
-            item = next((one for one in answers if self._is_offered(one)), None)
+            item = self._unjudged()
         question = self.progress.script.answered_at(item.block) if item is not None else None
         if item is not None and question is not None:
             self.progress.judge(question, _JUDGED[key])

@@ -135,9 +135,10 @@ class Find(Overlay[str]):
 
 
 class Edit(Overlay[tuple[str, bool]]):
-    """A cell's code. Dismissed with the code and whether to run it, or None to leave it as it was.
+    """Code to change. Dismissed with it and whether to run or check it, or None to leave it as it was.
 
     Args:
+        act: what Ctrl-R does after keeping it: "run" for a cell, "check" for a task's file.
         line: where to begin.
     """
 
@@ -151,15 +152,15 @@ class Edit(Overlay[tuple[str, bool]]):
         Binding("ctrl+d", "drop", show=False, priority=True),
     ]
 
-    def __init__(self, title: str, source: str, line: int = 1) -> None:
+    def __init__(self, title: str, source: str, act: str, line: int = 1) -> None:
         super().__init__()
-        self._title, self._source, self._line = title, source, line
+        self._title, self._source, self._act, self._line = title, source, act, line
 
     def compose(self) -> ComposeResult:
         """The code, with the keys that end editing below it."""
         with Vertical(classes="box") as box:
             box.border_title = self._title
-            box.border_subtitle = "Ctrl-R: keep and run   Escape: keep   Ctrl-D: drop the changes"
+            box.border_subtitle = f"Ctrl-R: keep and {self._act}   Escape: keep   Ctrl-D: drop the changes"
             area = TextArea(self._source, tab_behavior="indent", show_line_numbers=True)
             area.cursor_blink = False
             yield area
@@ -175,7 +176,7 @@ class Edit(Overlay[tuple[str, bool]]):
         self.close((self.query_one(TextArea).text, False))
 
     def action_run(self) -> None:
-        """Keep it and run it."""
+        """Keep it, and run or check it."""
         self.close((self.query_one(TextArea).text, True))
 
     def action_drop(self) -> None:

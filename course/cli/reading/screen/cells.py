@@ -177,7 +177,7 @@ class CellsApp(LessonApp):
             if run:
                 self.action_run_cell()
 
-        self.push_screen(Edit(f"Cell {cell.number}", self.progress.cell(cell).source), done)
+        self.push_screen(Edit(f"Cell {cell.number}", self.progress.cell(cell).source, "run"), done)
 
     def action_undo(self) -> None:
         """The lesson's own code again."""

@@ -129,7 +129,7 @@ class TasksApp(CellsApp):
             self._rebuild(item.block)
 
         now, source = practice.of(item.target), practice.source(item.target)
-        self.push_screen(Edit(now.file, source, line_to_mend(now, source)), done)
+        self.push_screen(Edit(now.file, source, "check", line_to_mend(now, source)), done)
 
     def _task_changed(self, name: str) -> None:
         """A task's state has changed (called from another thread)."""

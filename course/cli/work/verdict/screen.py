@@ -6,6 +6,7 @@ and what is not begun, and the summary comes last, where the eye is when a termi
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from course.cli.frame.terminal.console import STATUS_STYLE, Console
@@ -31,6 +32,8 @@ _SHORT = 2
 #: Columns of a usual window.
 _USUAL = 80
 _UNWRITTEN = "NOT_IMPLEMENTED"
+#: What a title says for where its check is shown alone; here a mark and one line below say it for all.
+_UNSCORED = re.compile(r" \(no points here[^)]*\)$")
 
 
 def show_verdict(
@@ -129,6 +132,7 @@ class _Page:
         self._said: set[str] = set()
         self._kept_back = False
         self._shortened = False
+        self._unscored = False
 
     def tasks(self, tasks: Tasks) -> None:
         """What passed, what is not written yet, and last what fails."""
@@ -187,7 +191,8 @@ class _Page:
             self._label("pass", _number_of(passing))
         for check in failing[1:]:
             why = f"  runs once {check.blocked_by} passes" if check.blocked_by else ""
-            self._label(check.status, check.title, why if check.status == "skip" else f"  [{check.id}]")
+            aside = why if check.status == "skip" else f"  [{check.id}]"
+            self._label(check.status, self._title(check), aside)
         for check in failing[:1]:
             self.check(check)
 
@@ -215,7 +220,7 @@ class _Page:
         aside = "" if check.status in {"pass", "skip"} and not self._hidden else f"  [{check.id}]"
         if self._hidden and check.visibility == "hidden":
             aside = f"  [{check.id}, hidden]"
-        self._label(check.status, check.title, aside)
+        self._label(check.status, self._title(check), aside)
         if check.status == "pass":
             if self._verbose:
                 self._printed(check)
@@ -228,8 +233,17 @@ class _Page:
         self._said.add(check.message)
         self._details(check)
 
+    def _title(self, check: CheckResult) -> str:
+        """The title; with a mark if the check gives no points in an exercise that has some."""
+        if self._hidden or not self._scored or check.max_points:
+            return check.title
+        self._unscored = True
+        return f"{_UNSCORED.sub('', check.title)} *"
+
     def close(self) -> None:
-        """Say once how to see what was kept back."""
+        """Say once what the mark means, and how to see what was kept back."""
+        if self._unscored:
+            self._console.line(("* No points here; the grading run judges it.", "dim"))
         if self._left_out:
             command = "`course check`" if self._scored else "--verbose"
             self._console.note((f"One function at a time in detail; {command} shows all.", "dim"))

@@ -79,7 +79,10 @@ def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, worksp
     ours = {"", "Kept.", "You said: it grows", "What you type below a page does something; ? lists what."}
     said = [line for line in someone.said.splitlines() if line not in ours and not OFFERS.match(line)]
     tasks = CATALOG.tasks(lesson)
-    assert [line for line in printed.said.splitlines() if line] == [
+    warm_ups = [line for line in printed.said.splitlines() if line.startswith("Try: course warmup ")]
+    assert sorted(warm_ups) == sorted(f"Try: course warmup {one.id}" for one in CATALOG.warm_ups(lesson))
+    named = {*warm_ups, *(f"Warm-up, {one.minutes} minutes: {one.title}" for one in tasks)}
+    assert [line for line in printed.said.splitlines() if line and line not in named] == [
         line for line in said if not any(f"({one.id})" in line or line == one.summary for one in tasks)
     ]
     assert all(someone.said.count(f"{one.title} ({one.id})") == 1 for one in tasks)

@@ -161,8 +161,11 @@ def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tm
         await pilot.pause(0.2)
         assert app.page.item.kind == "cell"
         assert "Were you?" in screen(app)
+        assert "1 right, 2 nearly, 3 wrong   r run" in screen(app)
         await pilot.press("2")
         assert app.progress.prediction(question).judged == "nearly"
+        await pilot.pause()
+        assert "3 wrong" not in screen(app)
 
     reading(catalog, journey, size=(80, 50), store=store)
 
@@ -410,6 +413,8 @@ def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:
     keys = "r run   e change   u undo   c copy   w write   Space on   ? keys"
     assert fitting(keys, 100) == keys
     assert fitting(keys, 38) == "r run   e change   u undo   ? keys"
+    judge = "1 right, 2 nearly, 3 wrong   "
+    assert fitting(judge + keys, 38) == f"{judge}? keys"
     assert (
         fitting("were you 1 right, 2 nearly, 3 wrong   Space on", 38) == "were you 1 right, 2 nearly, 3 wrong"
     )

@@ -127,6 +127,7 @@ def test_its_file_is_changed_in_the_reader_too(catalog: Catalog, workspace: Work
     async def journey(app: ReaderApp, pilot: Any) -> None:
         await pilot.press("e")
         await pilot.pause(0.2)
+        assert "Ctrl-R: keep and check" in app.screen.query_one(".box").border_subtitle
         await pilot.press("#", "escape")
         await pilot.pause(0.2)
 

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from course.catalog.models import Lesson
 from course.cli.frame.terminal.pictures import InlinePicture, protocol_of
-from course.cli.reading.lesson import Reader, lesson_pages
+from course.cli.reading.lesson import Reader
 from course.cli.reading.plain import sentences
 from course.cli.reading.words import value_spoken, value_text
 from course.errors import NotFoundError
@@ -91,6 +91,10 @@ class StubCatalog:
         if name != "other":
             raise NotFoundError("no such lesson")
         return name
+
+    def warm_ups(self, lesson: str) -> tuple[()]:
+        del lesson
+        return ()
 
 
 CATALOG = cast("Any", StubCatalog())
@@ -247,7 +251,7 @@ def test_without_colour_code_keeps_its_marks(lesson: Lesson) -> None:
 
 
 def test_a_page_ends_where_a_section_or_a_prediction_does(lesson: Lesson) -> None:
-    pages = lesson_pages(lesson)
+    pages = Reader(CATALOG, lesson, console_of()).pages
     assert [page.section for page in pages] == [
         "",
         "First section",

@@ -209,3 +209,11 @@ def test_faults_of_a_program_to_mend_are_nobody_s_mistakes(warm, workspace):
     assert "Faults in programs to mend: 1 found, 0 mended" in said
     assert "Mistakes" not in said
     assert [one["given"] for one in warm("progress", "--json").json["mistakes"]] == [True]
+
+
+@pytest.mark.parametrize("words", [(), ("--plain",), ("--json",)])
+def test_a_printed_lesson_names_each_warm_up_once_with_its_command(warm, words):
+    said = warm("lesson", "twice-as-much", *words)
+    text = said.json["text"] if "--json" in words else said.out
+    assert [text.count(f"course warmup {name}") for name in ("adding", "taking")] == [1, 1]
+    assert "Warm-up, 5 minutes: One thing adding" in text

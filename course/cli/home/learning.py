@@ -152,8 +152,22 @@ def show_learning(console: Console, learning: Learning) -> None:
     if learning.revisit:
         console.heading("To read again")
         for place in learning.revisit:
-            console.line(f"{place.title} ({'; '.join(place.why)})", indent=2)
+            console.line(f"{place.title} ({_reasons(learning, place.section)})", indent=2)
             console.line((place.command, "dim"), indent=4)
+
+
+def _reasons(learning: Learning, section: str) -> str:
+    """Why to read a section again: the functions with open mistakes, by exercise, and wrong predictions."""
+    tasks: dict[str, list[str]] = {}
+    for one in learning.mistakes:
+        if one.mended_at is None and one.read == section and one.task not in tasks.get(one.exercise, ()):
+            tasks.setdefault(one.exercise, []).append(one.task)
+    reasons = [f"{exercise}: {', '.join(names)}" for exercise, names in tasks.items()]
+    said = learning.predictions.each if learning.predictions is not None else ()
+    wrong = sum(one.judged == "wrong" and one.section == section for one in said)
+    if wrong:
+        reasons.append("a wrong prediction" if wrong == 1 else f"{wrong} wrong predictions")
+    return "; ".join(reasons)
 
 
 def _show_predictions(console: Console, predictions: PredictionsState) -> None:
@@ -179,12 +193,14 @@ def _show_some(console: Console, what: str, done: str, mistakes: Sequence[Mistak
     mended = sum(one.mended_at is not None for one in mistakes)
     console.heading(what, f"{len(mistakes)} {done}, {mended} mended")
     for one in mistakes:
-        seen = f"seen {day(one.first_seen)}"
-        if one.runs > 1:
-            seen += f", last {day(one.last_seen)}, in {one.runs} runs"
-        state = f"mended {day(one.mended_at)}" if one.mended_at else "not mended yet"
-        console.line(f"{one.title} ({one.exercise}), {one.diagnosis}: {state}; {seen}", indent=2)
-        if one.looks_like and one.mended_at is None:
+        where = f"{one.title} ({one.exercise})"
+        if one.mended_at:
+            console.line(f"{where}, {one.diagnosis}: mended {day(one.mended_at)}", indent=2)
+            continue
+        seen = f"in {one.runs} checks since" if one.runs > 1 else "seen"
+        named = where if one.looks_like else f"{where}, {one.diagnosis}"
+        console.line(f"{named}: not mended yet, {seen} {day(one.first_seen)}", indent=2)
+        if one.looks_like:
             console.line(one.looks_like, indent=4)
 
 

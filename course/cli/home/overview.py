@@ -105,9 +105,10 @@ def _show_reading(console: Console, lessons: Sequence[LessonState], warm_ups: Se
         ours = [state for state in warm_ups if state.lesson == lesson.id]
         begun = any(state.state != "new" for state in ours)
         if lesson.read_at or begun:
-            when = f"read {day(lesson.read_at)}" if lesson.read_at else "not read to its end yet"
+            when = f"read {day(lesson.read_at)}" if lesson.read_at else "not read to the end"
             small = f", warm-ups {_done_of(ours)}" if begun else ""
-            console.line(f"{lesson.title} ({lesson.id}): {when}{small}", indent=2)
+            title = lesson.title.partition(":")[0]
+            console.line(f"{title} ({lesson.id}): {when}{small}", indent=2)
 
 
 def warm_up_states(here: Here) -> tuple[WarmUpState, ...]:
@@ -300,7 +301,7 @@ def _progress_line(exercise: ExerciseState) -> str:
         if exercise.best_score is not None and exercise.best_score > exercise.score:
             parts.append(f"best {format_points(exercise.best_score)}")
     if exercise.checks_run:
-        parts.append(_count(exercise.checks_run, "check run", "check runs"))
+        parts.append(f"checked {_count(exercise.checks_run, 'time')}")
     if exercise.hints_shown:
         parts.append(_count(exercise.hints_shown, "hint"))
     if exercise.passed_at:
@@ -331,5 +332,5 @@ def score_of(state: ExerciseState) -> str:
     return f"{format_points(state.score)}/{format_points(state.max_score)}"
 
 
-def _count(number: int, one: str, many: str = "") -> str:
-    return f"{number} {one if number == 1 else many or one + 's'}"
+def _count(number: int, one: str) -> str:
+    return f"{number} {one}{'' if number == 1 else 's'}"

@@ -46,7 +46,7 @@ def test_a_wrong_prediction_is_shown_with_its_section_to_read_again(asking, work
     assert (place["section"], place["title"]) == ("twice-as-much#once", "Once")
     shown = course("progress", "--plain").out
     assert "Predictions: 1 made, 0 skipped\n  twice-as-much: 1 wrong\n" in shown
-    assert "  Once (a prediction was wrong)\n    course lesson twice-as-much#once\n" in shown
+    assert "  Once (a wrong prediction)\n    course lesson twice-as-much#once\n" in shown
     opened = course(*place["command"].split()[1:], "--plain").out
     assert opened.lstrip().startswith("Section: Once\n")
     assert "Ten." in opened
@@ -78,6 +78,7 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     assert (mistake["diagnosis"], mistake["task"], mistake["mended_at"]) == ("NOT_RIGHT", "double", None)
     assert mistake["read"] == "twice-as-much#once"
     assert body["revisit"][0]["why"] == ["double in doubling: NOT_RIGHT"]
+    assert "(doubling: double)\n" in course("progress", "--plain").out
     write("RIGHT", "RIGHT")
     course("check")
     body = course("progress", "--json").json

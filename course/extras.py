@@ -2,7 +2,7 @@
 
 The core imports none of these parts: a caller gets one by its name here, after a look whether what it needs
 is installed. A command that installs something lists the requirements themselves, read from the course's own
-metadata: nobody owns the course's name on an index.
+metadata: the course is on no package index.
 """
 
 from __future__ import annotations

@@ -91,7 +91,7 @@ class FullScreenApp(App[None]):
         self._message = (message, self._clock())
 
     def hush(self) -> None:
-        """Whoever goes on has read the last line; it says the keys again."""
+        """A user who goes on has read the last line; it says the keys again."""
         self._message = ("", 0.0)
 
     @property

@@ -208,7 +208,7 @@ class Figure:
 
     Attributes:
         id: its name in the registry.
-        alt: what is to be seen, for someone who cannot.
+        alt: what the figure shows, for a reader who cannot see it.
         caption: what it shows, the finding first.
     """
 

@@ -49,8 +49,8 @@ class Content:
         if self.solutions is None or self.graders is None:
             raise MissingCapabilityError(
                 "This installation is a student's: it has no hidden graders and no model solutions.",
-                help="Use a checkout of the course, which has them in solutions/ and tests/graders/. Whoever "
-                "handed out this installation has one.",
+                help="Use a checkout of the course, which has them in solutions/ and tests/graders/. "
+                "Your instructor has one.",
                 code="needs_checkout",
             )
         return self.solutions, self.graders

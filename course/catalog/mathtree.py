@@ -259,7 +259,7 @@ class _Reader:
             return body
         token = self._peek()
         if token is not None and token.isdigit() and len(token) > 1:
-            # TeX takes one digit and leaves the rest behind: \frac12 and x^10 mislead whoever reads them.
+            # TeX takes one digit and leaves the rest behind: \frac12 and x^10 mislead their reader.
             raise MathError(f"{token} needs braces around what is meant")
         return Row((self._node(),))
 

@@ -1,4 +1,4 @@
-"""Figures of the lesson on accuracy: a step that is too small, work well spent, paths and statistics."""
+"""Figures of the lesson on accuracy: a step that is too small, how to spend work, paths and statistics."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WORK = 16  # sweeps over the chain a frame
 
 
 def fall_error(step: float, kind: type[np.floating], g: float = 9.81) -> float:
-    """How far semi-implicit Euler misses a fall of 2 s, m, with numbers of this precision."""
+    """Error of semi-implicit Euler after a fall of 2 s, in m, with numbers of this precision."""
     n = round(2.0 / step)
     h = kind(step)
     v = np.cumsum(np.full(n, -h * kind(g), dtype=kind), dtype=kind)  # adds one by one, as a loop does
@@ -92,7 +92,7 @@ def substeps() -> Figure:
 
 
 def swing(starts: Array, step: float, duration: float) -> tuple[Array, Array]:
-    """Let go of double pendulums, all at once.
+    """Release double pendulums, all at once.
 
     Args:
         starts: angles of both rods from hanging, rad, shape (..., 2).
@@ -110,7 +110,7 @@ def swing(starts: Array, step: float, duration: float) -> tuple[Array, Array]:
 def _crowd(step: float) -> tuple[float, ...]:
     """Share of time (%) that the lower rods of a crowd point in each of 18 directions, from 8 s to 15 s.
 
-    By then the paths of different steps have parted, and the rounding of different machines has not yet.
+    By then the paths of different steps have parted; those of different machines, by rounding, have not yet.
     """
     start = np.radians(_LET_GO) + _SPREAD * np.random.default_rng(1).standard_normal((STARTS, 2))
     t, angles = swing(start, step, 15.0)

@@ -68,7 +68,7 @@ def _two(axes: Axes, t: Array, x: Array, line: str) -> None:
 
 
 def passed(speed: float, h: float = STEP_S, tries: int = 500) -> float:
-    """Share of starts from which a ball gets behind the wall with no sample of it touching the wall."""
+    """Share of starts from which a ball gets past the wall without touching it at any sample."""
     reach = BALL_M + WALL_M  # from first to last touch, as the centre travels
     # The centre enters this stretch somewhere within its first step there.
     first = (np.arange(tries) + 0.5) / tries * speed * h
@@ -103,7 +103,7 @@ def tunnelling() -> Figure:
 
 
 def stacks() -> Figure:
-    """What the ground does not yet carry, over the iterations of the solver, for four stacks."""
+    """The weight that the ground does not carry yet, over the solver's iterations, for four stacks."""
     figure, (axes,) = new_figure(4.0)
     looks = (
         (PALETTE["sky"], ":"),

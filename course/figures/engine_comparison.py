@@ -34,7 +34,7 @@ __all__ = ["render", "speed", "steps"]
 
 @dataclass(frozen=True, slots=True)
 class _Look:
-    """How one engine is drawn everywhere: hue, letters dark enough for white, and a marker of its own."""
+    """How one engine is drawn everywhere: its hue, a shade dark enough for letters on white, its marker."""
 
     color: str
     ink: str
@@ -53,7 +53,7 @@ _LOOKS = {
 }
 #: Below this an error is drawn at the foot of the figure, per cent.
 _FLOOR = 1e-11
-#: Errors that differ by less than this share are one curve on axes of ten decades.
+#: On axes of ten decades, errors that differ by less than this share look like one curve.
 _ALIKE = 0.5
 #: From one line of small letters to the next, inches.
 _LINE_IN = 0.155
@@ -72,7 +72,7 @@ def speed() -> Figure:
 
 
 def render(rows: Sequence[Row], kind: str) -> dict[str, bytes]:
-    """The figures that the rows suffice for, as the bytes of files; the same rows give the same bytes.
+    """The figures that can be drawn from the rows, as the bytes of files; equal rows give equal bytes.
 
     Args:
         kind: "png", "svg" or "pdf".
@@ -116,7 +116,7 @@ def _steps(rows: Sequence[Row]) -> Figure:
         for engines, points in groups:
             _curve(axes, engines, points)
         _frame_steps(axes, _TESTS[test], [point for _engines, points in groups for point in points])
-    # Names need the limits that both panels share in the end.
+    # The names are placed by the limits that both panels share.
     for axes, test in zip(panels, tests, strict=True):
         _names(figure, axes, _alike(_ladders(rows, test)))
     panels[0].set_ylabel("error (%)")
@@ -127,7 +127,7 @@ def _steps(rows: Sequence[Row]) -> Figure:
 def _alike(
     ladders: dict[str, list[tuple[float, float]]],
 ) -> list[tuple[list[str], list[tuple[float, float]]]]:
-    """Engines whose curves lie on each other, as far as an eye can tell over ten decades."""
+    """Groups of engines whose curves look like one over ten decades."""
     groups: list[tuple[list[str], list[tuple[float, float]]]] = []
     for engine, points in ladders.items():
         for engines, known in groups:
@@ -142,7 +142,7 @@ def _alike(
 
 
 def _curve(axes: Axes, engines: list[str], points: list[tuple[float, float]]) -> None:
-    """One line for all whose it is."""
+    """One line for a group of engines."""
     dt = np.array([dt for dt, _ in points])
     error = np.maximum([e for _, e in points], _FLOOR)
     color, _ink, marker = _shared(engines)
@@ -159,7 +159,7 @@ def _shared(engines: list[str]) -> tuple[str, str, str]:
 
 
 def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[float, float]]]]) -> None:
-    """Whose each curve is: below it, from its second point on, where a rising curve leaves room.
+    """The name of each curve, below it from its second point on, where a rising curve leaves room.
 
     A short ladder needs all of the width: there names begin at the first point, below the whole curve. Curves
     that lie closer together than their names are high have them in a block below the lowest.
@@ -173,7 +173,7 @@ def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[
         names = [ENGINES[engine].name for engine in engines]
         errors = [e for _, e in points]
         order = slope([(dt, e / 100.0) for dt, e in points], single=ENGINES[engines[0]].single)
-        # Where a smaller step gives a larger error, rounding is seen and no method.
+        # Where a smaller step gives a larger error, the figure shows rounding, not a method.
         if order is not None and errors == sorted(errors):
             names[-1] += f": order {order:.1f}"
         words = _wrapped(names)
@@ -211,7 +211,7 @@ def _frame_steps(axes: Axes, name: str, points: list[tuple[float, float]]) -> No
     axes.set_title(name)
     axes.set_xlabel("step (s)")
     axes.margins(x=0.08, y=0.1)
-    # A guide for the eye: what halves with the step.
+    # A guide for the eye: an error that halves with the step.
     known = sorted({dt for dt, _ in points})
     low, high = known[0], known[-1]
     top = 3.0 * max(error for _, error in points)
@@ -283,7 +283,7 @@ def _speed(rows: Sequence[Row]) -> Figure:
             textcoords="offset points",
             color=look.ink,
             fontsize=8.5,
-            # A letter that an arrow crosses stays a letter.
+            # A letter stays readable where an arrow crosses it.
             path_effects=[withStroke(linewidth=2.5, foreground="white")],
             zorder=4,
         )

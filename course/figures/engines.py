@@ -1,4 +1,4 @@
-"""The figure of the lesson on engines that shows what options do, drawn from the reference measurements."""
+"""The figure in the lesson on engines that shows what options do, drawn from the reference measurements."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _DEFAULT: dict[str, Any] = {
 }
 _TUNED: dict[str, Any] = {"marker": "D", "markersize": 4, "color": PALETTE["blue"]}
 
-#: Scenario -> what a panel is called.
+#: Scenario -> title of its panel.
 TESTS = {
     "free-fall": "fall",
     "bounce": "rebound",
@@ -65,13 +65,13 @@ def error(engine: str, test: str, setting: Setting) -> Error:
 
 
 def mended() -> tuple[int, int]:
-    """How many of the large errors are gone once options are set, and how many there are as engines come."""
+    """How many large errors disappear once options are set, and how many there are by default."""
     large = [(e, t) for e in ENGINES for t in TESTS if error(e, t, DEFAULT).mean > LARGE]
     return sum(error(e, t, TUNED).mean <= LARGE for e, t in large), len(large)
 
 
 def settings() -> Figure:
-    """Every engine's error in five tests, as it comes and well set, on logarithmic axes."""
+    """Every engine's error in five tests, by default and well set, on logarithmic axes."""
     engines = list(ENGINES)[::-1]
     figure, panels = new_figure(4.5, 1, len(TESTS), sharey=True)
     figure.subplots_adjust(left=0.16, wspace=0.12)

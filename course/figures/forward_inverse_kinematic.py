@@ -26,7 +26,7 @@ _ARM = TwoLinkArm()
 
 
 def path(duration: float) -> HandPath:
-    """The straight way of the hand from START to END in so many seconds."""
+    """The straight path of the hand from START to END, in so many seconds."""
     return HandPath(START, END, duration)
 
 
@@ -54,11 +54,11 @@ class _Driven:
 
 
 def driven(load: float, *, feedback: bool = False) -> Array:
-    """Where the hand goes within a second under the planned torques, m, shape (n + 1, 2).
+    """The path of the hand within a second under the planned torques, m, shape (n + 1, 2).
 
     Args:
         load: kg in the hand that the plan does not know of.
-        feedback: add 100 N m/rad and 20 N m s/rad times what the joints are off.
+        feedback: add 100 N m/rad and 20 N m s/rad times the errors of the joints.
     """
     plan = path(1.0)
     q, v, _ = plan.joints(_ARM, 0.0)
@@ -69,7 +69,7 @@ def driven(load: float, *, feedback: bool = False) -> Array:
 
 
 def planned() -> Figure:
-    """Kinematics: nine poses along a straight line of the hand, and the joint angles that make them."""
+    """Kinematics: nine poses of the arm as its hand follows a straight line, and the joint angles."""
     figure, (left, right) = new_figure(3.6, 1, 2)
     figure.subplots_adjust(wspace=0.28)
     plan = path(1.0)
@@ -109,7 +109,7 @@ def planned() -> Figure:
 
 
 def torques() -> Figure:
-    """Inverse and forward: what the shoulder must do at three speeds, and where a forgotten load leads."""
+    """Inverse and forward: the shoulder's torque at three speeds; where a forgotten load takes the hand."""
     figure, (left, right) = new_figure(3.8, 1, 2)
     figure.subplots_adjust(wspace=0.28)
     share = np.linspace(0.0, 1.0, 201)

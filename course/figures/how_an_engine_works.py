@@ -38,11 +38,11 @@ def free_spin(method: str) -> tuple[Array, Array, Array]:
 
 
 def turning_over() -> Figure:
-    """Angular velocity about the three axes, and the energy that three methods make of it."""
+    """Angular velocity about the three axes, and the energy by three methods."""
     figure, (above, below) = new_figure(5.0, 2, 1, sharex=True)
     figure.subplots_adjust(hspace=0.26)
     t, w, _ = free_spin("split")
-    # The second axis carries the tale; the other two only lend it their energy.
+    # The second axis tells the story; the other two only lend it their energy.
     looks = ((PALETTE["sky"], ":", 1.4), (PALETTE["blue"], "-", 2.0), (PALETTE["purple"], "--", 1.2))
     for k, (color, line, width) in enumerate(looks):
         above.plot(t, w[:, k], color=color, linestyle=line, linewidth=width)

@@ -50,7 +50,7 @@ _INK = {"vermillion": "#B34F00", "green": "#007A58"}  # dark enough for letters
 
 
 def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Array:
-    """First rebounds of a ball dropped from 1 m and a part of a step more, as shares of its height."""
+    """First rebounds, as shares of the height, of a ball dropped from 1 m and a fraction of a step more."""
     tops = []
     for part in parts:
         height = 1.0 + float(part) * h * math.sqrt(2 * _G)

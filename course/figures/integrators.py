@@ -63,7 +63,7 @@ def phase_portraits() -> Figure:
         q, p = path.q[:, 0], path.v[:, 0] / _OMEGA
         axes.plot(np.cos(angle), np.sin(angle), color=PALETTE["black"], linewidth=1.0)
         leaves = method == "explicit_euler"
-        # 120 steps of explicit Euler leave any paper; a few show where it is going.
+        # 120 steps of explicit Euler leave any paper; a few show where it goes.
         shown = slice(0, 6 if leaves else None)
         line = "-" if leaves else "none"
         axes.plot(

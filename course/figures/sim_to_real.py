@@ -1,4 +1,4 @@
-"""Figure of the lesson on the gap between simulation and reality: one gain, four worlds to choose it in."""
+"""Figure of the lesson on the gap between simulation and reality: one gain, chosen in four worlds."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["MISTAKES", "bounce", "budgets", "stop", "two_questions"]
 
 _G = 9.81
-_FINE = 1e-5  # s; a step whose own error does not count
+_FINE = 1e-5  # s; small enough that its own error does not count
 _LOOKS = {
     "numerical": (PALETTE["blue"], "o"),
     "sensor": (PALETTE["green"], "s"),
@@ -81,7 +81,7 @@ def budgets() -> dict[str, dict[str, float]]:
         stop(_FINE, friction=0.5 * 1.1),
         stop(_FINE, delay=0.05),
     ]
-    # Neither the floor's friction nor a late brake has a part in a bounce: two answers are right as they are.
+    # Neither the floor's friction nor a late brake matters in a bounce: two answers are right as they are.
     heights = [
         bounce(1e-3),
         bounce(1e-2),

@@ -1,11 +1,11 @@
 """A figure at the size of a terminal: pixels for half blocks, and its words as letters of the terminal.
 
-Two pixels make a cell, so a whole figure has few pixels and none to spare for letters. The curves are drawn
-as wide as a pixel, and every text is taken out and handed on with the cell it belongs to; those that would
-lie on others are left out, ticks before titles.
+A cell holds two pixels, so a whole figure has few of them and none to spare for letters. Curves are one pixel
+wide, and every text is taken out and returned with the cell it belongs to. Texts that would lie on others are
+left out, ticks before titles.
 
-``python -m course.figures.terminal`` draws for a program that does not want matplotlib in its own memory: a
-request a line on standard input, an answer a line on standard output, as JSON.
+``python -m course.figures.terminal`` draws for a program that keeps matplotlib out of its own memory: one
+JSON request a line on standard input, one JSON answer a line on standard output.
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ __all__ = ["Label", "TerminalFigure", "in_cells", "terminal_figure", "terminal_p
 _PAPER_PT = 1.3
 #: A marker is drawn this many pixels wide.
 _MARKER_PX = 2.0
-#: In a panel lower than this, rings of markers so wide would fill: there they are a pixel.
+#: In a panel lower than this, ring markers of that width would fill up: there they are a pixel.
 _LOW_PANEL_PX = 24.0
 _LETTER_PX = 2.0
 _LEAST_ROWS = 8
-#: Letters that stand out less from what is drawn under them get plain paper: WCAG 2.1 asks it of text.
+#: Letters with less contrast to the drawing below them get plain paper; the limit is WCAG 2.1's for text.
 _CONTRAST = 4.5
 _MATHS = re.compile(r"\\mathdefault\{([^}]*)\}|\\(?:mathrm|text)\{([^}]*)\}")
 _RAISED = str.maketrans("0123456789-−+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺")
@@ -58,7 +58,7 @@ _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A text of the figure, from a cell on.
+    """A text of the figure, and the cell it begins in.
 
     Attributes:
         ink: its colour, as red, green and blue from 0 to 255.
@@ -114,7 +114,7 @@ def in_cells(make: Callable[[], Figure], columns: int, rows: int = 0) -> Termina
         dpi = columns / width
         figure.set_dpi(dpi)
         figure.set_size_inches(width, 2 * rows / dpi)
-        # Letters of two pixels are as wide as a cell, and still have exponents that a font can be scaled to.
+        # Letters of two pixels are as wide as a cell, and their exponents are still a size that fonts have.
         size = _LETTER_PX * 72.0 / dpi
         for text in figure.findobj(Text):
             text.set_fontsize(size)
@@ -134,7 +134,7 @@ def in_cells(make: Callable[[], Figure], columns: int, rows: int = 0) -> Termina
 
 
 def _clear(pixels: np.ndarray[Any, np.dtype[np.uint8]], label: Label) -> None:
-    """Plain paper under a label that could not be read on what is drawn there."""
+    """Plain paper under a label that could not be read on the drawing."""
     under = pixels[2 * label.row : 2 * label.row + 2, label.column : label.column + len(label.text)]
     ink = _luminance(np.array(label.ink))
     papers = _luminance(under.mean(axis=0))
@@ -152,7 +152,7 @@ def _luminance(colour: Any) -> Any:
 
 
 def _thicken(figure: Figure, pixel: float) -> None:
-    """Lines and markers that can be seen, ``pixel`` being one pixel in points."""
+    """Make lines and markers visible; ``pixel`` is one pixel in points."""
     for line in figure.findobj(Line2D):
         line.set_linewidth(max(0.6, line.get_linewidth() / _PAPER_PT) * pixel)
         low = line.axes is not None and line.axes.bbox.height < _LOW_PANEL_PX
@@ -174,7 +174,7 @@ def _thicken(figure: Figure, pixel: float) -> None:
 
 
 def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]:
-    """Every text with the cell it begins in; taken out of the figure on the way."""
+    """Every text with the cell it begins in; the texts are removed from the figure."""
     renderer: Any = canvas.get_renderer()
     suptitle = getattr(figure, "_suptitle", None)
     titles = {suptitle} | {getattr(axes, name) for axes in figure.axes for name in ("title", "_left_title")}
@@ -224,14 +224,14 @@ def _labels(figure: Figure, canvas: Any, columns: int, rows: int) -> list[Label]
 
 
 def _is_beside(axes: Axes, box: Any, renderer: Any) -> bool:
-    """Whether a tick's label stands beside its axes: those beyond the ends of an axis are never drawn."""
+    """Whether a tick's label stands beside its axis: those beyond its ends are never drawn."""
     bounds = axes.get_window_extent(renderer)
     x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
     return bool(bounds.x0 - 1 <= x <= bounds.x1 + 1 or bounds.y0 - 1 <= y <= bounds.y1 + 1)
 
 
 def _apart(found: list[tuple[int, Label]], rows: int) -> list[Label]:
-    """Those that lie on no other, the more important ones first; a row up or down may help."""
+    """The texts that overlap no other, more important ones first; a text may move up or down a row."""
     taken: set[tuple[int, int]] = set()
     kept: list[Label] = []
     for rank, label in sorted(found, key=lambda one: one[0]):
@@ -247,7 +247,7 @@ def _apart(found: list[tuple[int, Label]], rows: int) -> list[Label]:
 
 
 def _plain(text: str) -> str:
-    """What a text says, its mathematics in letters of the terminal."""
+    """A text's words, with mathematics in letters that a terminal has."""
     text = _MATHS.sub(lambda m: m[1] or m[2] or "", text)
     text = re.sub(r"\^\{([^}]*)\}|\^(\w)", lambda m: (m[1] or m[2]).translate(_RAISED), text)
     text = re.sub(r"_\{([^}]*)\}|_(\w)", lambda m: (m[1] or m[2]).translate(_LOWERED), text)

@@ -1,4 +1,4 @@
-"""Figures of the lesson on digital twins: a cart whose wheels begin to rub, and what follows it."""
+"""Figures of the lesson on digital twins: a cart whose wheels begin to rub, and the copies that follow it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NEW, _WORN = 0.5, 0.8  # friction per kilogram, 1/s
 WEAR_AT = 20.0
 _LOOK_EVERY = 2  # steps between two measured positions
 _NOISE = 0.01  # of a measured position, m
-_TRUST = 0.3  # share of a surprise that corrects position (and, per second, speed)
+_TRUST = 0.3  # share of a surprise that corrects the position (and, per second, the speed)
 _LEARN = 0.15  # how fast a surprise corrects the friction
 
 

@@ -1,8 +1,8 @@
-"""Figure of the lesson on why one simulates: a standing robot, tried out sixteen hundred times at once.
+"""Figure of the lesson on why to simulate: a standing robot, tried sixteen hundred times at once.
 
 The robot is one stiff body on its ankles, an upside-down pendulum. Its controller pushes back against the
 lean with ``kp`` and against the rate of leaning with ``kd``, through an ankle that cannot push harder than
-the foot is long, and it acts on what was true some time ago.
+the foot is long, and it acts on the state of some time ago.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def gains() -> tuple[Array, Array]:
 
 
 def fate(kp: Array, kd: Array, delay: float) -> NDArray[np.int_]:
-    """What becomes of a robot with each setting after one push: FALLEN, SWAYING or STANDING.
+    """How a robot ends with each setting after one push: FALLEN, SWAYING or STANDING.
 
     Args:
         kp, kd: N m/rad and N m s/rad, any shape; all robots are simulated together.

@@ -1,6 +1,6 @@
 """A class graded: from a folder of submissions to a gradebook, and from there to exports and reports.
 
-intake      whose submission for which exercise, or why there is none
+intake      who handed in which exercise, or why there is nothing to grade
 running     a run over a class, a second one, and the grader processes of both
 gradebook   the record of a run
 results     what counts: rosters, times, lateness, overrides
@@ -8,5 +8,5 @@ exports     files for other programs, and pages for people
 similar     submissions that are alike
 quiz        the quiz records of a submission, scored again
 cluster     the same run on many machines (optional)
-kit         the name under which checks know ``course.scoring.kit``
+kit         the name under which checks import ``course.scoring.kit``
 """

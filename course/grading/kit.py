@@ -1,4 +1,4 @@
-"""The name under which checks know ``course.scoring.kit``::
+"""The name under which checks import ``course.scoring.kit``::
 
 from course.grading import kit
 """

@@ -1,6 +1,6 @@
-"""Frames over the pipes between processes of ours: a 4-byte little-endian length, then msgpack.
+"""Frames on the pipes between our own processes: a 4-byte little-endian length, then msgpack.
 
-And the limits of such a process, where it reads what strangers wrote.
+Also the limits of such a process where it reads untrusted files.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def write_frame(sink: IO[bytes], message: Any) -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Of this process from now on, in bytes; it leaves no core file either."""
+    """Limit this process's memory from now on, in bytes; it leaves no core file either."""
     if resource is not None:
         resource.setrlimit(resource.RLIMIT_AS, (size, size))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

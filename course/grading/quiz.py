@@ -1,12 +1,12 @@
 """The quiz records of a submission, scored again.
 
-A record says with which seed a student was asked what, and what was answered. Only that is used: the
-questions are posed again from the seed and scored here, and the score the record claims must agree. A record
-that does not hold together (unknown questions or options, answers missing, a claim that differs) makes the
-quiz of that student ``ungradable: quiz_record_inconsistent``; nothing else of the submission suffers.
+A record holds the seed, the questions and the answers. Only these are used: the questions are posed again
+from the seed and scored here, and the score in the record must agree. An inconsistent record (unknown
+questions or options, missing answers, another score) makes that student's quiz ``ungradable:
+quiz_record_inconsistent``; the rest of the submission is graded as usual.
 
-Of several attempts the best one counts. Two with the same seed are the same questions, and the second was
-answered by someone who had read the explanations: only the first of each seed counts.
+Of several attempts the best one counts. Two with the same seed have the same questions, and by the second the
+student has read the explanations: only the first of each seed counts.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ __all__ = [
     "score_record",
 ]
 
-#: What the quiz is called among the exercises of a gradebook; no exercise may have this id.
+#: The quiz's id among the exercises of a gradebook; no exercise may have it.
 EXERCISE_ID = "quiz"
-#: Raised when the way records are scored changes; part of the grader's version.
+#: Increased when the scoring of records changes; part of the grader's version.
 GRADER_REVISION = 1
 
 CODE = "quiz_record_inconsistent"
@@ -68,9 +68,9 @@ class QuizScore:
 
     Attributes:
         seed: of that attempt.
-        finished_at: when the student's machine says it was finished; believed for display only.
+        finished_at: by the student's clock; for display only.
         attempts: how many were handed in.
-        repeated: how many of them did not count because their seed came earlier.
+        repeated: how many of them did not count because an earlier one had the same seed.
     """
 
     result: Result
@@ -86,7 +86,7 @@ def score_record(bank: Bank, record: object) -> QuizScore | None:
 
     Args:
         bank: the questions of the course that grades.
-        record: what ``submission.json`` has under "quiz", exactly as JSON gave it; it may be anything.
+        record: the value of "quiz" in ``submission.json``, unchecked; it may be anything.
 
     Raises:
         UngradableError: ``quiz_record_inconsistent``; the message says which attempt and what is wrong.
@@ -117,7 +117,7 @@ def grade_quiz(bank: Bank, record: object) -> Verdict | None:
     except UngradableError as error:
         return _verdict(total, state="ungradable", error=Problem(error.code, error.message, error.help))
     except ContentError as error:
-        # A fault of the question files is ours, and never a student's zero.
+        # A fault in the question files is ours; it never costs a student points.
         return _verdict(total, state="grader_error", error=Problem(error.code, error.message, error.help))
     if score is None:
         return None
@@ -132,15 +132,15 @@ def grade_quiz(bank: Bank, record: object) -> Verdict | None:
 
 
 def checked_record(record: object) -> object:
-    """A record as it is if it has the form of one, None if it is empty, else words that say what is wrong.
+    """A record if it has the right form, None if it is empty, else words that say what is wrong.
 
-    Whatever else JSON can say (a list a thousand deep, half a surrogate) goes no further than this.
+    Anything else that JSON can hold (a list a thousand deep, half a surrogate) stops here.
     """
     return (_fault(record) or record) if record else None
 
 
 def record_sha256(record: object) -> str:
-    """Digest of a record: what a gradebook keys the result by."""
+    """Digest of a record: the key of its result in a gradebook."""
     try:
         text = json.dumps(record, sort_keys=True, separators=(",", ":"))
     except (TypeError, ValueError, RecursionError):
@@ -154,7 +154,7 @@ def quiz_version(bank: Bank) -> str:
 
 
 def _read(record: object) -> tuple[_Record, ...]:
-    """The attempts; where there are words in place of a record, they are the reason why there are none."""
+    """The attempts; words in place of a record become the reason why there are none."""
     fault = ascii(record[:200])[1:-1] if isinstance(record, str) else _fault(record)
     if fault is not None:
         raise _inconsistent(f"The quiz record is malformed ({fault}).")
@@ -165,7 +165,7 @@ def _fault(record: object) -> str | None:
     try:
         msgspec.convert(record, _Records)
     except (msgspec.ValidationError, UnicodeError, RecursionError, OverflowError) as error:
-        # What msgspec says names places and types of our own; anything quoted from the record is escaped.
+        # msgspec's message names our own places and types; anything quoted from the record is escaped.
         return ascii(str(error))[1:-1][:200]
     return None
 

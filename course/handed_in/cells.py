@@ -1,4 +1,4 @@
-"""The code cells of a notebook that someone handed in, as plain Python.
+"""The code cells of a notebook that was handed in, as plain Python.
 
 A notebook is read as data: nothing of it runs, and its outputs are skipped. What IPython adds to Python is
 taken out line by line, so that every other line keeps its number within its cell.
@@ -122,7 +122,7 @@ def typed_cell(number: int, text: str) -> CodeCell:
 
 
 def _must_be_small(sizes: list[tuple[int, int]], name: str) -> None:
-    """Refuse more code than anyone writes before it is parsed: a syntax tree is far larger than its text."""
+    """Refuse too much code before it is parsed: a syntax tree is far larger than its text."""
     if len(sizes) > MAX_CELLS:
         raise UngradableError(
             f"{name} has {len(sizes):,} code cells.",

@@ -20,7 +20,7 @@ __all__ = ["check", "load_ipython_extension"]
 
 
 def check(exercise: str, task: str | None = None, *, source: Source | None = None) -> CheckTable:
-    """The public checks of an exercise, wherever its functions were written; recorded in a workspace.
+    """Run the public checks of an exercise on code from anywhere; in a workspace, record the attempt.
 
     Args:
         exercise: its id.
@@ -32,7 +32,7 @@ def check(exercise: str, task: str | None = None, *, source: Source | None = Non
     Raises:
         NotFoundError: there is no such exercise, function or file.
         UsageError: the source of something cannot be found.
-        UngradableError: there is nothing that could be checked.
+        UngradableError: there is nothing to check.
     """
     from course.notebooks.checking import check as run
 
@@ -40,7 +40,7 @@ def check(exercise: str, task: str | None = None, *, source: Source | None = Non
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """What ``%load_ext course.notebooks`` calls."""
+    """Called by ``%load_ext course.notebooks``."""
     from course.notebooks.magic import register
 
     register(shell)

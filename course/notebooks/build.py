@@ -29,7 +29,7 @@ class Generated:
     Attributes:
         kind: "lesson", "exercise", "quiz" or "sandbox".
         id: of the lesson or exercise; else the kind again.
-        path: where it lies, below the folder that notebooks go into.
+        path: relative to the folder that notebooks go into.
         data: the file.
     """
 
@@ -43,8 +43,8 @@ def generate(catalog: Catalog, ids: Sequence[str] = (), layout: Layout = FOLDERS
     """The notebooks of a course.
 
     Args:
-        ids: of lessons and exercises, "quiz" or "sandbox"; an id that is a lesson's and an exercise's gives
-            both; none at all gives everything.
+        ids: of lessons and exercises, "quiz" or "sandbox"; an id shared by a lesson and an exercise gives
+            both; none gives everything.
 
     Raises:
         NotFoundError: there is nothing of that id.
@@ -60,7 +60,7 @@ def generate(catalog: Catalog, ids: Sequence[str] = (), layout: Layout = FOLDERS
 
 
 def _makers(catalog: Catalog, layout: Layout) -> Makers:
-    """By kind and id: where a notebook lies and what makes it. Nothing is read before it is asked for."""
+    """By kind and id: where a notebook lies and what makes it. Content is read only when asked for."""
     from course.notebooks.building.exercises import exercise_notebook
     from course.notebooks.quiz import quiz_notebook
     from course.notebooks.sandbox import sandbox_notebook

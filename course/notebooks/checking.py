@@ -1,4 +1,4 @@
-"""The public checks on a student's code, wherever it was written, recorded like `course check`."""
+"""The public checks on a student's code from anywhere, recorded as `course check` does."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["check", "checked", "must_have"]
 
-#: As much of a file as a grading run takes. In bytes.
+#: The size of a file that a grading run takes at most, in bytes.
 _MOST = 1_000_000
 
 
@@ -53,7 +53,7 @@ def checked(
     """Run the public checks, record the attempt, and show those of one function, or all.
 
     Args:
-        prints: show what was printed while it was loaded, too; a cell that was run has shown it.
+        prints: show what the code printed while it was loaded; a cell that was run has shown it already.
     """
     from course.scoring.judging.session import GradingSession
     from course.scoring.judging.terms import Terms
@@ -65,7 +65,7 @@ def checked(
     source, known = submission.files[exercise.module], [one.id for one in exercise.task]
     only = task if task is not None and not defines_all(source, known) else ""
     if only:
-        # What was not run yet is not missing: the attempt is at this function alone.
+        # A function that was not run yet is not missing: the attempt is about this one alone.
         verdict = _of_task(verdict, exercise, only)
     note = _recorded(catalog, exercise, verdict, source, seconds, only=only)
     printed = session.printed if prints else ""
@@ -88,7 +88,7 @@ def _submission(exercise: Exercise, source: Source | None) -> Submission:
 
 
 def _shell() -> Any:
-    """The IPython that runs this, if one does; asking does not import it."""
+    """The IPython shell this runs in, if any; asking does not import IPython."""
     found = sys.modules.get("IPython")
     shell = found.get_ipython() if found is not None else None
     if shell is None:
@@ -125,7 +125,7 @@ def _of_text(exercise: Exercise, text: bytes) -> Submission:
 
 
 def _of_pieces(exercise: Exercise, pieces: Iterable[Any]) -> Submission:
-    """Functions and texts, below what the exercise itself begins with: its imports and constants."""
+    """Functions and texts, below the exercise's own imports and constants."""
     texts = [*given(exercise), *(piece if isinstance(piece, str) else _source(piece) for piece in pieces)]
     return _of_text(exercise, "\n\n\n".join(texts).encode("utf-8", "replace"))
 
@@ -160,10 +160,7 @@ def _of_task(verdict: Verdict, exercise: Exercise, task: str) -> Verdict:
 def _recorded(
     catalog: Catalog, exercise: Exercise, verdict: Verdict, source: bytes, seconds: float, *, only: str = ""
 ) -> str:
-    """Add an attempt to the progress of the workspace this kernel runs in; what there is to say about that.
-
-    Outside of a workspace there is no record, and nothing to say.
-    """
+    """Record an attempt in the workspace, if this kernel runs in one; returns why that failed, or ""."""
     from course.progress.history import check_data
     from course.progress.workspace import Workspace
 

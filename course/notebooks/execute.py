@@ -15,14 +15,14 @@ from course.notebooks.sandbox import STILL
 
 __all__ = ["environment", "executed"]
 
-#: Wall seconds that one cell may take. The slowest of the course takes about three on an idle machine.
+#: Wall seconds that one cell may take. The slowest in the course takes about three on an idle machine.
 _PATIENCE = 600
 
 
 def executed(data: bytes, name: str) -> bytes:
-    """The notebook with the outputs that a run from top to bottom gives.
+    """The notebook with the outputs of a run from top to bottom.
 
-    Nothing of the time it took is recorded, so that on one machine the same notebook gives the same bytes.
+    No times are recorded, so on one machine the same notebook gives the same bytes.
 
     Args:
         data: a notebook the course generated.
@@ -62,7 +62,7 @@ def executed(data: bytes, name: str) -> bytes:
 
 
 def environment() -> dict[str, str]:
-    """This process's own, in which a course that is not installed is found as well."""
+    """This process's environment, in which the course is found even if it is not installed."""
     here = str(Path(__file__).resolve().parents[2])
     given = os.environ.get("PYTHONPATH")
     path = f"{given}{os.pathsep}{here}" if given else here

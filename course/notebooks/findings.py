@@ -1,4 +1,4 @@
-"""The outcome of checks as a notebook shows it: a table, the same words as in a terminal."""
+"""The outcome of checks as a notebook shows it: a table, with the same words as in a terminal."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class CheckTable:
     Args:
         verdict: on all public checks.
         task: show those of this function only; None shows all.
-        note: what else there is to say, as a sentence.
-        printed: by the code while it was loaded.
+        note: another sentence to show.
+        printed: what the code printed while it was loaded.
         scored: points are shown; a warm-up has none.
         curves: by id of a failed check, the student's curve and the right one; the first is drawn.
 
@@ -63,12 +63,12 @@ class CheckTable:
 
     @property
     def passed(self) -> bool:
-        """Whether every check that is shown passes."""
+        """Whether all shown checks pass."""
         return bool(self.checks) and all(check.status == "pass" for check in self.checks)
 
     @property
     def summary(self) -> str:
-        """What it comes to, in a sentence."""
+        """The outcome in a sentence."""
         if self.verdict.state != "graded":
             problem = self.verdict.error
             return f"{problem.message} {problem.help}" if problem else "Nothing could be checked."
@@ -102,13 +102,13 @@ class CheckTable:
         return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{self._drawn()}{note}{report}"
 
     def _drawn(self) -> str:
-        """The first curve, and where it parts from the right one."""
+        """The first curve, and where it leaves the right one."""
         if self._curve is None:
             return ""
         from course.figures.drawing.curves import plot_of
         from course.notebooks.page import image_of
 
-        # The words stand below it, and are not to be read twice.
+        # The words stand below the picture; a screen reader must not read them twice.
         image = image_of(replace(plot_of(self._curve), description="Your curve over the right one."))
         return f"{image}<p><small>{escape(self._curve.description)}</small></p>"
 
@@ -127,12 +127,12 @@ def _row(check: CheckResult, *, scored: bool) -> str:
 
 
 def _coded(text: str) -> str:
-    """Words as HTML, code in them as code."""
+    """Words as HTML, with code marked as code."""
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
 
 
 def _words(check: CheckResult) -> list[str]:
-    """Message, advice, then numbers, as far as there are any."""
+    """Message, advice, then numbers, where there are any."""
     if check.status == "pass":
         return []
     lines = [text for text in (check.message, check.help) if text]
@@ -142,7 +142,7 @@ def _words(check: CheckResult) -> list[str]:
 
 
 def _first_lines(text: str) -> list[str]:
-    """The first lines of what was printed, and how many there are more."""
+    """The first printed lines, and how many more there are."""
     lines = text.rstrip().splitlines()
     left = len(lines) - _MOST
     return [*lines[:_MOST], f"and {left} more"] if left > 0 else lines

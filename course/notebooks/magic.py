@@ -1,9 +1,9 @@
 """``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
 
-At the head of a cell, ``%%course_check``, the cell is the whole file, and does not run in the kernel. Else
-what is checked is the text of the cells that were run, not the objects in the kernel: the functions run
-again in a process of their own, so a check means the same here, in a terminal and in the grading run. In a
-workspace it is recorded as `course check` records it.
+With ``%%course_check`` at its head, a cell is the whole file and does not run in the kernel. Otherwise the
+text of the cells that were run is checked, not the objects in the kernel: the functions run again in a
+process of their own, so a check means the same here, in a terminal and in the grading run. In a workspace the
+attempt is recorded as `course check` records it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["check", "check_cell", "register", "report"]
 
 
 def register(shell: Any) -> None:
-    """Make ``%course_check`` and ``%course_report`` known to an IPython shell."""
+    """Add ``%course_check`` and ``%course_report`` to an IPython shell."""
 
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
         """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
@@ -62,7 +62,7 @@ def _said(text: str) -> None:
 
 
 def report(history: Sequence[str], exercise_id: str) -> ReportPage:
-    """What the functions that were run do on public data.
+    """A report: what the functions in the run cells do on public data.
 
     Args:
         history: what was run, oldest first.

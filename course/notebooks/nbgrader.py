@@ -1,9 +1,9 @@
 """Exercises for an existing nbgrader site: the same cells, with nbgrader's metadata.
 
-Here a check cell gives the points of its function as a number, which nbgrader reads as partial credit. The
-code runs in the kernel of the student's notebook, as everything does there, so a student who wants to can
-make any cell print any number. The score that counts is ``course grade run``'s, for which these notebooks are
-submissions like any other.
+Here a check cell gives its function's points as a number, which nbgrader reads as partial credit. The code
+runs in the kernel of the student's notebook, as everything in nbgrader does, so a student can make any cell
+print any number. The score that counts comes from ``course grade run``, which takes these notebooks as
+submissions.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SCHEMA_VERSION", "nbgrader_notebook", "points"]
 
-#: Of nbgrader's cell metadata.
+#: The version of nbgrader's cell metadata.
 SCHEMA_VERSION = 3
 
 _BEGIN, _END = "### BEGIN SOLUTION", "### END SOLUTION"
@@ -48,7 +48,7 @@ def nbgrader_notebook(catalog: Catalog, exercise: Exercise) -> bytes:
 
 
 def points(exercise_id: str, task: str) -> float:
-    """Show the public checks of a function of this notebook, and give the points they are worth.
+    """Run and show the public checks of a function in this notebook, and return the points.
 
     Raises:
         NotFoundError: there is no such exercise or function.
@@ -82,7 +82,7 @@ def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
 
 
 def _marked(cell: Cell, worth: Mapping[str, float]) -> Cell:
-    """The cell with nbgrader's metadata, if it is one that nbgrader is to know of."""
+    """The cell, with nbgrader's metadata where nbgrader uses it."""
     role, task = cell.tags.get("role"), cell.tags.get("task", "")
     if role == SOLUTION:
         source = _with_region(cell.source)
@@ -105,7 +105,7 @@ def _with(cell: Cell, grade_id: str, **flags: Any) -> Cell:
 
 
 def _with_region(source: str) -> str | None:
-    """The source with the part that a student replaces between nbgrader's marks; None if there is none."""
+    """The source, with nbgrader's marks around the part a student replaces; None if there is none."""
     functions = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
     last = functions[-1].body[-1] if functions else None
     if not isinstance(last, ast.Raise):

@@ -14,7 +14,7 @@ __all__ = ["ReportPage", "image_of"]
 
 
 class ReportPage:
-    """A report that Jupyter shows as a page, and a plain terminal as lines."""
+    """A report: a page in Jupyter, lines in a plain terminal."""
 
     def __init__(self, report: Report) -> None:
         self.report = report
@@ -51,7 +51,7 @@ def _section(section: Section) -> str:
 
 
 def image_of(plot: Plot) -> str:
-    """A figure as HTML, with its description for who does not see it."""
+    """A figure as HTML, with its description as alternative text."""
     from course.figures.drawing.plots import render
 
     picture = base64.b64encode(render(plot)).decode()

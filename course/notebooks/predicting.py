@@ -1,4 +1,4 @@
-"""A prediction in a lesson's notebook: typed, kept in the record the reader uses, and only then answered."""
+"""A prediction in a lesson's notebook: the student types it, it is recorded, and only then is it answered."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["LessonPrediction", "answer_of", "predict"]
 
 
 def predict(lesson_id: str, number: int, text: str = "") -> Any:
-    """A place to type a prediction in; where no cell can hold one, what is typed into the call counts.
+    """A field to type a prediction in; where a cell cannot show one, the text in the call counts.
 
     Args:
         number: 1 for the first prediction of the lesson.
@@ -41,10 +41,10 @@ def predict(lesson_id: str, number: int, text: str = "") -> Any:
 
 
 class LessonPrediction:
-    """A prediction of a lesson, and what was said.
+    """A lesson's prediction, and the student's answer.
 
     Attributes:
-        note: what else there is to say, as a sentence.
+        note: another sentence to show.
     """
 
     def __init__(self, lesson_id: str, number: int) -> None:
@@ -71,17 +71,17 @@ class LessonPrediction:
 
     @property
     def said(self) -> str | None:
-        """What was said first; empty if it was skipped, None if nothing was."""
+        """The first answer; empty if it was skipped, None if there is none."""
         said = self._progress.prediction(self.question)
         return None if said is None else said.text
 
     def say(self, text: str) -> None:
-        """Keep a prediction; an empty one is a skip. What was said first stays."""
+        """Keep a prediction; an empty one is a skip. The first answer stays."""
         self._progress.predict(self.question, text)
 
     @property
     def opened(self) -> str:
-        """What was said and the answer, as Markdown."""
+        """The prediction and the answer, as Markdown."""
         said = self.said
         told = f"You predicted: {_quoted(said)}" if said else "You skipped this prediction."
         return "\n\n".join(part for part in (told, self._answer, self.note) if part)
@@ -127,7 +127,7 @@ def _quoted(text: str) -> str:
 
 
 def _store(catalog: Catalog) -> Store | None:
-    """The record of the workspace this kernel runs in; None outside of one, or in another course's."""
+    """The workspace this kernel runs in; None outside of one, or in another course's."""
     from course.progress.workspace import Workspace
 
     try:

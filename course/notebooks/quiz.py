@@ -1,4 +1,4 @@
-"""The quiz as a notebook: questions to read, cells to answer in, and an explanation of every option."""
+"""The quiz as a notebook: questions, cells to answer in, and an explanation of every option."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SEED", "Marks", "marked", "quiz_notebook"]
 
-#: The questions of a notebook never change by themselves; ``course quiz take`` draws others each time.
+#: A notebook's questions stay the same; ``course quiz take`` draws new ones each time.
 SEED = 1
 
 _HEAD = """\
@@ -33,7 +33,7 @@ quotation marks, run every cell, and run the last one to see which were right an
 
 
 def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
-    """The notebook file of the quiz, as ``seed`` asks it.
+    """The notebook file of the quiz, with the questions that ``seed`` draws.
 
     Raises:
         NotFoundError: the course has no quiz.
@@ -66,7 +66,7 @@ def _question(number: int, total: int, posed: PosedQuestion) -> list[Cell]:
 
 
 def marked(seed: int, answers: Mapping[str, str]) -> Marks | None:
-    """What a notebook's answers are worth, to be shown by Jupyter; None, said in words, until all are given.
+    """The score of a notebook's answers, for Jupyter to show; None, with a sentence, until all are given.
 
     Args:
         answers: letters by question id.
@@ -88,7 +88,7 @@ def marked(seed: int, answers: Mapping[str, str]) -> Marks | None:
 
 
 class Marks:
-    """A scored attempt as Jupyter shows it: every option of what was missed, with its explanation."""
+    """A scored attempt as Jupyter shows it: each missed question, with every option explained."""
 
     def __init__(self, result: Result) -> None:
         self.result = result

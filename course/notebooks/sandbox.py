@@ -1,4 +1,4 @@
-"""The sandbox as a notebook, and what its cells call: a scene as a film, with its events and its energy."""
+"""The sandbox as a notebook, and the functions its cells call: a scene as a film, with events and energy."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 __all__ = ["STILL", "Film", "alive", "film", "play", "sandbox_notebook"]
 
-#: Set in the environment of a kernel whose outputs are kept: nothing lives in a file.
+#: Set in the environment of a kernel whose outputs are saved: a live view cannot be saved.
 STILL = "COURSE_NOTEBOOK_STILL"
 
-#: A film is for looking at, not for measuring: enough to see a motion, little enough to save.
+#: A film is for watching, not for measuring: enough frames to see a motion, few enough to save.
 _FPS, _WIDTH, _LONGEST = 20.0, 420, 6.0
 _MOST_TOLD = 12
 _HEAD = """\
@@ -62,7 +62,7 @@ def _question(scene: Scene) -> str:
 
 
 def alive() -> bool:
-    """Whether a cell can hold something that moves and answers: in a kernel, with anywidget."""
+    """Whether a cell can show a live view: it runs in a kernel, with anywidget installed."""
     if os.environ.get(STILL) or find_spec("anywidget") is None:
         return False
     try:
@@ -73,9 +73,9 @@ def alive() -> bool:
 
 
 def play(scene_id: str, **settings: float) -> Any:
-    """A scene to take hold of; a film of it where this Jupyter cannot show one.
+    """A live scene; a film of it where this Jupyter cannot show one.
 
-    Args and errors are those of ``film``.
+    Arguments and errors are those of ``film``.
     """
     if not alive():
         return film(scene_id, **settings)
@@ -125,7 +125,7 @@ class Film:
 
     @property
     def story(self) -> list[str]:
-        """The run in sentences, the account of its energy last."""
+        """The run in sentences, its energy last."""
         from course.sandbox.runs.describe import account, sentences
 
         return [*sentences(self.run.events, _MOST_TOLD), *account(self.run.receipt), *self._compared()]

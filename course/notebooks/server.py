@@ -26,27 +26,27 @@ if TYPE_CHECKING:
 
 __all__ = ["Lab", "started"]
 
-#: Between two looks whether it is there, in s.
+#: How often to look whether it has started, in s.
 _LOOK = 0.1
-#: How much of what it said is shown if it does not start, in characters.
+#: How much of its output is shown if it does not start, in characters.
 _SAID = 2000
-#: How long it may take to shut its kernels down before it is ended, in s.
+#: How long it may take to shut down its kernels before it is killed, in s.
 _GRACE = 20
 
 
 @dataclass
 class Lab:
-    """A JupyterLab that runs.
+    """A running JupyterLab.
 
     Attributes:
-        address: opens what was asked for in a browser; with the token that lets one in.
+        address: opens the page in a browser; it holds the access token.
     """
 
     address: str
     _process: subprocess.Popen[bytes]
 
     def wait(self) -> int:
-        """Until it ends; its exit code."""
+        """Wait until it ends; returns its exit code."""
         return self._process.wait()
 
 
@@ -56,7 +56,7 @@ def started(folder: Path, path: str = "") -> Iterator[Lab]:
 
     Args:
         folder: what its file browser shows.
-        path: of a notebook in it that is opened.
+        path: the notebook in that folder to open.
 
     Raises:
         MissingCapabilityError: the extra ``notebook`` is not installed.
@@ -65,13 +65,13 @@ def started(folder: Path, path: str = "") -> Iterator[Lab]:
     require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
     page = f"/lab/tree/{quote(path)}" if path else "/lab"
     token = secrets.token_hex(24)
-    # Ctrl+C reaches it as well as this process, and is not asked about a second time. A browser of its own
-    # choice would be opened without a display, too: one that takes this terminal over.
+    # Ctrl+C reaches it as well as this process, so it must not ask again. A browser of its own choice would
+    # start without a display, too, and take over this terminal.
     command = [sys.executable, "-m", "jupyterlab", "-y", "--no-browser"]
     command += [f"--ServerApp.root_dir={folder}", f"--ServerApp.default_url={page}"]
-    # Who works as root, as containers do, has decided so before.
+    # A user who works as root, as in containers, chose to.
     command += ["--allow-root"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
-    # In the environment, and not on the command line, where every user of the machine reads it.
+    # In the environment, not on the command line, which every user of the machine can read.
     secret = environment() | {"JUPYTER_TOKEN": token}
     with tempfile.TemporaryFile() as log:
         process = subprocess.Popen(command, env=secret, cwd=folder, stdout=subprocess.DEVNULL, stderr=log)
@@ -82,7 +82,7 @@ def started(folder: Path, path: str = "") -> Iterator[Lab]:
 
 
 def _address(process: subprocess.Popen[bytes], token: str, page: str, log: IO[bytes]) -> str:
-    """Once the server answers where it said that it would: in a file for each server that runs."""
+    """Wait until the server answers at the address in its file; each running server writes one."""
     from jupyter_core.paths import jupyter_runtime_dir
 
     runtime = Path(jupyter_runtime_dir())
@@ -101,7 +101,7 @@ def _address(process: subprocess.Popen[bytes], token: str, page: str, log: IO[by
 
 
 def _answers(url: str) -> bool:
-    """Whether a server listens there: the file is written a moment before."""
+    """Whether the server listens yet: its file is written a moment earlier."""
     parts = urlsplit(url)
     try:
         socket.create_connection((parts.hostname, parts.port or 80), timeout=_LOOK).close()

@@ -1,4 +1,4 @@
-"""What the cells of a generated notebook call to show something; nothing here needs Jupyter."""
+"""Functions that the cells of a generated notebook call to show something; none of them needs Jupyter."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["Picture", "figure"]
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawn figure, as Jupyter asks for it.
+    """A drawn figure, in the form that Jupyter asks for.
 
     Attributes:
         name: its id.

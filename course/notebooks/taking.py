@@ -1,4 +1,4 @@
-"""The quiz in a cell: an attempt as ``course quiz take`` makes it, which counts as one."""
+"""The quiz in a cell: an attempt that counts like one of ``course quiz take``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["OngoingAttempt", "take"]
 
 
 def take() -> Any:
-    """An attempt at the quiz; None, said in words, where a cell can hold none.
+    """An attempt at the quiz; None, with a sentence, where a cell cannot show one.
 
     Raises:
         NotFoundError: the course has no quiz.
@@ -34,11 +34,11 @@ def take() -> Any:
 
 
 class OngoingAttempt:
-    """An attempt that goes on, or a new one.
+    """The unfinished attempt, or a new one.
 
     Attributes:
         result: its score, once it has one.
-        note: what else there is to say, as a sentence.
+        note: another sentence to show.
     """
 
     def __init__(self) -> None:
@@ -62,7 +62,7 @@ class OngoingAttempt:
     def finish(self, letters: Mapping[str, str]) -> bool:
         """Score the attempt with letters by question id; False while one is not answered.
 
-        What was answered before stays as it was.
+        Earlier answers stay.
         """
         from course.quizzing.desk import answered, finished
 

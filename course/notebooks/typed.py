@@ -1,7 +1,7 @@
 """The code that a student has run in a notebook so far, as a module.
 
-A kernel knows every cell that was run, old versions included, in the order they were run. Of these only the
-newest counts: a cell is left out once all it defined has been defined again.
+A kernel knows every cell that was run, old versions included, in order. Only the newest version counts: a
+cell is left out once everything it defined has been defined again.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
 
 
 def typed_in(shell: Any) -> list[str]:
-    """What was run in a shell so far, oldest first, without the cell that asks."""
+    """The cells that were run in a shell so far, oldest first, without the current one."""
     return list(shell.history_manager.input_hist_raw[1:-1])
 
 
 def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
-    """The module that the cells run so far stand for.
+    """The module that the cells so far make up.
 
     Args:
         history: what was run, oldest first, magics included.
@@ -57,9 +57,9 @@ def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:
 
 
 def given(exercise: Exercise) -> dict[str, dict[str, str]]:
-    """The marks of the cells that an exercise's notebook begins with, by their text.
+    """The metadata of the cells in an exercise's original notebook, by their text.
 
-    A kernel knows nothing of marks; and what such a cell imports counts whether it is used or not.
+    A kernel does not see metadata; and an import in such a cell counts whether it is used or not.
     """
     parts = pieces(exercise.stub_path.read_text(encoding="utf-8"), {task.id for task in exercise.task})[1]
     marks = {"exercise": exercise.id, "role": SETUP}
@@ -67,7 +67,7 @@ def given(exercise: Exercise) -> dict[str, dict[str, str]]:
 
 
 def defines_all(source: bytes, names: Sequence[str]) -> bool:
-    """Whether a module defines every name; one that is not Python lacks none, it cannot be run at all."""
+    """Whether a module defines every name. True for text that is not Python: it cannot run anyway."""
     tree = typed_cell(1, source.decode()).tree
     if tree is None:
         return True
@@ -79,7 +79,7 @@ def defines_all(source: bytes, names: Sequence[str]) -> bool:
 
 
 def _names(cell: CodeCell) -> set[str]:
-    """Functions and classes that a cell defines, or would if it were Python."""
+    """The functions and classes that a cell defines, or would define if its syntax were right."""
     if cell.tree is None:
         return {first or second for first, second in _DEF.findall(cell.text)}
     return {

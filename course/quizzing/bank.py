@@ -154,8 +154,8 @@ class Bank:
             one, other = clash
             document.fail(
                 ("variant", index, "option", other, "text"),
-                f"in case {case} nobody can tell options {posed.choices[one].id} and "
-                f"{posed.choices[other].id} apart.",
+                f"in case {case} options {posed.choices[one].id} and {posed.choices[other].id} are too "
+                "close to tell apart.",
                 fix="Change a formula, or the values it is computed from.",
             )
         shuffled = sorted(posed.choices, key=lambda choice: draw(seed, question.id, variant.id, choice.id))

@@ -52,6 +52,6 @@ def _fault(document: Document[Question], index: int, case: int) -> Fault | None:
     return Fault(
         document.lines.line(("variant", index, "option", clash[1], "text")),
         f"variant {posed.variant}: option {other.id} reads {other.text!r}, and option {one.id} reads "
-        f"{one.text!r}; with these numbers nobody can tell them apart.",
+        f"{one.text!r}; these numbers are too close to tell apart.",
         "Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
     )

@@ -1,1 +1,1 @@
-"""A playground of rigid bodies in a plane: scenes as data, one world, several ways to look at it."""
+"""A playground of rigid bodies in a plane: scenes as data, one world, several views of it."""

@@ -202,7 +202,7 @@ def _write(writer: Any, streams: list[Stream]) -> None:
 
 
 def _quality(*, lasting: bool) -> Any:
-    """Reliable; lasting, as static frames need it, means that whoever listens later gets it, too."""
+    """Reliable; lasting, as static frames need it, means that late subscribers get it, too."""
     from rosbags import interfaces as qos
 
     durability = qos.QosDurability.TRANSIENT_LOCAL if lasting else qos.QosDurability.VOLATILE

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MAX_STEPS", "METHOD", "Column", "Parameter", "Result", "Row", "Simulation", "duration", "step"]
 
-#: A run of more steps than this is refused: nobody waits for it, and no figure shows it.
+#: A run of more steps than this is refused: it takes too long, and no figure could show it.
 MAX_STEPS = 200_000
 
 

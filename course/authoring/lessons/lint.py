@@ -111,9 +111,9 @@ def _unpredicted(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
             case b.Callout(kind="answer"):
                 open_question = False
             case b.Figure(line=line) if asked is None:
-                yield Finding(line, "a figure that nobody was asked about", "Put > **Predict.** … before it.")
+                yield Finding(line, "a figure without a prediction", "Put > **Predict.** … before it.")
             case b.CodeCell(line=line, output=str()) if asked is None:
-                yield Finding(line, "a run that nobody was asked about", "Put > **Predict.** … before it.")
+                yield Finding(line, "a run without a prediction", "Put > **Predict.** … before it.")
             case _:
                 pass
     if open_question and asked:

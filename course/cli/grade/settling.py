@@ -167,7 +167,7 @@ def log(
     for run in runs:
         graders = str(run.options.get("snapshot", ""))[:12] or "not kept"
         why = f", {run.options['reason']}" if run.options.get("reason") else ""
-        words = f"{run.started_at}, {run.options.get('who', 'nobody noted')}, graders {graders}{why}"
+        words = f"{run.started_at}, {run.options.get('who', 'name not kept')}, graders {graders}{why}"
         console.item(f"{run.kind} {run.number}", words, width=10)
     for decision in decisions:
         about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))

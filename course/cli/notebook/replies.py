@@ -14,10 +14,10 @@ __all__ = ["Notebook", "NotebookCheck", "NotebookFile", "NotebookOpen"]
 class NotebookFile(msgspec.Struct, frozen=True, kw_only=True):
     """One notebook and what was done.
 
-    ``action`` is "written" (there was none), "current" (nothing newer), "replaced" (nobody had written in
-    it), "merged" (the newer one with the student's work in it), "beside" (``new`` is the newer one,
-    ``path`` as it was, ``reason`` why) or, from ``course open``, "kept" (there was one, and it was not
-    looked into).
+    ``action`` is "written" (there was none), "current" (nothing newer), "replaced" (the student had written
+    nothing in it), "merged" (the newer one with the student's work in it), "beside" (``new`` is the newer
+    one, ``path`` as it was, ``reason`` why) or, from ``course open``, "kept" (there was one; it was not
+    opened).
     """
 
     kind: str

@@ -97,7 +97,7 @@ def lesson(
         whole = reader.show_section(section)
     else:
         whole = _read_by_line(console, here, catalog, chosen, reader) if paged else _print_all(reader)
-    # A print is no reading: nobody knows whether anybody saw its end.
+    # Printing is not reading: the student may never have seen the end.
     if here is not None and whole and paged:
         here.record("lesson", chosen.id, {"version": catalog.version})
     step = _after(here if paged else None, chosen) if whole else f"course lesson {chosen.id}"

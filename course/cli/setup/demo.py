@@ -176,8 +176,8 @@ def _said(before: _Motion, after: _Motion) -> str:
     return (
         f"Explicit Euler is supposed to gain energy: over {STEP * STEPS:g} s of this spring, the mended "
         f"function's grows to {after.energy[1]:.2f} times its start. The mistaken one's stays between "
-        f"{low:.2f} and {high:.2f} times, because it is another method. Whoever had compared methods with it "
-        "would have praised Euler for what Euler cannot do."
+        f"{low:.2f} and {high:.2f} times, because it is another method. A comparison made with it would have "
+        "praised Euler for what Euler cannot do."
     )
 
 

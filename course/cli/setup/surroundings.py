@@ -1,7 +1,7 @@
 """``course init --with``: files that bring the checks to where people work, on GitHub and in an editor.
 
-The course comes from the wheel that an instructor hands out, or from a requirement that is named: nobody owns
-the course's name on an index, so that no file installs it from there by that name.
+The course comes from the wheel that an instructor hands out, or from a requirement that is named. It is on no
+package index, so no file installs it by its name.
 """
 
 from __future__ import annotations

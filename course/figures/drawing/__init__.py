@@ -1,1 +1,1 @@
-"""What every figure is drawn with: the house style, shared plots, the text beside it, sixels."""
+"""Shared by every figure: the house style, plots described as data, a student's curves, sixels."""

@@ -27,7 +27,7 @@ __all__ = ["Curve", "compared", "marched", "plot_of", "read_curve", "thinned"]
 _SEEN = 0.04
 #: A curve is cut off once it is outside the right one's range by this many times that range.
 _PAPER = 1.5
-_HEIGHT_IN = 2.6  # about fifteen lines of eighty columns
+_HEIGHT_IN = 2.6  # fifteen lines of eighty columns
 _MOST = 2000  # points that are drawn
 #: Turning points of the right curve that are drawn: of more, eighty columns make one grey bar.
 _TURNS = 10

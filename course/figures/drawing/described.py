@@ -1,4 +1,4 @@
-"""Figures as data: what a report says is to be drawn, without knowing how.
+"""Figures as data: a report says what to draw, not how.
 
 ``course.figures.drawing.plots`` draws them; nothing here imports matplotlib.
 """
@@ -20,7 +20,7 @@ Kind = Literal["line", "steps", "points", "band", "interval", "bars", "level"]
 
 @dataclass(frozen=True)
 class Series:
-    """One curve, or whatever else shares a name in the legend.
+    """One curve, or anything else with its own name in the legend.
 
     Attributes:
         name: in the legend; "" leaves it out.

@@ -1,4 +1,4 @@
-"""Draws figures that are described as data, in the look of all others."""
+"""Draws figures that are described as data, in the house style."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def draw(plot: Plot) -> Figure:
     columns = min(plot.columns, len(plot.panels))
     rows = math.ceil(len(plot.panels) / columns)
     figure, axes = new_figure(plot.height_in or 0.9 + _PANEL_IN * rows, rows, columns)
-    # Panels have labels of their own here, unlike the lessons' figures, which share axes.
+    # Each panel has its own labels here; in the lessons' figures panels share axes.
     figure.subplots_adjust(hspace=0.55, wspace=0.28)
     for ax, panel in zip(axes, plot.panels, strict=False):
         _draw_panel(ax, panel)
@@ -76,11 +76,11 @@ def _draw_panel(ax: Axes, panel: Panel) -> None:
 
 
 def _legend(ax: Axes, panel: Panel) -> None:
-    """A legend on empty ground. Where there is none, the vertical axis is made longer at the top."""
+    """A legend on an empty spot. Where there is none, the vertical axis is extended at the top."""
     named = sum(bool(series.name) for series in panel.series)
     if not (named > 1 or (named and len(panel.series) > 1)):
         return
-    ax.autoscale_view()  # matplotlib puts it off until it draws, and places are asked for before that
+    ax.autoscale_view()  # matplotlib would do it only when it draws; the places are needed before
     legend = ax.legend(loc="best")
     if panel.equal:  # its limits follow from the scale
         return
@@ -132,7 +132,7 @@ def _interval(ax: Axes, series: Series, look: Any, label: str | None) -> None:
     x, y = _xy(series)
     low = y if series.low is None else np.asarray(series.low, dtype=float)
     high = y if series.high is None else np.asarray(series.high, dtype=float)
-    # A value outside its own interval is for the reader to see, not for matplotlib to refuse.
+    # The reader should see a value outside its own interval; matplotlib would refuse it.
     # One broken line, because a legend keeps clear of lines but not of what vlines would draw.
     ends = np.column_stack([low, high, np.full(len(x), np.nan)]).ravel()
     ax.plot(np.repeat(x, 3), ends, color=look[0], linewidth=2.2, alpha=0.7)

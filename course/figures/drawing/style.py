@@ -115,7 +115,7 @@ METHODS = {
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """The course's settings, and nothing of the reader's own matplotlibrc, while a figure is drawn."""
+    """The course's settings while a figure is drawn, and nothing from the reader's own matplotlibrc."""
     # The backend is left alone: figures here bring their own canvas, and setting it would import pyplot.
     settings: dict[Any, Any] = {
         key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")
@@ -156,7 +156,7 @@ def title(figure: Figure, finding: str) -> None:
 
 
 def note(axes: Axes, text: str, at: tuple[float, float], place: tuple[float, float], color: str) -> None:
-    """A remark with a thin line to the point it is about, both in data coordinates."""
+    """A remark with a thin line to its point, both in data coordinates."""
     axes.annotate(
         text,
         xy=at,

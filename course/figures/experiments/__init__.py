@@ -1,1 +1,1 @@
-"""The figures of the simulations: one for each, drawn from its result, whatever was set."""
+"""The figures of the simulations: one for each, drawn from its result, for any settings."""

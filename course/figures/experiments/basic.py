@@ -1,6 +1,6 @@
-"""Figures of the simulations: one for each, drawn from its result, whatever was set.
+"""Figures of the simulations: one for each, drawn from its result, for any settings.
 
-``render`` serves ``course sim run --plot``; ``of`` draws a simulation as it is by default, for lessons.
+``render`` serves ``course sim run --plot``; ``of`` draws a simulation with its default settings, for lessons.
 """
 
 from __future__ import annotations
@@ -72,12 +72,12 @@ def free_fall() -> Figure:
 
 
 def projectile() -> Figure:
-    """A throw with air, beside the one that theory knows."""
+    """A throw with air, beside the one without, which theory solves."""
     return _of("projectile", "drag=0.02")
 
 
 def collision() -> Figure:
-    """Where two balls are that meet head on."""
+    """Positions of two balls that meet head on."""
     return _of("collision")
 
 
@@ -87,12 +87,12 @@ def integrators() -> Figure:
 
 
 def rotation() -> Figure:
-    """A body that turns over, and the energy that three methods give it."""
+    """A body that turns over, and its energy by three methods."""
     return _of("rotation")
 
 
 def dynamics() -> Figure:
-    """An arm with a load that its plan does not know."""
+    """An arm with a load that is not in its plan."""
     return _of("dynamics", "payload=0.01")
 
 
@@ -221,5 +221,5 @@ def _integrators(result: Result) -> Figure:
 
 
 def _positive(values: Array) -> Array:
-    """Values as a logarithmic axis can show them: what is zero or beyond reason is left out."""
+    """Values for a logarithmic axis: zeros and absurdly large ones are left out."""
     return np.where((values > 1e-17) & (values < 1e100), values, np.nan)

@@ -19,7 +19,7 @@ __all__ = ["chaos", "contact_models", "dynamics", "environment", "rotation", "so
 
 #: A curve that grows past this leaves the picture; matplotlib cannot scale to more. In shares.
 _TALLEST = 1e12
-#: Looks for series that are no methods of integration, in the order they are used.
+#: Looks for series that are not methods of integration, in the order they are used.
 _LOOKS = (
     (PALETTE["blue"], "-"),
     (PALETTE["vermillion"], "--"),
@@ -109,7 +109,7 @@ def chaos(result: Result) -> Figure:
 
 
 def solver_iterations(result: Result) -> Figure:
-    """Which share of its weight the ground feels under each stack, over the iterations done."""
+    """The share of its weight that the ground feels under each stack, over the iterations."""
     figure, (axes,) = new_figure(3.8)
     stacks = [column for column in result.columns if column.name.startswith("load_")]
     iteration = result.column("iteration")

@@ -1,11 +1,11 @@
-"""Dask, as something that grades a class: a cluster on this machine, or one that runs somewhere.
+"""Grading a class with Dask: on a cluster on this machine, or on one that runs elsewhere.
 
     with local_cluster(4, catalog) as grade:
         grade_class(folder, out, catalog, options, report, grade=grade)
 
 Nothing is started before there is something to grade. A local cluster speaks TLS with a key of its own that
-is never on disk. Any program that can talk to a scheduler can make its workers run anything, and on a machine
-with several users every user can reach a port.
+is never on disk: any program that can talk to a scheduler can make its workers run anything, and every user
+of the machine can reach a port.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Cluster:
 
     Args:
         catalog: the course that the coordinator has.
-        connect: gives a client, and says by the stack what must be closed.
+        connect: gives a client, and puts on the stack what must be closed.
         remote: address of a scheduler that others may use too; empty for one of our own.
 
     Raises:
@@ -127,17 +127,17 @@ def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:
     settings = {
         # Dask makes this importable, here and in every worker: never a name that others can know or make.
         "temporary-directory": scratch,
-        # A worker that dies with a batch is reported at once: who is tried again, and where, is decided here.
+        # A worker that dies with a batch is reported at once: retries are decided here.
         "distributed.scheduler.allowed-failures": 0,
         # The folder the command is run in, which may be a student's, never becomes importable.
         "distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": "1",
-        # What Dask measures of itself all the time costs as much as a tenth of a grader.
+        # Dask's measurements of itself cost as much as a tenth of a grader.
         "distributed.worker.profile.enabled": False,
         "distributed.admin.tick.interval": "1s",
         "distributed.admin.tick.cycle": "5s",
         "distributed.admin.system-monitor.interval": "10s",
         "distributed.admin.system-monitor.gil.enabled": False,
-        # The pages Dask serves beside its own protocol are not encrypted; there are none.
+        # Dask's web pages are not encrypted, so none are served.
         "distributed.scheduler.http.routes": [],
         "distributed.worker.http.routes": [],
     }
@@ -147,7 +147,7 @@ def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
-            memory_limit=0,  # what takes memory is the graders, which have limits of their own
+            memory_limit=0,  # the graders take the memory, and have limits of their own
             scheduler_kwargs={"dashboard": False, "dashboard_address": "127.0.0.1:0"},
             security=Security.temporary(),
             local_directory=scratch,
@@ -159,7 +159,7 @@ def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:
 
 
 def _reach(stack: contextlib.ExitStack, address: str) -> Any:
-    """A client of a cluster that runs somewhere, when it has a worker."""
+    """A client of a running cluster, once that has a worker."""
     from distributed import Client
 
     file = Path(address)
@@ -191,7 +191,7 @@ class DaskWorkers:
 
     Args:
         client: of ``distributed``.
-        task: what is run over there, bytes to bytes; known there by the same name.
+        task: the function to run there, bytes to bytes; known there by the same name.
     """
 
     def __init__(self, client: Any, task: Callable[[bytes], bytes] = grade_batch) -> None:
@@ -204,7 +204,7 @@ class DaskWorkers:
         try:
             return sum(self._client.nthreads().values())
         except (OSError, TimeoutError, RuntimeError):
-            return 0  # the scheduler is gone; what was sent to it will say so
+            return 0  # the scheduler is gone; the batches sent to it will report that
 
     def send(self, payload: bytes, done: Callable[[Outcome], None]) -> None:
         """Have a batch graded by the first worker that is free."""

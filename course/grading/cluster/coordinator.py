@@ -1,4 +1,4 @@
-"""Deals out batches of submissions to workers somewhere else, and takes the verdicts back.
+"""Deals out batches of submissions to workers elsewhere, and takes the verdicts back.
 
 A batch that is lost with its worker is given to others one submission at a time, so that a submission which
 ends its grader is soon alone. A worker also grades other submissions, and may die for other reasons: before a
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LostBatch", "Outcome", "Workers", "grade_on"]
 
-#: Submissions in a batch, at first and at most. In between, so many as take a worker about ``_BATCH_S`` wall
-#: seconds: sending a batch costs all processes together some 20 ms, and results are seen batch by batch.
+#: Submissions in a batch, at first and at most. In between, as many as take a worker about ``_BATCH_S`` wall
+#: seconds: sending a batch costs all processes together some 20 ms, and results arrive batch by batch.
 _FIRST, _MOST = 8, 64
 _BATCH_S = 1.0
 #: Batches a worker has: one in hand, and one so that it need not wait for the next.
@@ -39,7 +39,7 @@ _AHEAD = 2
 #: Bytes of files in a batch; Dask takes more, and warns.
 _MOST_BYTES = 1_000_000
 _TICK_S = 1.0
-#: Seconds a run waits for a worker when there is none; a queue of a computing centre has been asked for more.
+#: Seconds a run waits for a worker when there is none; a computing centre's queue can take that long.
 _PATIENCE_S = 600.0
 
 
@@ -54,7 +54,7 @@ class LostBatch:
     deaths: int = 1
 
 
-#: The outcome of a batch: the answers, its loss, or the reason why there can be no answers.
+#: The outcome of a batch: the answers, its loss, or the reason why no worker can answer.
 Outcome: TypeAlias = "bytes | LostBatch | CourseError"
 
 
@@ -145,7 +145,7 @@ class _Coordinator:
     def _fill(self) -> None:
         self._count_places()
         while len(self._flying) < _AHEAD * self._places:
-            # Whichever worker takes it next may lack the graders as well: this time they go along.
+            # The next worker may lack the graders as well: this time they go along.
             graders = self._graders if self._wanting else b""
             batch = self._wanting.popleft() if self._wanting else self._next()
             if not batch:
@@ -174,7 +174,7 @@ class _Coordinator:
         return []
 
     def _read_ahead(self) -> None:
-        """Read so many submissions that the size of a batch can be chosen by what is left."""
+        """Read enough submissions to choose the size of a batch by how many are left."""
         while len(self._waiting) < 2 * self._places * self._size:
             entry = next(self._entries, None)
             if entry is None:

@@ -1,8 +1,8 @@
-"""What crosses the wire between a coordinator and the workers of a cluster.
+"""The messages between a coordinator and the workers of a cluster.
 
 A task is a function that both sides have, by name, with one argument of bytes; its result is bytes. So Dask
-pickles only a name and a string of bytes: no object of this course, and nothing that came from a submission,
-is ever un-pickled. What is in the bytes is checked against these types.
+pickles only a name and a string of bytes: no object of this course, and nothing from a submission, is ever
+unpickled. The content of the bytes is checked against these types.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ class Batch(msgspec.Struct, frozen=True):
 
 
 class Answers(msgspec.Struct, frozen=True):
-    """What a worker makes of a batch.
+    """A worker's reply to a batch.
 
     Attributes:
         host: the worker's machine, for messages.
         answers: one for each job, in order, but none after one that is an error. An answer with neither
             verdict nor error is of a submission that no grader survived.
         seconds: wall time the worker spent on the batch.
-        wanting: the worker has no such snapshot, and none of the answers.
+        wanting: the worker lacks the snapshot, and so has no answers.
     """
 
     format: int

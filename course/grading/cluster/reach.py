@@ -1,8 +1,8 @@
-"""Whether a scheduler can be reached with the settings there are, found out before anything is begun.
+"""Whether a scheduler can be reached with the present settings, found out before anything is started.
 
-Dask itself tries again and again until its time is up, and then tells what failed last. Here each thing that
-can be wrong is looked at once, in its order: the address, the certificates on this side, the scheduler's, and
-whether the scheduler takes ours. Every answer is one sentence and what to do.
+Dask itself retries until its time is up, and then reports the last failure. Here each thing that can be wrong
+is looked at once, in order: the address, the certificates on this side, the scheduler's, and whether the
+scheduler accepts ours. Every answer is one sentence and what to do.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ __all__ = ["check_scheduler"]
 
 #: Wall seconds for a connection, for a handshake, and for a refusal to come: together less than five.
 _CONNECT_S, _HANDSHAKE_S, _REFUSAL_S = 2.0, 1.5, 0.7
-#: What has to be set, by the name Dask gives it, and the variable that sets it.
+#: The settings that are needed, by Dask's name, and the variable for each.
 _SETTINGS = {
     "ca_file": ("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", "the authority's certificate"),
     "cert": ("DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT", "a certificate of yours"),
@@ -93,7 +93,7 @@ def _settings() -> dict[str, Any]:
 
 
 def _context(settings: dict[str, Any]) -> ssl.SSLContext:
-    """What Dask would connect with, once every file it needs is there and they belong together."""
+    """The TLS context that Dask would use, once all its files exist and belong together."""
     missing = [name for name in _SETTINGS if not settings.get(name)]
     if missing == ["key"] and "PRIVATE KEY" in _text(str(settings["cert"])):
         missing = []  # one file may hold both
@@ -176,7 +176,7 @@ def _told(url: str, host: str, port: int, error: Exception) -> CourseError:
 
 
 def _check_plain(url: str, host: str, port: int) -> None:
-    """Dask's scheduler greets whoever comes; one with TLS waits to be greeted in its way."""
+    """Dask's scheduler greets every client; one with TLS waits for the client's greeting."""
     with _connected(url, host, port) as plain:
         plain.settimeout(_REFUSAL_S)
         with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""What a Dask worker does: it passes each batch to a grader process that it keeps warm.
+"""A Dask worker's part: it passes each batch to a grader process that it keeps warm.
 
 The grader is the same program that ``course grade run`` starts on one machine, with its checks, its sandbox
 and its protection level. The Dask worker only carries bytes to it: no student's code, no check and no
@@ -44,13 +44,13 @@ IDLE_S = 60.0
 
 _idle: list[_WarmGrader] = []
 _lock = threading.Lock()
-#: Of runs that may go on at the same time; about 3 MB each.
+#: Snapshots that are kept, for runs that go on at the same time; about 3 MB each.
 _MOST_SNAPSHOTS = 4
 _snapshots: deque[contextlib.ExitStack] = deque()
 
 
 def grade_batch(payload: bytes) -> bytes:
-    """The answers to a batch, both as they cross the wire."""
+    """Grade a batch; both it and the answers are in the form that crosses the wire."""
     batch = decode_batch(payload)
     host = socket.gethostname()
     started = time.monotonic()
@@ -70,10 +70,10 @@ def grade_batch(payload: bytes) -> bytes:
 
 
 def _unpacked(batch: Batch) -> bool:
-    """Whether the snapshot that is to judge is here; the latest few are kept.
+    """Whether the batch's snapshot is here; the latest few are kept.
 
     Raises:
-        IntegrityError: it did not come over whole.
+        IntegrityError: it did not arrive whole.
     """
     sha256 = batch.terms.graders
     with _lock:
@@ -138,7 +138,7 @@ class _WarmGrader:
         self._retirement: threading.Timer | None = None
 
     def answer(self, job: Job) -> Answer:
-        """The grader's answer; an empty one if this submission ended every grader it was given to.
+        """The grader's answer; an empty one if this submission killed every grader it was given to.
 
         Raises:
             InternalError: no grader can be started here.
@@ -204,7 +204,7 @@ class _WarmGrader:
         self._retirement.start()
 
     def stay(self) -> None:
-        """Work has come."""
+        """Note that there is work."""
         if self._retirement is not None:
             self._retirement.cancel()
 
@@ -237,10 +237,10 @@ def _give_back(grader: _WarmGrader) -> None:
 
 
 def _take_seat() -> tuple[int, socket.socket | None]:
-    """A number that no other grader on this machine has, by which it picks its processor.
+    """A number that no other grader on this machine has; it picks the processor.
 
-    Held by a name that the kernel gives back whatever ends this process; other systems than Linux do not
-    keep a process on one processor, so there the number says nothing.
+    It is held by a name that the kernel frees however this process ends. Only Linux pins a process to a
+    processor, so elsewhere the number means nothing.
     """
     if sys.platform != "linux":
         return 0, None

@@ -1,1 +1,1 @@
-"""Exports of a gradebook: every format reads the same ``Results`` and writes a file whole or not at all."""
+"""Exports of a gradebook: each format reads the same ``Results``, and writes its whole file or none."""

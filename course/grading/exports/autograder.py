@@ -79,9 +79,9 @@ def write_autograder(
     """Write the zip.
 
     Args:
-        seed: of the hidden inputs, with what is handed in: the same files meet the same ones.
+        seed: of the hidden inputs, together with the submission: equal files meet equal inputs.
         timeout: seconds of CPU time per check.
-        asked: the exercises were named, so that one that is not handed in is reported.
+        asked: the exercises were named, so a missing one is reported.
 
     Raises:
         MissingCapabilityError: this installation has no hidden graders or no model solutions, or the file
@@ -106,7 +106,7 @@ def write_autograder(
             _put(packed, name, source.read_bytes())
     write_bytes(path, buffer.getvalue())
     notes = [
-        "The zip holds hidden graders and model solutions: upload it, and give it to nobody.",
+        "The zip holds hidden graders and model solutions: upload it, and give it to no student.",
         "The container's protection level is in the output that only you see; below L2 a hostile submission "
         "could read the graders, and write its own result.",
     ]
@@ -114,7 +114,7 @@ def write_autograder(
 
 
 def _files(catalog: Catalog, exercises: Sequence[Exercise]) -> Iterator[tuple[str, Path]]:
-    """Name in the zip and file, in a fixed order."""
+    """Each name in the zip with its file, in a fixed order."""
     package = Path(__file__).resolve().parents[2]
     for path in _tree(package):
         if not _LEFT_OUT & set(path.relative_to(package).parts):

@@ -1,4 +1,4 @@
-"""Text for cells, XML and file contents: text from a student or a name is shown, and never interpreted."""
+"""Text for cells, XML and files: a student's text, or a name, is shown and never interpreted."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def safe_cell(text: str) -> str:
 
 
 def is_safe(text: str) -> bool:
-    """Whether ``safe_cell`` leaves it as it is, so that another program finds this very key in the cell."""
+    """Whether ``safe_cell`` leaves it unchanged, so that another program finds this exact key in the cell."""
     return safe_cell(text) == text
 
 
@@ -65,7 +65,7 @@ def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]], *, mark: b
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all.
+    """Write a whole file or none.
 
     Raises:
         MissingCapabilityError: there is no room, or it cannot be written there.
@@ -76,7 +76,7 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[IO[bytes]]:
-    """A file that takes its name when it is complete; what was there stays until then.
+    """A file that takes its name when it is complete; until then the old one stays.
 
     Raises:
         UsageError: a database has that name: a gradebook, most likely.

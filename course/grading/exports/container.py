@@ -32,7 +32,7 @@ __all__ = ["grade", "main"]
 
 
 def main(arguments: list[str]) -> int:
-    """Grade one submission; the exit code is 0 unless not even a results file could be written."""
+    """Grade one submission; the exit code is 0 unless no results file could be written."""
     submission, results, config = (Path(argument) for argument in arguments)
     try:
         body = grade(submission, json.loads(config.read_text("utf-8")))
@@ -50,7 +50,7 @@ def _our_fault() -> dict[str, Any]:
 
 
 def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
-    """The body of ``results.json`` for what lies in a folder.
+    """The body of ``results.json`` for the submission in a folder.
 
     Args:
         config: exercises (ids), required (whether each must be there), seed, timeout (s), at_least.

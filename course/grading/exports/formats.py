@@ -41,7 +41,7 @@ def _jsonl(path: Path, results: Results, options: ExportOptions) -> Written:
     return selection.written
 
 
-#: name -> what it is called in OUT, and what writes it.
+#: name -> the name of its file in OUT, and the function that writes it.
 FORMATS: dict[str, tuple[str, Writer]] = {
     "csv": ("grades.csv", _csv),
     "jsonl": ("results.jsonl", _jsonl),
@@ -75,7 +75,7 @@ def export(results: Results, name: str, out: Path, target: Path | None, options:
         )
     usual, write = FORMATS[name]
     if target is None:
-        # What a run wrote there is about everybody, and stays so.
+        # The run's own file there is about the whole class, and stays so.
         part = name in _OF_A_RUN and is_part(results, options)
         target = out / "part" / usual if part else out / usual
     return write(target, results, options)

@@ -1,4 +1,4 @@
-"""Gradescope's ``results.json``: what an autograder there answers with, one file per submission.
+"""Gradescope's ``results.json``: an autograder's answer there, one file per submission.
 
 Everything in it may be shown to the student, so it contains only what students may read. A hidden check is
 shown only after the due date, because students may hand in as often as they like, and could otherwise try
@@ -29,7 +29,7 @@ _LONGEST = 4000  # characters of one check's words: a student's function may ret
 
 
 def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> Written:
-    """A folder with one results file per student and exercise, and ``index.csv`` that says whose is which.
+    """A folder with one results file per student and exercise, and ``index.csv``, which names the owners.
 
     Raises:
         UsageError: no such exercise.
@@ -79,12 +79,12 @@ def results_body(found: Sequence[Effective]) -> dict[str, Any]:
 
 
 def _seconds(effective: Effective) -> float:
-    """Of the public checks: how long a function takes can tell what it was given."""
+    """The time of the public checks alone: a function's time could reveal its hidden inputs."""
     return sum(check.duration_ms for check in checks_for_student(effective.verdict)) / 1e3
 
 
 def _words(effective: Effective) -> str:
-    """What is said about the submission as a whole."""
+    """The text about the submission as a whole."""
     verdict = effective.verdict
     score = "no score yet" if effective.score is None else f"{number(effective.score)} points"
     said = [f"{effective.exercise}: {score} of {number(effective.max_score)}."]

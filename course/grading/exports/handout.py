@@ -1,4 +1,4 @@
-"""A verdict as its student may read it; everything that is handed out is made from this."""
+"""A verdict as its student may read it; everything that students get is made from this."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 __all__ = ["checks_for_student", "problem_for_student"]
 
-#: The message of a check that broke may contain its hidden values.
+#: The message of a broken check may contain its hidden values.
 _OUR_FAULT = Problem(
     "grader_error",
     "A fault of the grader kept this from being graded; it is none of yours.",
@@ -27,5 +27,5 @@ def checks_for_student(verdict: Verdict) -> tuple[CheckResult, ...]:
 
 
 def problem_for_student(verdict: Verdict) -> Problem | None:
-    """Why there is no grade; what broke inside the grader stays with the instructor."""
+    """Why there is no grade; details of a fault in the grader stay with the instructor."""
     return _OUR_FAULT if verdict.state == "grader_error" else verdict.error

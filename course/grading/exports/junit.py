@@ -1,6 +1,6 @@
 """JUnit XML as Jenkins' xUnit plugin reads it (its schema junit-10): one suite per student and exercise.
 
-The schema allows properties under a suite and none under a case, so a suite carries score and reasons. What
+The schema allows properties under a suite and none under a case, so a suite carries score and reasons. The
 file contains only what students may read, because build servers show such files to many people.
 """
 
@@ -123,6 +123,6 @@ def _not_graded(effective: Effective, error: Problem) -> ET.Element:
 
 
 def _text(text: str) -> str:
-    """Text that XML can hold; what it cannot, and what steers or hides, is spelled out."""
+    """Text that XML can hold; other characters, and control characters, are spelled out."""
     lines = _IMPOSSIBLE.sub(lambda match: one_line(match[0]), text).split("\n")
     return "\n".join(one_line(line) for line in lines)

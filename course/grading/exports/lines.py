@@ -35,9 +35,9 @@ class OverrideLine(msgspec.Struct, frozen=True):
 
 
 class GradeLine(msgspec.Struct, frozen=True, kw_only=True, tag="course.grade/1", tag_field="schema"):
-    """One student and exercise: the body of ``course.check/1``, and what a grading run adds to it.
+    """One student and exercise: the body of ``course.check/1`` and the fields that a grading run adds.
 
-    ``score`` is what counts, ``raw_score`` what the checks gave; both are null after a fault of the grader's.
+    ``score`` counts, ``raw_score`` is the checks' sum; both are null after a fault of the grader's.
     """
 
     ok: bool
@@ -104,7 +104,7 @@ def utc(seconds: float | None) -> str:
 
 
 def write_jsonl(path: Path, results: Iterable[Effective], course: CourseRef) -> None:
-    """One line per student and exercise, everything in it: for the instructor only.
+    """One line per student and exercise, with everything: for the instructor only.
 
     Raises:
         MissingCapabilityError: it cannot be written.

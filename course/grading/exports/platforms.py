@@ -24,8 +24,8 @@ __all__ = ["write_canvas", "write_moodle"]
 def write_canvas(path: Path, results: Results, options: ExportOptions) -> Written:
     """A file for Canvas' gradebook import.
 
-    A column is found by the assignment's id; a title without one would become a new assignment, so every
-    exercise needs its id. An empty cell leaves what Canvas has.
+    Canvas finds a column by the assignment's id, and makes a new assignment of a title without one; so every
+    exercise needs its id. An empty cell leaves Canvas' own value.
 
     Raises:
         UsageError: an assignment's id or the roster is missing.
@@ -58,7 +58,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
         rows.append(
             [person.name or student, person.canvas_id, person.sis_user_id, "", person.section, *scores]
         )
-    # Ruby's reader of CSV, which is Canvas', takes a quote behind a mark for a fault.
+    # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)
     return selection.written

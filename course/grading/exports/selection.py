@@ -1,4 +1,4 @@
-"""What goes into an export, and who is left out and why: the same for every format."""
+"""What goes into an export, who is left out, and why; the same for every format."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class ExportOptions:
         exercises: ids; empty takes all.
         assignments: exercise id -> id of the assignment on the platform.
         partial: leave out students who are not in the roster, instead of stopping.
-        missing: what to write for work that an enrolled student did not hand in: "blank" or "zero".
+        missing: "blank" or "zero", for work that an enrolled student did not hand in.
         zeros: work that could not be graded may be written as 0, although the instructor has not looked at
             it.
-        worksheet: the file of Moodle's that is to be filled in.
+        worksheet: Moodle's file to fill in.
     """
 
     exercises: tuple[str, ...] = ()
@@ -66,7 +66,7 @@ class Selection:
 
     Attributes:
         people: student -> row of the roster; empty without one.
-        zeros: what was not handed in counts as 0.
+        zeros: work that was not handed in counts as 0.
     """
 
     results: Results
@@ -76,7 +76,7 @@ class Selection:
     zeros: bool = False
 
     def each(self) -> Iterator[Effective]:
-        """The results, ordered by student and exercise; what is missing is noted on the way."""
+        """The results, ordered by student and exercise; missing ones are noted on the way."""
         left_out = set(self.written.unmatched)
         for found in self.results.all():
             effective = found
@@ -96,7 +96,7 @@ def select(
     options: ExportOptions,
     usable: Callable[[Person], bool] | None = None,
 ) -> Selection:
-    """Decide what an export holds.
+    """Select the content of an export.
 
     Args:
         usable: whether a row of the roster has the key this format finds people by; without it a roster is

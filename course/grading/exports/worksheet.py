@@ -1,12 +1,12 @@
-"""Moodle's grading worksheet, given back with grades and feedback in it.
+"""Moodle's grading worksheet, filled in with grades and feedback.
 
 A teacher downloads it ("Download grading worksheet"), and uploads it again ("Upload grading worksheet").
 Moodle finds a row by ``Identifier``, takes ``Grade`` and ``Feedback comments`` from it, refuses a file
 without ``Last modified (grade)``, leaves out a grade that is empty, out of range or locked, and one that was
-changed in Moodle after the time in that column. An empty feedback cell deletes the feedback there is. So
-everything but those two cells is written as it came, and a row without a grade of ours as a whole.
+changed in Moodle after the time in that column. An empty feedback cell deletes existing feedback. So
+everything but those two cells is written unchanged, and so is the whole row where we have no grade.
 
-By Moodle's own reader: https://github.com/moodle/moodle/tree/main/mod/assign/feedback/offline
+Source: Moodle's own reader, https://github.com/moodle/moodle/tree/main/mod/assign/feedback/offline
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     """The worksheet with the grades of one exercise.
 
     Raises:
-        UsageError: there is no worksheet, it is none, or there are several exercises.
+        UsageError: there is no worksheet, the file is not one, or there are several exercises.
         MissingCapabilityError: students are missing in the roster, or the file cannot be written.
     """
     if options.worksheet is None:
@@ -120,7 +120,7 @@ def _grade(path: Path, effective: Effective, most: str) -> str:
 
 
 def _feedback(effective: Effective) -> str:
-    """What a student reads of a result, on one line: nothing of a hidden check but that it failed."""
+    """A result for its student, on one line; of a hidden check only that it failed."""
     verdict = effective.verdict
     problem = problem_for_student(verdict)
     told = [f"{number(effective.score)} of {number(effective.max_score)} points."]

@@ -1,9 +1,9 @@
 """The record of a grading run, as an SQLite file.
 
 file      its format, its lock, its seal, and SQLite's errors as sentences
-book      what is read from it and written to it
-records   what it holds, as types
+book      reading from it and writing to it
+records   its content, as types
 backup    its copies
 pages     rows of a damaged file, read without SQLite
-salvage   a new gradebook of all that is whole in a damaged one
+salvage   a new gradebook from the intact rows of a damaged one
 """

@@ -1,4 +1,4 @@
-"""Copies of a gradebook beside it: of its newest state, and of the one before."""
+"""Two copies beside a gradebook: of its newest state, and of the one before."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _KEPT = 2
 
 
 def back_up(path: Path) -> None:
-    """Copy a closed gradebook; the copy there was becomes the older one.
+    """Copy a closed gradebook; the previous copy becomes the older one.
 
     Raises:
-        MissingCapabilityError: there is no room for it, and the older copies are as they were.
+        MissingCapabilityError: there is no room for it; the older copies are unchanged.
     """
     draft = _named(path, 0)
     try:
@@ -38,7 +38,7 @@ def back_up(path: Path) -> None:
 
 
 def backups(path: Path) -> list[Path]:
-    """The copies there are, the newest first."""
+    """The existing copies, newest first."""
     return [found for number in range(1, _KEPT + 1) if (found := _named(path, number)).is_file()]
 
 

@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Gradebook"]
 
-_CHECKPOINT_S = 5.0  # what a power cut costs at most
+_CHECKPOINT_S = 5.0  # the most that a power cut costs
 
 
 class Gradebook:
@@ -91,7 +91,7 @@ class Gradebook:
         if kind is None:
             self.close()
             return
-        with contextlib.suppress(CourseError):  # what went wrong first is what is reported
+        with contextlib.suppress(CourseError):  # the first error is the one to report
             self.close()
 
     def close(self) -> None:
@@ -142,7 +142,7 @@ class Gradebook:
         return dict(msgspec.json.decode(row[0])) if row else {}
 
     def set_exercises(self, exercises: Iterable[GradedExercise]) -> None:
-        """Note what is graded; what was graded earlier and is not named stays."""
+        """Note the exercises that are graded; earlier ones stay."""
         with self._transaction():
             self._db.executemany(
                 row_into("exercises", "INSERT OR REPLACE"),
@@ -150,7 +150,7 @@ class Gradebook:
             )
 
     def exercises(self) -> tuple[GradedExercise, ...]:
-        """What was graded, in the order of the course."""
+        """The graded exercises, in the order of the course."""
         with explained(self.path):
             rows = self._db.execute(
                 "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
@@ -160,7 +160,7 @@ class Gradebook:
     # -- students -------------------------------------------------------------------------------------
 
     def set_students(self, students: Mapping[str, PlatformIdentity]) -> None:
-        """Note who students are to the system they were downloaded from."""
+        """Note the students' identities in the system they were downloaded from."""
         with self._transaction():
             self._db.executemany(
                 row_into("students", "INSERT OR REPLACE"),
@@ -184,7 +184,7 @@ class Gradebook:
             )
 
     def times(self) -> Iterator[SubmittedAt]:
-        """All that is known about when things were handed in."""
+        """All known times of submission."""
         with explained(self.path):
             for row in self._db.execute("SELECT student, exercise, submission_sha256, source, at FROM times"):
                 yield SubmittedAt(*row)
@@ -192,7 +192,7 @@ class Gradebook:
     # -- results --------------------------------------------------------------------------------------
 
     def add(self, result: Result, files: Mapping[str, bytes] | None = None) -> None:
-        """Keep a result, and what was handed in; it is in the file when this returns."""
+        """Store a result and its submission; both are in the file when this returns."""
         body = msgspec.json.encode(finite(msgspec.to_builtins(result.verdict)))
         row = (self._run, *asdict(result.key).values(), result.graded_at or _now(), body, _sha256(body))
         with self._transaction():
@@ -279,7 +279,7 @@ class Gradebook:
             return [row[0] for row in self._db.execute("SELECT DISTINCT exercise FROM results ORDER BY 1")]
 
     def submission(self, sha256: str) -> dict[str, bytes] | None:
-        """What was handed in: file name to content; None if nothing of that digest was kept.
+        """A submission: file name to content; None if none has that digest.
 
         Raises:
             IntegrityError: it is damaged.
@@ -299,7 +299,7 @@ class Gradebook:
         """Store a decision, here and in the journal; earlier ones are kept.
 
         Args:
-            before: what counted, for the journal.
+            before: what counted before, for the journal.
         """
         at = override.at or _now()
         row = (override.student, override.exercise, override.score, override.reason, at)
@@ -348,7 +348,7 @@ class Gradebook:
     # -- graders, and what was found ------------------------------------------------------------------
 
     def keep_snapshot(self, sha256: str, packed: bytes) -> None:
-        """Keep the graders of a run; the same ones are kept once."""
+        """Store the graders of a run; equal ones are stored once."""
         with explained(self.path):
             query = "SELECT 1 FROM snapshots WHERE sha256 = ?"
             known = self._db.execute(query, (sha256,)).fetchone()
@@ -357,14 +357,14 @@ class Gradebook:
                 self._db.execute(row_into("snapshots"), (sha256, packed))
 
     def snapshot(self, sha256: str) -> bytes | None:
-        """The graders of that digest as they were packed; None if they are not here."""
+        """The packed graders of that digest; None if they are not here."""
         with explained(self.path):
             query = "SELECT packed FROM snapshots WHERE sha256 = ?"
             row = self._db.execute(query, (sha256,)).fetchone()
         return None if row is None else bytes(row[0])
 
     def set_found(self, student: str, exercise: str, listed: str | None) -> None:
-        """Record files of a student that may be meant for an exercise; None if it is settled."""
+        """Record a student's files that may be meant for an exercise; None once that is settled."""
         with self._transaction():
             if listed is None:
                 self._db.execute("DELETE FROM found WHERE student = ? AND exercise = ?", (student, exercise))
@@ -372,7 +372,7 @@ class Gradebook:
                 self._db.execute(row_into("found", "INSERT OR REPLACE"), (student, exercise, listed))
 
     def found(self) -> dict[tuple[str, str], str]:
-        """What is noted so, by student and exercise."""
+        """The recorded files, by student and exercise."""
         with explained(self.path):
             rows = self._db.execute("SELECT student, exercise, listed FROM found ORDER BY 1, 2").fetchall()
         return {(student, exercise): listed for student, exercise, listed in rows}
@@ -385,7 +385,7 @@ class Gradebook:
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
-        """All of it or nothing, and the time it took."""
+        """A transaction, whose time is counted."""
         start = time.perf_counter()
         with explained(self.path):
             if self._writing and not self._begun:
@@ -415,7 +415,7 @@ class _State(msgspec.Struct):
 
 
 def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, ...]]:
-    """A condition on student and exercise, and what it is asked with; none where both are None."""
+    """A condition on student and exercise, with its parameters; empty where both are None."""
     asked = [
         (name, value) for name, value in (("student", student), ("exercise", exercise)) if value is not None
     ]

@@ -6,12 +6,12 @@ power leaves a consistent file that lacks the last seconds. Held exclusively, th
 and so works on network folders; closing puts the file back into the ordinary mode, in which it is one file
 that can be copied.
 
-Closing also seals it: a digest over every row is kept in it and compared whenever it is opened. The first
-write breaks the seal, so a file whose writer was killed has none, and is taken as it is.
+Closing also seals it: a digest over every row is stored in it and compared on opening. The first write breaks
+the seal, so a file whose writer was killed has none, and is accepted without.
 
-Every row ends with a digest of itself, table and all. It needs nothing around it to be recognised, which is
-how ``salvage`` tells the rows of a damaged file that are whole; what is deleted is overwritten, so that no
-row comes back that was taken out on purpose.
+Every row ends with a digest of itself and its table's name. So ``salvage`` recognises the intact rows of a
+damaged file without anything around them. Deleted rows are overwritten, so none that was removed on purpose
+comes back.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ __all__ = [
     "unseal",
 ]
 
-#: 2 had no seal, 3 no digests of rows, snapshots or journal; both are read as they are.
+#: 2 had no seal; 3 had no digests of rows, no snapshots and no journal. Both can be read.
 FORMAT_VERSION = 4
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
@@ -54,7 +54,7 @@ _DAMAGED = (
 )
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
-#: What formats 1 to 3 had. Every table got a last column since: the digest of its row.
+#: The tables of formats 1 to 3. Since then each has a last column: the digest of its row.
 _TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE runs (
@@ -199,7 +199,7 @@ def explained(path: Path) -> Iterator[None]:
 
 def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
     # The low byte is the kind of fault, the rest a detail of it. Python's own errors, such as text that is
-    # not UTF-8, carry no code: what was read was not what was written.
+    # not UTF-8, carry no code: the file is not as it was written.
     kind = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
     if kind in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
         return UsageError(
@@ -222,7 +222,7 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
 
 
 def create(path: Path) -> None:
-    """An empty gradebook, made under another name first: a run killed here leaves none instead of half.
+    """An empty gradebook, made under another name first: a run killed here leaves none, not half of one.
 
     Raises:
         UsageError: another run made one meanwhile.
@@ -241,7 +241,7 @@ def create(path: Path) -> None:
 
 
 def _draft(path: Path) -> Path:
-    """A name that no other process uses; a killed run's is taken over only if its process is gone."""
+    """A name that no other process uses; a killed run's name is reused only if its process is gone."""
     for number in itertools.count():
         draft = path.with_name(f"{path.stem}.new-{os.getpid()}-{number}")
         if not draft.exists():
@@ -321,7 +321,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         )
         if kept is not None:
             seal(db)
-    elif version < 4:  # left as it is; what it lacks is empty
+    elif version < 4:  # unchanged; missing tables count as empty
         db.executescript(_SINCE_4.replace("CREATE TABLE", "CREATE TEMP TABLE"))
 
 
@@ -342,7 +342,7 @@ def unseal(db: sqlite3.Connection) -> None:
 
 
 def _digest(db: sqlite3.Connection, queries: tuple[str, ...]) -> str:
-    """Over all rows; what is large in them has a digest of its own, and that is among them."""
+    """The digest over all rows; large contents count by their own digests, which are in the rows."""
     digest = hashlib.sha256()
     for query in queries:
         digest.update(f"{query}\n".encode())

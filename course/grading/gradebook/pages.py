@@ -1,8 +1,8 @@
 """The rows on the pages of an SQLite file, read without SQLite, for a file that SQLite refuses.
 
-Nothing in the file is trusted: not the header, not a pointer, not a length. Every page is read by itself, in
-any order; a row that continues on other pages is followed there. The rows are raw, and some are nonsense;
-``salvage`` keeps those whose own digest matches.
+Nothing in the file is trusted: no header, no pointer, no length. Every page is read by itself, in any order;
+a row that continues on other pages is followed there. The rows are raw, and some are nonsense; ``salvage``
+keeps those whose own digest matches.
 
 The format: https://www.sqlite.org/fileformat2.html (sections 1.3, 1.6, 1.7 and 2.1).
 """
@@ -44,7 +44,7 @@ def raw_rows(data: bytes) -> Iterator[tuple[int | None, tuple[Cell, ...]]]:
 
 
 def _sizes(data: bytes) -> tuple[int, int]:
-    """Bytes in a page, and of these unused; by the header, or as we write them if it is damaged."""
+    """Bytes in a page, and the unused ones of these; from the header, or our own values if it is damaged."""
     if data[:16] == _MAGIC:
         size = struct.unpack(">H", data[16:18])[0]
         size = 65536 if size == 1 else size

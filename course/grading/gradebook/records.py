@@ -1,4 +1,4 @@
-"""What a gradebook holds, as types."""
+"""The content of a gradebook, as types."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = [
 
 @dataclass(frozen=True, order=True)
 class Key:
-    """What one result is about."""
+    """The key of one result."""
 
     student: str
     exercise: str
@@ -35,7 +35,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Result:
-    """One result as it is kept.
+    """One stored result.
 
     Attributes:
         graded_at: UTC, ISO 8601.
@@ -61,7 +61,7 @@ class GradedExercise(msgspec.Struct, frozen=True):
 
 
 class PlatformIdentity(msgspec.Struct, frozen=True):
-    """Who a student is to the system a class was downloaded from.
+    """A student's identity in the system a class was downloaded from.
 
     Attributes:
         source: "canvas", "moodle" or "gradescope".
@@ -77,10 +77,10 @@ class PlatformIdentity(msgspec.Struct, frozen=True):
 
 
 class SubmittedAt(msgspec.Struct, frozen=True):
-    """When something was handed in, by one witness.
+    """A time of submission, by one witness.
 
     Attributes:
-        submission_sha256: what; empty for whatever the student handed in.
+        submission_sha256: of the submission; empty for any by this student.
         source: the witness: "gradescope", "list", "mtime", or "canvas-late" (which only says: late).
         at: seconds since 1970, UTC; None if the witness does not say.
     """
@@ -103,13 +103,13 @@ class Override(msgspec.Struct, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """A change of grades, by whom and why.
+    """A change of grades: who made it, and why.
 
     Attributes:
         at: UTC, ISO 8601; empty for now.
         who: the name of the account; empty for the one this runs under.
         kind: "override", "lift", "assign", "late", "roster" or "salvage".
-        student, exercise: whom it is about; empty for a whole class.
+        student, exercise: what it is about; empty for a whole class.
         before, after: in words or JSON, what counted and what counts.
     """
 

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["Salvaged", "salvage"]
 
 Row = tuple[Cell, ...]
-#: How many of a table's first columns tell its rows apart, where it is not the first alone.
+#: How many of a table's first columns are its key, where it is more than one.
 _KEYS = {"times": 4, "found": 2}
 #: In place of a submission's digest, where there was none.
 _NOTHING = {"", hashlib.sha256().hexdigest()}
@@ -54,7 +54,7 @@ class Salvaged:
     Attributes:
         rows: number of rows by table.
         from_backup: of these, those only a backup had.
-        lost: what is known to be missing, a sentence each.
+        lost: known losses, a sentence each.
     """
 
     rows: Counter[str] = field(default_factory=Counter)
@@ -67,8 +67,8 @@ def salvage(path: Path, target: Path) -> Salvaged:
 
     Raises:
         NotFoundError: there is no gradebook and no backup.
-        IntegrityError: nothing in them is whole.
-        UsageError: there is something at ``target``.
+        IntegrityError: no row in them is intact.
+        UsageError: ``target`` exists.
         MissingCapabilityError: it cannot be written.
     """
     others = backups(path)
@@ -99,7 +99,7 @@ def salvage(path: Path, target: Path) -> Salvaged:
 
 
 def _with_log(path: Path) -> bytes:
-    """The file's bytes, after what a killed run left beside it went into it, if SQLite can still do that."""
+    """The file's bytes, after SQLite, if it still can, merged in what a killed run left beside it."""
     log = path.with_name(path.name + "-wal")
     if not log.exists():
         return path.read_bytes()
@@ -117,7 +117,7 @@ def _with_log(path: Path) -> bytes:
 
 
 def _take(data: bytes, found: dict[str, dict[Row, Row]], new: Counter[str]) -> None:
-    """Add the whole rows of a file; what is known already stays."""
+    """Add a file's intact rows; known ones stay."""
     for number, values in raw_rows(data):
         table = _table_of(number, values)
         if table is None:
@@ -130,7 +130,7 @@ def _take(data: bytes, found: dict[str, dict[Row, Row]], new: Counter[str]) -> N
 
 
 def _table_of(number: int | None, values: Row) -> str | None:
-    """The table that a row belongs to by its own digest; None if it is not whole."""
+    """The table that a row belongs to by its own digest; None if the row is damaged."""
     for name, columns in TABLES.items():
         if len(values) == len(columns) + 1:
             cells = (number, *values[1:-1]) if name in _NUMBERED else values[:-1]
@@ -166,7 +166,7 @@ def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
 
 
 def _lost(found: dict[str, dict[Row, Row]]) -> Iterator[str]:
-    """What other rows refer to and is missing."""
+    """Missing rows that others refer to."""
     for name, words in (("results", "results"), ("overrides", "overrides"), ("journal", "notes of changes")):
         numbers = {int(str(key[0])) for key in found[name]}
         gone = sorted(set(range(1, max(numbers, default=0) + 1)) - numbers)

@@ -1,1 +1,1 @@
-"""A class folder, read as data: platforms' downloads, archives, files, and whose each of them is."""
+"""A class folder, read as data: platforms' downloads, archives, files, and the owner of each."""

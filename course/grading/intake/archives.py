@@ -43,7 +43,7 @@ Members = dict[str, zipfile.ZipInfo]
 MAX_FILE = 1 << 20
 MAX_FILES = 20
 MAX_UNPACKED = 5 << 20
-MAX_ARCHIVE = 6 << 20  # an archive of files within the limits is never larger
+MAX_ARCHIVE = 6 << 20  # no archive of files within the limits is larger
 FORMAT_VERSION = 1
 
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
@@ -58,7 +58,7 @@ class RefusedError(Exception):
 
 
 def manifest_of(path: Path) -> dict[str, Any]:
-    """What ``course submit`` wrote beside the files of an archive; empty for one made by hand.
+    """The metadata that ``course submit`` put into an archive; empty for one made by hand.
 
     Raises:
         RefusedError: the archive must not be opened, or is damaged.
@@ -68,11 +68,11 @@ def manifest_of(path: Path) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class ArchiveContent:
-    """What an archive holds for an exercise.
+    """An archive's file for an exercise.
 
     Attributes:
-        name: as the archive has it.
-        notes: what was assumed, one sentence each.
+        name: in the archive.
+        notes: assumptions that were made, one sentence each.
         copies: the members that are the same file, this one included.
     """
 
@@ -83,10 +83,10 @@ class ArchiveContent:
 
 
 def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
-    """What a zip holds for an exercise, its module or a notebook; None if there is neither.
+    """A zip's module or notebook for an exercise; None if there is neither.
 
     Raises:
-        RefusedError: the archive is one that must not be opened further, or is damaged, or holds several.
+        RefusedError: the archive must not be opened further, is damaged, or holds several.
     """
 
     def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
@@ -115,7 +115,7 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
 
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
-    """What was assumed about a member."""
+    """The assumptions made about a member."""
     around = raw.replace("\\", "/").removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
     if around:
         yield f"Everything in {path.name} lies in the folder {around}, which was passed over."
@@ -129,7 +129,7 @@ def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercis
 
 
 def _wanted(members: Members, exercise: Exercise) -> list[str]:
-    """The members for an exercise, those with its very name first."""
+    """The members for an exercise, those with exactly its name first."""
     names = (exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name)
     found = [
         name
@@ -141,7 +141,7 @@ def _wanted(members: Members, exercise: Exercise) -> list[str]:
 
 
 def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
-    """Names and contents of the modules and notebooks in a zip, but those to skip.
+    """Names and contents of the modules and notebooks in a zip, except those to skip.
 
     Raises:
         RefusedError: it must not be opened further, or is damaged.
@@ -174,7 +174,7 @@ def member_of(path: Path, name: str) -> bytes:
 
 
 def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
-    """What ``read`` makes of an archive whose members were all found harmless.
+    """The result of ``read`` on an archive whose members are all harmless.
 
     Raises:
         RefusedError: the archive must not be opened further, or is damaged.
@@ -201,7 +201,7 @@ def _refused(path: Path, why: str) -> RefusedError:
 
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
-    """The members by name, from inside the folders that all of them lie in; every one was found harmless."""
+    """The members by name, without the folders around all of them; every one is harmless."""
     files = [info for info in infos if not info.is_dir() and not _is_clutter(info.filename)]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
@@ -226,7 +226,7 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
 
 
 def _without_top(members: Members) -> Members:
-    """The members as they are called from inside the folders that hold everything."""
+    """The members' names without the folders around all of them."""
     while members and all("/" in name for name in members):
         tops = {name.partition("/")[0] for name in members}
         if len(tops) > 1:
@@ -236,7 +236,7 @@ def _without_top(members: Members) -> Members:
 
 
 def _is_clutter(name: str) -> bool:
-    """What operating systems add to a zip by themselves."""
+    """Whether an operating system added it to the zip."""
     return any(part in IGNORED for part in PurePosixPath(name.replace("\\", "/")).parts)
 
 
@@ -250,7 +250,7 @@ def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> by
 
 
 def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[str, Any]:
-    """What ``course submit`` wrote beside the files; empty for an archive made by hand."""
+    """The metadata that ``course submit`` wrote; empty for an archive made by hand."""
     info = members.get("submission.json")
     if info is None:
         return {}

@@ -1,4 +1,4 @@
-"""A class folder, however it came: one folder per student, or what a learning platform gave for download.
+"""A class folder of any origin: one folder per student, or a learning platform's download.
 
     folders      SUBMISSIONS/<student>/...
     moodle       SUBMISSIONS/<Full Name>_<number>_assignsubmission_file/...   or files that begin so
@@ -6,8 +6,8 @@
                  <name>[_LATE]_<user>_text.html or _link.html; <name> is anon where it grades anonymously
     gradescope   SUBMISSIONS/submission_<number>/... with submission_metadata.yml
 
-Which one it is follows from all the names together. A folder in which some names are a platform's and some
-are not is refused with the odd ones listed; a name that does not say whose it is is reported, never guessed.
+The kind follows from all the names together. A folder in which only some names are a platform's is refused,
+and the others are listed; a file without a known owner is reported, never guessed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ __all__ = ["IGNORED", "LAYOUTS", "ClassList", "Layout", "Place", "Student", "cla
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
 LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")
 
-#: What operating systems and tools put into folders by themselves.
+#: Files that operating systems and tools put into folders by themselves.
 IGNORED = frozenset(
     {
         "__MACOSX", "__pycache__", ".DS_Store", ".git", ".idea", ".ipynb_checkpoints", ".svn", ".vscode",
@@ -45,7 +45,7 @@ _MOODLE = re.compile(
     r"(?P<name>[^_]*)_(?P<key>[0-9]+)_assignsubmission_(?P<plugin>[a-z]+)(?:_(?P<file>.*))?", re.S
 )
 # Canvas takes '_<digits>_' out of names, so the first two numbers are its own. Graded anonymously, a student
-# is a few letters and digits that do not identify anyone.
+# is a few letters and digits, and no name.
 _CANVAS = re.compile(
     r"(?:(?P<name>.*?)(?P<late>_LATE)?_(?P<key>[0-9]+)"
     r"|(?P<anon>anon)(?P<anon_late>_LATE)?_(?P<anon_key>[A-Za-z0-9]{4,8}))"
@@ -53,7 +53,7 @@ _CANVAS = re.compile(
     re.S,
 )
 _METADATA = "submission_metadata.yml"
-#: What can be handed in, by the ends of its names.
+#: The suffixes of files that can be handed in.
 _HANDED_IN = (".py", ".ipynb", ".zip")
 _MAX_METADATA = 200 << 20
 _SHOWN = 5
@@ -61,7 +61,7 @@ _SHOWN = 5
 
 @dataclass(frozen=True)
 class Place:
-    """Where a student's files are: a folder, or some of the files of a folder that others share.
+    """Where a student's files are: a folder of their own, or some of the files in a shared one.
 
     Attributes:
         root: the folder.
@@ -72,9 +72,9 @@ class Place:
     files: tuple[tuple[str, Path], ...] | None = None
 
     def find(self, wanted: str, inside: str) -> list[Path]:
-        """Files that are meant by a name, at the top or in a folder of theirs; nothing is opened.
+        """Files that a name may mean, at the top or in a subfolder; none is opened.
 
-        Those of the very name come first.
+        Those with exactly that name come first.
         """
         if self.files is None:
             found = [*_entries(self.root), *_entries(self.root / inside)]
@@ -93,7 +93,7 @@ class Place:
         return next((name for name, mine in self.files or () if mine == path), path.name)
 
     def shown(self, path: Path) -> str:
-        """A path in words, from here."""
+        """A path relative to the folder, as text."""
         return os.fsencode(path.relative_to(self.root)).decode("utf-8", "backslashreplace")
 
 
@@ -110,7 +110,7 @@ class Student:
 
     Attributes:
         name: id in the gradebook, as text that any file format can hold.
-        identity: who that is to the platform; None for plain folders.
+        identity: the student's identity on the platform; None for plain folders.
         submitted_at: seconds since 1970, UTC, where the platform says so.
         flagged_late: the platform says that it was late, but not by how much.
         typed: files with text that was typed into the platform.
@@ -217,7 +217,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
         if not (path.is_dir() or path.is_symlink()):
             if _may_be_handed_in(raw):
                 found.unrecognised.append(f"{_text(raw)}: is in no student's folder")
-            continue  # a class list, notes: not a submission
+            continue  # such as a class list or notes: not a submission
         name = _text(raw)
         while name in owned:
             name += "'"

@@ -1,7 +1,7 @@
-"""File names, and the names they were meant to be: spellings that are accepted without asking.
+"""File names, and the spellings of them that are accepted without asking.
 
-Letter case, and the number that a browser, Canvas or Windows adds to a second download, change nothing about
-what a file is. Every such spelling is named in the result. What is called otherwise is for triage.
+Letter case does not matter, nor does the number that a browser, Canvas or Windows adds to a second download.
+Every such spelling is named in the result. Any other name is for triage.
 """
 
 from __future__ import annotations

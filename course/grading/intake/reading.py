@@ -51,16 +51,16 @@ __all__ = ["Reader", "reader"]
 #: less than one; a busy machine may take six times as long by the wall clock.
 CPU_S, WALL_S = 10, 60.0
 MEMORY = 1 << 30
-#: Of an answer, in bytes: a module and what is noted of it.
+#: The largest answer, in bytes: a module and the notes on it.
 MAX_ANSWER = 4 << 20
 
 
 class _Request(msgspec.Struct, frozen=True):
-    """One file to read, and what is looked for in it.
+    """One file to read, and what to look for in it.
 
     Attributes:
         kind: "notebook", "archive", "quiz", "outline" or "member".
-        path: of an archive, or of what is to be outlined.
+        path: of an archive, or of a file to outline.
         content: of a notebook.
         name: what to call it in messages.
     """
@@ -82,7 +82,7 @@ Outline = tuple[str, str, tuple[str, ...], int]
 
 
 class _Reply(msgspec.Struct, frozen=True):
-    """What was found: a file by its name and content, or why there is none; both None if it is not there."""
+    """The result: a file with its name and content, or why there is none; both None if it is not there."""
 
     problem: Problem | None = None
     name: str | None = None
@@ -101,23 +101,23 @@ class _Limits:
 
 
 class Reader:
-    """A process that reads; started when it is first needed, and again when a file ended it."""
+    """A process that reads; started when it is first needed, and again after a file killed it."""
 
     def __init__(self, limits: _Limits = _Limits()) -> None:
         self._limits = limits
         self._process: subprocess.Popen[bytes] | None = None
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
-        """The module that a notebook stands for, and the record of its cells.
+        """The module that a notebook makes up, and the record of its cells.
 
         Raises:
-            RefusedError: it is none that can be graded.
+            RefusedError: it cannot be graded.
         """
         told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
-        """What an archive holds for an exercise; None if nothing.
+        """An archive's file for an exercise; None if it has none.
 
         Raises:
             RefusedError: it must not be opened, or is damaged.
@@ -128,11 +128,11 @@ class Reader:
         return None if told.name is None else ArchiveContent(told.name, told.content, told.notes, told.copies)
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
-        """Which functions a module or a notebook defines, or each of an archive.
+        """The functions that a module or a notebook defines, or each file in an archive.
 
         Args:
-            skip: members of the archive that are not looked at.
-            functions: the names that are asked about.
+            skip: members of the archive to ignore.
+            functions: the names to look for.
 
         Raises:
             RefusedError: it cannot be read.
@@ -151,7 +151,7 @@ class Reader:
         return self._ask(ask).content
 
     def quiz_in(self, path: Path) -> Any:
-        """The quiz attempts in an archive, a word where they have another form, None if it holds none.
+        """The quiz attempts in an archive; a word if they have another form, None if it has none.
 
         Raises:
             RefusedError: it must not be opened, or is damaged.
@@ -198,7 +198,7 @@ class Reader:
         return told
 
     def _start(self) -> subprocess.Popen[bytes]:
-        """The process, when it says that it is ready.
+        """The process, once it is ready.
 
         Raises:
             InternalError: it does not start.
@@ -292,7 +292,7 @@ def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> 
 
 
 def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
-    """Which of these functions a file's top level defines, and how much code was parsed for that."""
+    """The functions among these that a file's top level defines, and how much code was parsed for that."""
     if not any(function.encode() in content for function in functions):
         return (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]

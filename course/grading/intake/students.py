@@ -1,15 +1,15 @@
-"""A class folder, read as data: whose submission for which exercise, or why there is none.
+"""A class folder, read as data: which student handed in which exercise, or why there is nothing to grade.
 
     <student>/<module>.py
     <student>/<exercise-id>/<module>.py
     <student>/<anything>.zip        as ``course submit`` writes it
 
-or ``<module>.ipynb`` in place of ``<module>.py``: the module that a notebook stands for is graded. Spellings
-that are taken for these names are in ``names``; what is left over is looked at by ``triage``.
+or ``<module>.ipynb`` in place of ``<module>.py``: the module that the notebook makes up is graded. ``names``
+has the accepted spellings of these names; ``triage`` looks at the files that are left over.
 
-``course.grading.intake.downloads`` says who the students are and where their files lie. Only files an
-exercise declares are read; nothing here executes, unpacks to disk or follows anything. What has to be parsed
-for that, notebooks and archives, is read by a process of its own (``reading``).
+``course.grading.intake.downloads`` says who the students are and where their files lie. Only files that an
+exercise declares are read; nothing here executes a file, unpacks one to disk or follows a link. Notebooks and
+archives have to be parsed for that, which a separate process does (``reading``).
 """
 
 from __future__ import annotations
@@ -55,11 +55,11 @@ class Entry:
 
     Attributes:
         student: the student's id.
-        submission: what is to be graded; None if there is nothing.
-        problem: why there is nothing; None together with ``submission`` None means it was not handed in.
-        times: sources for when it was handed in.
-        notes: what was assumed, or left beside it, one sentence each.
-        found: what may be meant for the exercise, where there is a problem.
+        submission: to grade; None if there is nothing.
+        problem: why there is nothing; if both are None, the exercise was not handed in.
+        times: of the submission, each with its source.
+        notes: assumptions that were made, and files that were left aside, one sentence each.
+        found: files that may be meant for the exercise, where there is a problem.
         only: ids of the checks to run; empty runs all.
     """
 
@@ -74,25 +74,25 @@ class Entry:
 
     @property
     def sha256(self) -> str:
-        """Digest of the submission; of nothing where there is none."""
+        """Digest of the submission; of empty content where there is none."""
         return self.submission.sha256 if self.submission else hashlib.sha256().hexdigest()
 
 
 def read_student(student: Student, exercises: Sequence[Exercise], *, required: bool) -> list[Entry]:
-    """The entries of one student, one per exercise; a failure here ends no other student's grading.
+    """The entries of one student, one per exercise; a failure here does not affect other students.
 
     Args:
         required: whether an exercise without a file is ungradable (it was asked for by name) or merely not
             submitted.
 
     Raises:
-        InternalError: nothing at all can be read.
+        InternalError: the reading process does not work at all.
     """
     try:
         return list(_entries(student, exercises, required=required))
     except InternalError:
         raise
-    except Exception as error:  # noqa: BLE001 - what nobody thought of is named, and the class goes on
+    except Exception as error:  # noqa: BLE001 - an unforeseen fault is named; the class goes on
         problem = _unforeseen(error)
         return [Entry(student.name, exercise, problem=problem) for exercise in exercises]
 
@@ -140,7 +140,7 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
-    """Files beside a submission with functions of the same exercise; they are always reported."""
+    """Other files with functions of the same exercise; they are always reported."""
     others = [
         one
         for one in found_for(exercise, left, asked=False)
@@ -157,7 +157,7 @@ def _without(
     *,
     required: bool,
 ) -> Entry:
-    """The entry of what could not be taken, with what there is in its place."""
+    """The entry for an exercise without a usable file, with the files that may be meant."""
     problem = refused.problem if refused else None
     found: tuple[Candidate, ...] = ()
     if problem is None or problem.code in _FOR_TRIAGE:
@@ -171,7 +171,7 @@ def _without(
 
 
 def witnesses(student: Student, exercise: str, sha256: str, path: Path | None) -> tuple[SubmittedAt, ...]:
-    """The sources for when a submission was handed in: its platform, and the time of its file.
+    """The times of a submission: the platform's, and its file's.
 
     Nothing inside a submission counts, because a student's machine wrote it.
     """
@@ -190,7 +190,7 @@ _PERMISSIONS = "Check the permissions of the file and of the folders above it."
 _LONGEST = 200
 
 
-#: Problems that a file under another name, or a choice between files, would settle.
+#: Problems that a file under another name, or a choice between files, would solve.
 _FOR_TRIAGE = {"no_file", "ambiguous_files"}
 
 
@@ -210,12 +210,12 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
 
 @dataclass(frozen=True)
 class _FoundWork:
-    """What was found for an exercise by its name.
+    """The file that was found for an exercise by its name.
 
     Attributes:
         path: the file it came in.
         used: paths, and members of archives, that hold it.
-        contents: digests of the files as they lie there.
+        contents: digests of the files, unchanged.
     """
 
     submission: Submission
@@ -226,7 +226,7 @@ class _FoundWork:
 
 
 def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | None:
-    """The one candidate for an exercise, None if there is none; copies of one file are one.
+    """The one candidate for an exercise, None if there is none; copies of one file count as one.
 
     Raises:
         RefusedError: there are several, or the one cannot be read.
@@ -292,7 +292,7 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
 
 
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
-    """A file as a submission; a notebook becomes the module that it stands for.
+    """A file as a submission; a notebook becomes the module that it makes up.
 
     Raises:
         RefusedError: it is empty, or a notebook that cannot be graded.
@@ -330,7 +330,7 @@ def _read_regular(path: Path, shown: str, limit: int) -> bytes:
 
 
 def read_quiz(student: Student) -> tuple[Any, Path | None]:
-    """The quiz attempts of a student, as JSON gave them, and the archive they came in; an empty list if none.
+    """A student's quiz attempts, as in the JSON, and the archive they came in; an empty list if none.
 
     An archive that cannot be read gives none: the exercises in it report what is wrong with it.
 

@@ -1,8 +1,8 @@
-"""A student's files that are not a submission yet: found, searched for functions, and proposed.
+"""A student's files that no exercise was graded from: found, searched for functions, and proposed.
 
 A file with another name, in another folder, or beside the one that was graded is always reported. Names of
 functions are read in the process that reads submissions, which can be ended; nothing is run. An instructor
-decides about the proposals, with ``course grade assign``.
+decides on the proposals with ``course grade assign``.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 __all__ = ["Candidate", "Found", "described", "found_for", "survey"]
 
 _KINDS = (".py", ".ipynb", ".zip")
-#: How far one student's folder is searched: folders deep, entries looked at, files read, and files that took
-#: the process that reads with them, which may have had ten seconds each.
+#: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the
+#: reading process, which may have taken ten seconds each.
 _DEEP, _ENTRIES, _READ, _FATAL = 6, 2000, 60, 3
 #: Code of one student that is parsed, in characters; a million of the densest take about 3 s of CPU.
 _CODE = 3 << 20
-#: How alike two names are, of 1, before one is taken for a slip in the other: ``integrator`` for
+#: How alike two names must be, up to 1, for one to count as a misspelling of the other: ``integrator`` for
 #: ``integrators`` is 0.95, ``collision`` for ``integrators`` 0.3.
 _ALIKE = 0.75
 _SHOWN = 4
@@ -45,11 +45,11 @@ class Candidate(msgspec.Struct, frozen=True):
     """One file that may be meant for an exercise.
 
     Attributes:
-        name: where it is, from the student's folder; what lies in an archive follows the archive's name.
+        name: path from the student's folder; for a file in an archive, it continues after the archive's name.
         path: of the file, or of the archive it lies in, as the system has it: not every name is text.
         member: in the archive; empty for a file.
         sha256: digest of its content.
-        defines: names of the functions in it; of one exercise's tasks, where it is listed for an exercise.
+        defines: names of the functions in it; only an exercise's tasks, where it is listed for an exercise.
         proposed: it is the only match.
     """
 
@@ -62,7 +62,7 @@ class Candidate(msgspec.Struct, frozen=True):
 
 
 class Found(msgspec.Struct, frozen=True):
-    """What there is for one student and exercise that could not be taken by its name.
+    """The files of one student that may be meant for an exercise, but not by their names.
 
     Attributes:
         reason: the code of the problem.
@@ -81,11 +81,11 @@ class _Search:
 
 
 def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
-    """Files of a student's that no exercise was graded from.
+    """A student's files that no exercise was graded from.
 
     Args:
-        used: path and member of those that were.
-        exercises: whose functions are looked for.
+        used: path and member of the graded ones.
+        exercises: look for their functions.
     """
     functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
     candidates: list[Candidate] = []
@@ -135,7 +135,7 @@ def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
 def _outlined(
     name: str, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]
 ) -> tuple[list[Candidate], int]:
-    """What is in a file, or in each file of an archive but those to skip; how much code was parsed for it."""
+    """The functions in a file, or in an archive's files except those to skip; how much code was parsed."""
     shown = one_line(os.fsencode(name).decode("utf-8", "backslashreplace"))
     try:
         outlines = reader.outlines(path, skip, functions)
@@ -154,7 +154,7 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
     """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
 
     Args:
-        asked: the exercise was asked for by name, so that anything there is may be meant for it.
+        asked: the exercise was asked for by name, so any file may be meant for it.
     """
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()
@@ -177,7 +177,7 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
 
 
 def described(candidates: Sequence[Candidate]) -> str:
-    """Files and what they define, as part of a sentence."""
+    """Files and their functions, as part of a sentence."""
     told = []
     for one in candidates[:_SHOWN]:
         names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")

@@ -1,11 +1,10 @@
 """The scores of a class that count: the only reader of a gradebook.
 
-A gradebook keeps apart what the graders found, what an instructor decided and what lateness costs.
-``Results`` puts them together, the same way for every export and report: the newest grading of each student
-and exercise; an override in its place if there is one, which is final and not touched by lateness; else less
-the penalty of the late policy. A fault of ours is never a zero: its score is None until it is graded or
-overridden. With a roster, enrolled students who handed in nothing have a result too: ``missing``, without a
-score; an option decides how an export writes it.
+A gradebook keeps the graders' results, the instructor's decisions and the late policy apart. ``Results``
+combines them, in the same way for every export and report. The newest grading of each student and exercise
+counts, less the penalty for lateness; an override replaces it and is final, whatever the lateness. A fault of
+ours is never a zero: its score is None until it is graded or overridden. With a roster, enrolled students who
+handed in nothing have a result too: ``missing``, without a score; an option decides how an export writes it.
 """
 
 from __future__ import annotations
@@ -28,25 +27,25 @@ if TYPE_CHECKING:
 
 __all__ = ["MISSING", "Effective", "Results"]
 
-#: State of what an enrolled student did not hand in.
+#: State of work that an enrolled student did not hand in.
 MISSING = "missing"
 
 
 @dataclass(frozen=True)
 class Effective:
-    """One student and exercise, as it counts.
+    """The effective result of one student and exercise.
 
     Attributes:
-        result: the newest grading; its verdict has what the checks found.
-        score: what counts, in points; None if a fault of ours kept it from being graded, or if it is missing.
+        result: the newest grading, with its verdict.
+        score: in points; None if it is missing, or if a fault of ours kept it from being graded.
         max_score: points of the exercise.
         passed: whether ``score`` reaches the exercise's pass mark.
         penalty: points taken off for lateness; 0 under an override.
         late: seconds after the deadline; None if in time, or if the time is not known.
         submitted_at: seconds since 1970, UTC, by the most trusted witness; None if there is none.
-        witness: whose time that is.
+        witness: the source of that time.
         flagged_late: the download says "late" but not by how much.
-        override: what the instructor decided, if so.
+        override: the instructor's decision, if any.
     """
 
     result: Result
@@ -79,24 +78,24 @@ class Effective:
 
     @property
     def raw_score(self) -> float | None:
-        """What the checks gave, before lateness and overrides."""
+        """The checks' score, before lateness and overrides."""
         return None if self.verdict.state in {"grader_error", MISSING} else self.verdict.score
 
 
 class Results:
-    """What an open gradebook comes to.
+    """The effective results in an open gradebook.
 
     Args:
         book: the gradebook; the caller closes it.
-        roster: a class list; the one the gradebook remembers if None.
+        roster: a class list; None takes the gradebook's own.
 
     Attributes:
-        course: which course.
+        course: its id and version.
         seed: of the run's hidden inputs.
         policy: the late policy in force, if any.
 
     Raises:
-        IntegrityError: something in it is not what was written.
+        IntegrityError: its content was changed or damaged.
     """
 
     def __init__(self, book: Gradebook, roster: Roster | None = None) -> None:
@@ -127,13 +126,13 @@ class Results:
         return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
-        """Know of more times at which things were handed in."""
+        """Add times of submission."""
         for time in times:
             place = self._times.setdefault((time.student, time.exercise), [])
             place.append((time.submission_sha256, time.source, time.at))
 
     def exercises(self) -> tuple[GradedExercise, ...]:
-        """What was graded, in the order of the course."""
+        """The graded exercises, in the order of the course."""
         return tuple(self._exercises.values())
 
     def students(self) -> list[str]:
@@ -161,7 +160,7 @@ class Results:
         return self.roster.find(student, self.downloads.get(student)) if self.roster else None
 
     def all(self, student: str | None = None, exercise: str | None = None) -> Iterator[Effective]:
-        """Every student and exercise, ordered by both; students whom no grading is about come at the end."""
+        """Every student and exercise, ordered by both; students without a grade come at the end."""
         enrolled, asked = self._enrolled, self._asked
         done: set[tuple[str, str]] = set()
         for name, group in itertools.groupby(self.book.results(student, exercise), lambda r: r.key.student):
@@ -186,13 +185,13 @@ class Results:
 
     @cached_property
     def _asked(self) -> frozenset[str]:
-        """What can be missing: an exercise that no student handed in was not set."""
+        """The exercises that can be missing: one that no student handed in was not set."""
         return frozenset(self.book.exercise_ids() if self._enrolled else ())
 
     def _without_grading(
         self, student: str, exercise: str | None, done: set[tuple[str, str]], asked: frozenset[str]
     ) -> Iterator[Effective]:
-        """What a student did not hand in: with a score by hand, or missing if it was asked for."""
+        """The results for work that was not handed in: a score by hand, or missing if it was asked for."""
         for about in self._exercises if exercise is None else [exercise]:
             override = self._overrides.get((student, about))
             by_hand = override is not None and override.score is not None
@@ -201,7 +200,7 @@ class Results:
                 yield self.of(self._nothing(student, about, "ungradable" if by_hand else MISSING))
 
     def of(self, result: Result) -> Effective:
-        """One result as it counts."""
+        """The effective result for a grading."""
         verdict, key = result.verdict, result.key
         noted = self._exercises.get(key.exercise)
         most = verdict.max_score if noted is None or verdict.state == "graded" else noted.max_points
@@ -231,7 +230,7 @@ class Results:
     # -- parts ----------------------------------------------------------------------------------------
 
     def _submitted(self, key: Key) -> tuple[float | None, str]:
-        """When it was handed in, by the most trusted witness who says so."""
+        """The time of submission, by the most trusted witness that has one."""
         known = self._times.get((key.student, key.exercise), ())
         for source in self.policy.trust if self.policy else ("list", "gradescope"):
             times = [
@@ -265,7 +264,7 @@ class Results:
         return noted is not None and score >= noted.pass_share * most - 1e-9
 
     def _nothing(self, student: str, exercise: str, state: str = "ungradable") -> Result:
-        """In place of a grading, where nothing was handed in."""
+        """Stands in for a grading where nothing was handed in."""
         noted = self._exercises.get(exercise)
         told = "" if state == MISSING else "The score was set by the instructor."
         problem = Problem("not_submitted", "Nothing was handed in.", told)

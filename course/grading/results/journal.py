@@ -1,4 +1,4 @@
-"""Whose scores a decision about the class changed, and by how much; stored with the decision."""
+"""The scores that a decision about the class changed, and by how much; stored with the decision."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ class ScoreChange(msgspec.Struct, frozen=True):
 
 @dataclass
 class Recording:
-    """What a decision moved, once it is made."""
+    """The scores that a decision changed, once it is made."""
 
     moved: list[ScoreChange] = field(default_factory=list)
 
 
 def counting(results: Results) -> Scores:
-    """The scores that count, by student and exercise."""
+    """The effective scores, by student and exercise."""
     return {(item.student, item.exercise): item.score for item in results.all()}
 
 
 @contextlib.contextmanager
 def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
-    """Write down what the decision made in this block changed.
+    """Record which scores the decision in this block changed.
 
     Args:
         kind: as in ``Decision``.

@@ -1,4 +1,4 @@
-"""What lateness costs: a policy as data, applied whenever scores are read and never written into them.
+"""The cost of lateness: a policy as data, applied when scores are read and never written into them.
 
     format_version = 1
     grace_minutes = 15               # late by less costs nothing
@@ -17,9 +17,9 @@
     exercise = "*"
     days = 2
 
-Which time counts: a student's machine is never believed, so nothing inside a submission is read for it. A
-list the instructor gives and the download of a learning platform are believed; the time of a file is believed
-only where the policy says so, because copying and unpacking change it.
+Which time counts: a student's clock is never trusted, so no time inside a submission is read. The
+instructor's own list and a learning platform's download are trusted; the time of a file is trusted only where
+the policy says so, because copying and unpacking change it.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ Source = Literal["list", "gradescope", "mtime"]
 
 
 class Deadline(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """When an exercise is due; the time must say its distance from UTC."""
+    """When an exercise is due; the time must have an offset from UTC."""
 
     exercise: str
     due: dt.datetime
@@ -109,7 +109,7 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
 
     def penalty(self, late_s: float | None, score: float, maximum: float) -> Penalty:
-        """What being late by so many seconds costs, in points."""
+        """The penalty for being late by so many seconds, in points."""
         if late_s is None or late_s <= 60.0 * self.grace_minutes:
             return Penalty(0.0, 0)
         days = math.ceil(late_s / _DAY_S)
@@ -136,10 +136,10 @@ def lateness(submitted: float, due: float) -> float | None:
 
 
 def read_policy(path: Path) -> tuple[Policy, str]:
-    """A policy, and its text as it is kept in a gradebook.
+    """A policy, and its text for the gradebook.
 
     Raises:
-        UsageError: the file cannot be read, or says something that is no policy.
+        UsageError: the file cannot be read, or is not a policy.
         MissingCapabilityError: it is in a newer format.
     """
     try:
@@ -154,7 +154,7 @@ def parse_policy(text: str, name: str = "The late policy") -> Policy:
     """A policy from its text.
 
     Raises:
-        UsageError: it says something that is no policy; the message names the place.
+        UsageError: it is not a policy; the message names the place.
         MissingCapabilityError: it is in a newer format.
     """
     try:
@@ -195,7 +195,7 @@ def _wrong(name: str, why: str) -> UsageError:
 
 
 def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set[str]) -> list[str]:
-    """Exercises and students the policy names that were not graded: slips of the pen, most likely."""
+    """Exercises and students in the policy that were not graded: typing errors, most likely."""
     named = {item.exercise for item in policy.deadline} | {item.exercise for item in policy.extension}
     named.discard("*")
     unknown = [f"exercise {name}" for name in sorted(named - exercises.keys())]

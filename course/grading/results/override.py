@@ -1,4 +1,4 @@
-"""A score an instructor sets, with a reason: it counts in place of the graders', whatever is graded later."""
+"""A score set by an instructor, with a reason: it replaces the graders', now and after any regrading."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
-    """Let what the graders found count again; None if they found nothing.
+    """Let the graders' result count again; None if there is none.
 
     Raises:
         NotFoundError: there is no override to lift.
@@ -66,7 +66,7 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
 
 
 def _told(counts: Effective | None) -> str:
-    """What counted, for the journal."""
+    """The score that counted, for the journal."""
     if counts is None or counts.score is None:
         return "no score"
     by = f"by hand: {counts.override.reason}" if counts.override else counts.verdict.state
@@ -78,7 +78,7 @@ def _now_counts(results: Results, student: str, exercise: str) -> Effective:
 
 
 def _maximum(results: Results, student: str, exercise: str) -> float:
-    """Points of the exercise; that student and exercise exist is checked on the way."""
+    """The exercise's maximum; also checks that student and exercise exist."""
     graded = next(iter(results.book.results(student, exercise)), None)
     noted = next((item for item in results.exercises() if item.id == exercise), None)
     if graded is None and noted is None:

@@ -1,6 +1,6 @@
-"""Who is in the class, as the learning platform knows them: the link between folders and its ids.
+"""Who is in the class: a roster links a student's folder to the ids of a learning platform.
 
-A roster is a CSV file with a heading row, one of four kinds, told by its headings:
+A roster is a CSV file with a heading row, of one of four kinds, known by the headings:
 
     our own             student (the name of the folder a student's work is graded from), and as far as they
                         are needed name, email, canvas_id, sis_user_id, section, moodle_key, extension_days
@@ -11,7 +11,7 @@ A roster is a CSV file with a heading row, one of four kinds, told by its headin
     Gradescope's        First Name and Last Name, or Name; SID, Email, and Role if there is one
 
 A student is found by ``student``, or, for a class downloaded from a platform, by that platform's own number.
-A name is used only where no number can be, and only if one student alone has it; who cannot be told apart is
+A name is used only where there is no number, and only if one student alone has it; ambiguous students are
 listed.
 """
 
@@ -104,14 +104,14 @@ class Roster:
         for student, person in found.items():
             claims.setdefault(person.student, []).append(student)
         for claimants in claims.values():
-            if len(claimants) > 1:  # two folders, one row: which of them counts is not ours to guess
+            if len(claimants) > 1:  # two folders, one row: we must not guess which of them counts
                 unmatched += claimants
                 for student in claimants:
                     del found[student]
         return found, sorted(unmatched)
 
     def dump(self) -> str:
-        """The roster as a gradebook keeps it."""
+        """The roster as text for the gradebook."""
         return msgspec.json.encode(self.people).decode()
 
     @classmethod
@@ -133,7 +133,7 @@ def _keys(student: str, download: PlatformIdentity | None) -> list[tuple[str, st
 
 
 def _composed(name: str) -> str:
-    """A student's id in one of the spellings that Unicode has for it: macOS takes names apart."""
+    """A student's id in one Unicode spelling: macOS decomposes names."""
     return unicodedata.normalize("NFC", name)
 
 
@@ -146,7 +146,7 @@ def read_roster(path: Path) -> Roster:
     """Read a roster.
 
     Raises:
-        UsageError: it cannot be read or is no roster; the message names the row.
+        UsageError: it cannot be read or is not a roster; the message names the row.
     """
     text = read_text(path)
     first = text.partition("\n")[0]
@@ -165,10 +165,10 @@ def read_roster(path: Path) -> Roster:
 
 
 def read_text(path: Path) -> str:
-    """The text of such a file.
+    """The text of a CSV file.
 
     Raises:
-        UsageError: it cannot be read, or is too large or no text.
+        UsageError: it cannot be read, is too large, or is not text.
     """
     try:
         raw = path.read_bytes()
@@ -186,7 +186,7 @@ Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
 
 
 def _kind(path: Path, headings: list[str]) -> Kind:
-    """Which kind of roster has these headings."""
+    """The kind of roster that has these headings."""
     found = set(headings)
     if {"Identifier", "Full name"} <= found or {"Identifier", "Grade"} <= found:
         return _from_moodle

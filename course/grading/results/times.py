@@ -1,4 +1,4 @@
-"""When things were handed in, as a list the instructor gives: CSV with student, exercise and submitted_at."""
+"""The instructor's own list of submission times: CSV with student, exercise and submitted_at."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _COLUMNS = {"student", "exercise", "submitted_at"}
 
 
 def read_times(path: Path) -> list[SubmittedAt]:
-    """Read such a list; later rows about the same win.
+    """Read such a list; of several rows for the same work the last one counts.
 
     Raises:
-        UsageError: it cannot be read or is no such list; the message names the line.
+        UsageError: it cannot be read or is not such a list; the message names the line.
     """
     try:
         text = path.read_text("utf-8-sig")

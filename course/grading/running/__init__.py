@@ -1,11 +1,11 @@
-"""A run over a class: submissions to grader processes, verdicts to the gradebook; and grading again.
+"""Grading a class: submissions go to grader processes, verdicts to the gradebook; also regrading.
 
-run        a class graded, from its folder to the gradebook
-folder     the folder of a run: begun, opened, previewed, its files written anew
-summary    what a run came to
-batch      grader processes of this machine, and who gets which submission
+run        a whole run, from the class's folder to the gradebook
+folder     the folder of a run: created, opened, previewed, its files written anew
+summary    a run's numbers
+batch      this machine's grader processes, and which of them gets which submission
 grader     one of them
 snapshot   the graders of a run, frozen
-rerun      what is in a gradebook, graded again
-assign     files that an instructor says are whose
+rerun      a gradebook's submissions, graded again
+assign     files that an instructor assigns to students
 """

@@ -1,7 +1,7 @@
 """Files that an instructor assigns to a student: read in place, graded at once, and recorded.
 
-Nothing is renamed. The graders are those of the run, so that the score is the one the student would have got
-under the right name; ``course grade run --resume`` leaves what was assigned as it is.
+No file is renamed. The graders are those of the run, so the score is the one that the right name would have
+given; ``course grade run --resume`` leaves assigned files alone.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _MAX_REASON = 2000
 
 @dataclass(frozen=True)
 class Unsettled:
-    """A submission that was not found by its name, and the files there are for it."""
+    """A submission that was not found by its name, and the candidate files."""
 
     student: str
     exercise: str
@@ -51,7 +51,7 @@ class Assignment:
     """A file to be assigned to a student.
 
     Attributes:
-        name: what to call it, as it was handed in.
+        name: of the file as it was handed in.
         member: in the archive at ``path``; empty for the file itself.
     """
 
@@ -65,7 +65,7 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Assigned:
-    """An assignment, and what counted before and counts now."""
+    """An assignment, with the scores before and after."""
 
     assignment: Assignment
     before: Effective | None
@@ -73,7 +73,7 @@ class Assigned:
 
 
 def unsettled(results: Results) -> list[Unsettled]:
-    """What there is to settle, ordered by student and exercise; what has a score by hand is settled."""
+    """The unsettled cases, ordered by student and exercise; a score by hand settles one."""
     open_still = []
     for (student, exercise), listed in results.book.found().items():
         counts = next(results.all(student, exercise), None)
@@ -83,7 +83,7 @@ def unsettled(results: Results) -> list[Unsettled]:
 
 
 def proposals(results: Results) -> list[Assignment]:
-    """The matches that are proposed, one for each that has one."""
+    """The proposed matches, at most one for each case."""
     return [
         Assignment(
             item.student, item.exercise, one.name, Path(os.fsdecode(one.path)), one.member, item.found.times
@@ -98,12 +98,12 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
     """The assignment that an instructor means.
 
     Args:
-        file: a name in the list of what is unsettled, or a path; into an archive it goes on with a slash.
-        exercise: None where it follows from what is unsettled, or from there being one exercise.
+        file: a name in the list of unsettled cases, or a path; a slash leads into an archive.
+        exercise: None where the unsettled case has one, or the course has only one.
 
     Raises:
         NotFoundError: no such student, exercise or file.
-        UsageError: the exercise does not follow.
+        UsageError: the exercise is not clear.
     """
     if student not in results.students():
         raise NotFoundError(
@@ -169,11 +169,11 @@ def assign(
     level: str | None = None,
     at_least: str = "L2",
 ) -> list[Assigned]:
-    """Take files as submissions and grade them, with the graders of the run.
+    """Accept files as submissions, and grade them with the graders of the run.
 
     Args:
         results: over a gradebook opened for writing.
-        reason: why these files are theirs.
+        reason: why these files are the students'.
         level, at_least: as in ``Terms``.
 
     Raises:
@@ -215,7 +215,7 @@ def _entry(one: Assignment, graders: Unpacked) -> Entry:
 
 
 def _recorded(results: Results, one: Assignment, graded: Graded, version: str, reason: str) -> Assigned:
-    """Keep the verdict on a file that was assigned, its times, and the decision."""
+    """Store the verdict on an assigned file, its times, and the decision."""
     book, entry = results.book, graded.entry
     assert entry.submission is not None
     before = next(results.all(one.student, one.exercise), None)

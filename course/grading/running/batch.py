@@ -47,7 +47,8 @@ __all__ = [
     "without_grading",
 ]
 
-#: Deaths of graders after which a submission is our fault and no longer tried, or no grader can start at all.
+#: After so many deaths of graders a submission is not tried again and counts as our fault; or no grader
+#: starts.
 MAX_TRIES = 3
 _TICK_S = 0.5
 
@@ -57,7 +58,7 @@ class Graded:
     """One entry and the verdict on it.
 
     Attributes:
-        version: of the graders that judged it, as they said; empty where none did.
+        version: of the graders that judged it, by their own account; empty where none did.
     """
 
     entry: Entry
@@ -84,7 +85,7 @@ class _Grader:
 
 
 def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> Iterator[Graded]:
-    """Verdicts on all entries that have a submission or a problem, in the order they are reached.
+    """Verdicts on all entries that have a submission or a problem, in the order of arrival.
 
     Args:
         graders: processes.
@@ -101,11 +102,11 @@ def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> It
 
 def start_grader(config: Config) -> subprocess.Popen[bytes]:
     """A grader process, told how to grade. Its first answer says that it has started."""
-    keep_private()  # what graders say, and what they are given, passes through here
+    keep_private()  # all messages to and from graders pass through here
     # -P: the folder the command is run in, which may be a student's, never becomes importable.
     command = [sys.executable, "-P", "-m", "course.grading.running.grader"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    # The graders run the course that this process runs, however it came to be importable here, or a snapshot.
+    # The graders run the same course as this process, wherever it was imported from, or a snapshot.
     package = str(Path(__file__).resolve().parents[3])
     if config.terms.graders:
         graders = in_use(config.terms.graders)
@@ -175,7 +176,7 @@ class _Coordinator:
     # -- work -----------------------------------------------------------------------------------------
 
     def _next(self) -> _Work | None:
-        """The next submission; entries that need no grader are done on the way."""
+        """The next submission; entries that need no grader are finished on the way."""
         if self._again:
             return self._again.popleft()
         for entry in self._entries:
@@ -297,14 +298,14 @@ def answer_to(job: Job, frame: bytes | None) -> Answer | None:
 
 
 def as_error(problem: Problem, exit_code: int) -> CourseError:
-    """A grader's complaint, as the error it was over there."""
+    """A grader's error, raised again here."""
     error = CourseError(problem.message, help=problem.help, code=problem.code)
     error.exit_code = exit_code
     return error
 
 
 def killed_its_grader() -> Problem:
-    """What is said of a submission that no grader survived."""
+    """The verdict on a submission that no grader survived."""
     return Problem(
         "grader_died",
         f"The grader died {MAX_TRIES} times on this submission.",
@@ -313,7 +314,7 @@ def killed_its_grader() -> Problem:
 
 
 def without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:
-    """The verdict on what no grader had a say in."""
+    """The verdict on an entry that no grader has to judge."""
     return Verdict(
         exercise=entry.exercise.id,
         scope="full",

@@ -1,4 +1,4 @@
-"""The folder of a run: taken for a new one, opened for what comes later, and what lies in it written anew."""
+"""The folder of a run: created, opened for later commands, and its files written anew."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
 
 __all__ = ["BOOK", "begin", "export_all", "open_results", "previewed", "remember", "taken_back"]
 
-#: What the gradebook of a run is called in its folder.
+#: The gradebook's name in a run's folder.
 BOOK = "gradebook.sqlite"
 
 
 @dataclass
 class ClaimedName:
-    """A name for the results that is taken. ``graded``: whether any grader could work."""
+    """A run's reserved folder. ``graded``: whether any grader could work."""
 
     graded: bool = False
 
 
 @contextlib.contextmanager
 def taken_back(out: Path) -> Iterator[ClaimedName]:
-    """Give the name of a new folder back if the run is refused before anything was graded in it.
+    """Remove a new folder again if the run is refused before anything was graded.
 
-    The next command is the same one, corrected, and must not find its own folder in the way.
+    The user will correct the command and repeat it, and its folder must not be in the way.
     """
     new, taken = not out.exists(), ClaimedName()
     try:
@@ -53,7 +53,7 @@ def taken_back(out: Path) -> Iterator[ClaimedName]:
 
 
 def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
-    """The gradebook of a run that begins or, with ``resume``, goes on, opened for writing.
+    """The gradebook of a new run or, with ``resume``, of an earlier one, opened for writing.
 
     Raises:
         UsageError: ``out`` exists, is in use, or lies among the submissions.
@@ -71,7 +71,7 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
     try:
         out.mkdir(parents=True)
     except FileExistsError:
-        # Killed before its gradebook was made, a run leaves the folder and perhaps the draft.
+        # A run that was killed before it made its gradebook leaves the folder and perhaps the draft.
         begun = (
             resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
         )
@@ -116,7 +116,7 @@ def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
     """The results in the folder of a grading run.
 
     Args:
-        writing: hold the gradebook; at the end write what lies beside it anew, and a backup.
+        writing: lock the gradebook; at the end write the files beside it anew, and a backup.
     """
     with Gradebook(out / BOOK, writing=writing) as book:
         yield Results(book)
@@ -128,9 +128,9 @@ def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
 
 @contextlib.contextmanager
 def previewed(out: Path) -> Iterator[Results]:
-    """The results of a run to try a change on: a copy of the gradebook, which is thrown away.
+    """A run's results, on which to try a change: a copy of the gradebook, which is thrown away.
 
-    What a change would do is found by doing it, so a preview cannot differ from it.
+    The preview makes the change on the copy, so it cannot differ from the real one.
     """
     path = out / BOOK
     Gradebook(path).close()  # it is complete, no process is writing it, and it is one file now

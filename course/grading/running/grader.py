@@ -27,7 +27,7 @@ __all__ = ["Answer", "Config", "Job", "main"]
 
 
 class Config(msgspec.Struct, frozen=True):
-    """What a grader is started with.
+    """A grader's settings.
 
     Attributes:
         processor: number that picks the processor to stay on.
@@ -41,8 +41,8 @@ class Job(msgspec.Struct, frozen=True):
     """One submission to grade.
 
     Attributes:
-        version: the ``grader_version`` it must be graded by; empty takes whatever is here.
-        only: checks to run, with what they require; empty runs all.
+        version: the ``grader_version`` that must grade it; empty takes the one here.
+        only: checks to run, with those they require; empty runs all.
         number: drawn at random for each job, so that only the grader knows it.
     """
 
@@ -54,12 +54,12 @@ class Job(msgspec.Struct, frozen=True):
 
 
 class Answer(msgspec.Struct, frozen=True):
-    """The verdict on a job, or why this grader can give none at all.
+    """The verdict on a job, or why this grader can give none.
 
     Attributes:
         number: of the job it answers.
-        sha256: digest of what was graded, as the grader itself found it.
-        version: of the graders that judged, as the grader computed it of itself.
+        sha256: digest of the graded content, computed by the grader itself.
+        version: of the graders that judged, computed by the grader itself.
     """
 
     verdict: Verdict | None = None
@@ -70,7 +70,7 @@ class Answer(msgspec.Struct, frozen=True):
     version: str = ""
 
     def is_about(self, job: Job) -> bool:
-        """Whether it is the answer to this job and to no other, by the graders it was meant for."""
+        """Whether it answers this job and no other, and comes from the right graders."""
         same = self.number == job.number and self.sha256 == Submission(job.files).sha256
         return same and (self.verdict is None or job.version in {"", self.version})
 
@@ -80,7 +80,7 @@ def main() -> None:
     keep_private()
     source = os.fdopen(os.dup(0), "rb")
     sink = os.fdopen(os.dup(1), "wb")
-    # Whatever prints in this process must not end up between two frames.
+    # Printed output of this process must not end up between two frames.
     os.dup2(2, 1)
     null = os.open(os.devnull, os.O_RDONLY)
     os.dup2(null, 0)
@@ -91,7 +91,7 @@ def main() -> None:
         while (frame := read_frame(source)) is not None:
             write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))
     except (KeyboardInterrupt, BrokenPipeError):
-        pass  # the coordinator says what was interrupted
+        pass  # the coordinator reports the interruption
     finally:
         grader.close()
 
@@ -121,10 +121,10 @@ class _Grader:
             return Answer(error=problem, exit_code=error.exit_code, **about)
 
     def _checked_version(self, job: Job) -> str:
-        """The version of the graders here, which must be the one that is asked for.
+        """The version of the graders here, which must be the required one.
 
         Raises:
-            MissingCapabilityError: they are others, and scores would not be comparable.
+            MissingCapabilityError: it is not, and scores would not be comparable.
         """
         from course.scoring.version import grader_version
 

@@ -1,8 +1,8 @@
-"""Grading again what a gradebook holds, with the graders as they are now, or as they were for an earlier run.
+"""Regrading the submissions in a gradebook, with the present graders or those of an earlier run.
 
-The submissions come out of the gradebook, so nothing else is needed, and hidden inputs are drawn with the
-same seed. Regraded is what another version of the graders scored, and what a fault of ours left unscored. Old
-results are kept beside the new ones; an override still replaces both.
+The submissions come from the gradebook, so nothing else is needed, and hidden inputs are drawn with the same
+seed. Submissions are regraded if another version of the graders scored them, or if a fault of ours left them
+unscored. Old results are kept beside the new ones; an override still replaces both.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Change", "CheckChange", "Regraded", "RerunOptions", "rerun"]
 
-#: Of a snapshot's digest, to name it by.
+#: Characters of a snapshot's digest that name it.
 _LEAST_DIGITS = 6
 
 
@@ -46,7 +46,7 @@ class RerunOptions:
 
     Attributes:
         dry_run: change nothing, only say what would change.
-        everything: regrade also what these very graders scored.
+        everything: also regrade submissions that these graders have scored already.
         level, at_least: as in ``Terms``; the seed is the first run's.
         timeout: seconds of CPU time per check; None takes the first run's.
         against: the graders to use, as the number of a run or the beginning of a snapshot's digest; empty
@@ -64,7 +64,7 @@ class RerunOptions:
 
 
 class CheckChange(msgspec.Struct, frozen=True):
-    """A check that ended otherwise than before; None where there was or is no such check."""
+    """A check with another outcome than before; None where there was or is no such check."""
 
     id: str
     before: str | None
@@ -74,7 +74,7 @@ class CheckChange(msgspec.Struct, frozen=True):
 
 
 class Change(msgspec.Struct, frozen=True):
-    """A student whose result is another one now. Scores are those that count."""
+    """A student whose result has changed. Scores are the effective ones."""
 
     student: str
     exercise: str
@@ -89,12 +89,12 @@ class Change(msgspec.Struct, frozen=True):
 
 
 class Regraded(msgspec.Struct, frozen=True):
-    """What a regrading came to.
+    """The outcome of a regrading.
 
     Attributes:
-        up_to_date: results these very graders gave, which were left alone.
+        up_to_date: results from these same graders, which were left alone.
         kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused).
-        faults: submissions a fault of ours kept from being graded.
+        faults: submissions that a fault of ours kept from being graded.
         graders: digest of the snapshot that judged.
     """
 
@@ -122,12 +122,12 @@ def rerun(
     *,
     grade: GradeAll = grade_all,
 ) -> Regraded:
-    """Regrade what is in a gradebook.
+    """Regrade the submissions in a gradebook.
 
     Args:
         results: over a gradebook opened for writing, unless it is a dry run.
         report: called with the number of submissions regraded so far.
-        grade: what turns entries into verdicts.
+        grade: turns entries into verdicts.
 
     Raises:
         MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
@@ -152,7 +152,7 @@ def rerun(
 
 
 def _graders(results: Results, catalog: Catalog, against: str) -> tuple[Snapshot, dict[str, Any]]:
-    """Who is to judge, and the options of the run they judged before."""
+    """The graders to use, and the options of the run they judged before."""
     book = results.book
     if not against:
         catalog.content.instructors()
@@ -188,7 +188,7 @@ class _Rerun:
         self.counts = _Counts()
 
     def pairs(self, grade: GradeAll) -> Iterator[tuple[Effective, Effective]]:
-        """What counted and what counts now, for each regraded submission."""
+        """The scores before and after, for each regraded submission."""
         options, results = self._options, self._results
         timeout = options.timeout or float(self._recorded.get("timeout", 10.0))
         graders = self._graders.snapshot.sha256
@@ -270,7 +270,7 @@ class _Rerun:
 
 
 def _change(before: Effective, after: Effective) -> Change | None:
-    """What changed; None if nothing visible did."""
+    """The change; None if nothing visible changed."""
     old = {check.id: check for check in before.verdict.checks}
     new = {check.id: check for check in after.verdict.checks}
     checks = []

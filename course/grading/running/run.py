@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from course.grading.running.batch import Graded
     from course.grading.running.snapshot import Unpacked
 
-    #: What turns entries into verdicts: processes on this machine, or anything else that does the same.
+    #: Turns entries into verdicts: processes on this machine, or anything else that does the same.
     GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
 __all__ = [
@@ -53,7 +53,7 @@ __all__ = [
     "graded_exercises",
 ]
 
-#: What a quiz record is called among the submissions in a gradebook.
+#: The name of a quiz record among the submissions in a gradebook.
 QUIZ_RECORD = "quiz.json"
 _TIMES_AT_ONCE = 256
 
@@ -63,13 +63,13 @@ class RunOptions:
     """How a class is graded.
 
     Attributes:
-        exercises: ids asked for by name, "quiz" among them; empty takes all, and then an exercise nobody
-            handed in is no fault.
+        exercises: ids asked for by name, "quiz" among them; empty takes all, and then an exercise that no
+            student handed in is no fault.
         only: students to grade; empty takes all.
-        terms: protection, deadline; their seed is not asked for.
+        terms: protection and deadline; their seed is ignored.
         seed: of the run; None draws one, and a resumed run keeps its own.
         layout: what kind of folder it is; "auto" finds out.
-        roster: who is enrolled; None leaves what the gradebook remembers.
+        roster: who is enrolled; None keeps the gradebook's own.
     """
 
     exercises: tuple[str, ...] = ()
@@ -94,8 +94,8 @@ def grade_class(
 
     Args:
         report: called with each new result, how many students are done, and how many there are.
-        grade: what turns entries into verdicts; it is handed only what is left to do, and this process
-            remains the only one that writes.
+        grade: turns entries into verdicts; it gets only the work that is left, and this process remains the
+            only one that writes.
 
     Raises:
         MissingCapabilityError: there are no hidden graders here, no sufficient protection, or no room.
@@ -138,12 +138,12 @@ def grade_class(
 
 
 def _begun_with(book: Gradebook, options: RunOptions) -> Snapshot | None:
-    """The graders of the run that is to be resumed; None for a new one, and for one of an older format."""
+    """The graders of a resumed run; None for a new run, or one of an older format."""
     return kept(book, book.run_options().get("snapshot")) if options.resume else None
 
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
-    """Exercises of which some results were scored by other graders than the course has now."""
+    """Exercises with results that were scored by other graders than the present ones."""
     now = {exercise.id: grader_version(exercise, catalog) for exercise in catalog.exercises()}
     found = {
         item.exercise: None
@@ -203,7 +203,7 @@ class _Run:
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
-        """What is left to be graded, graded; with what was handed in."""
+        """Grade the work that is left; each verdict comes with its submission."""
         terms = msgspec.structs.replace(
             self._options.terms, seed=self.summary.seed, graders=self.summary.graders
         )
@@ -258,7 +258,7 @@ class _Run:
             self._book.set_found(*about, None)
 
     def _one_less(self, student: str) -> None:
-        """A student is done when all they handed in was read and everything read is graded."""
+        """A student is done when all of their files are read and all that was read is graded."""
         self._open[student] -= 1
         if not self._open[student]:
             del self._open[student]
@@ -291,7 +291,7 @@ class _Run:
             self.note_times()
 
     def note_times(self) -> None:
-        """Put what is known about when things were handed in into the gradebook."""
+        """Put all known times of submission into the gradebook."""
         if self._times:
             self._book.add_times(self._times)
         self._times.clear()
@@ -301,7 +301,7 @@ def _bank(catalog: Catalog) -> Bank:
     """The questions of the quiz.
 
     Raises:
-        UsageError: one of them is unfinished or wrong; nothing was graded, and no submission is at fault.
+        UsageError: one of them is unfinished or wrong, which is no student's fault; nothing was graded.
     """
     try:
         return Bank(read_questions(catalog.content.quiz))
@@ -321,7 +321,7 @@ def _as_json(record: object) -> bytes:
 
 
 def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[GradedExercise]:
-    """What a gradebook notes about exercises, and about the quiz if there is one."""
+    """A gradebook's notes on the exercises, and on the quiz if there is one."""
     noted = [
         GradedExercise(item.id, item.title, item.max_points, item.pass_mark, item.order) for item in exercises
     ]

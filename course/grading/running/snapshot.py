@@ -1,12 +1,12 @@
-"""The graders of a run, frozen: what judges is a copy made when the run began, whatever is edited meanwhile.
+"""The graders of a run, frozen: a copy made when the run began does the judging, whatever is edited since.
 
 A snapshot holds everything that a grader process reads and imports: the exercises with their checks, hidden
 checks and solutions, the quiz, and the part of this package that grades. It is one zip, known by a digest of
-its names and contents, and is kept in the gradebook, so that any result can be made again later.
+its names and contents, and is kept in the gradebook, so that any result can be reproduced later.
 
-A grader process is started with the unpacked snapshot first on its path, so it runs the frozen code, its
-successors after a death included; it tells the version it computes of itself with every verdict. Because an
-old snapshot is run by a newer coordinator, what the two say to each other (``grader``) only ever grows.
+A grader process starts with the unpacked snapshot first on its path, so it and its successors run the frozen
+code; with every verdict it sends the version that it computes of itself. A newer coordinator may run an old
+snapshot, so the messages between the two (``grader``) may gain fields but never lose any.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Snapshot", "Unpacked", "among_graders", "frozen", "in_use", "kept"]
 
 _PACKAGE = Path(__file__).resolve().parents[2]
-#: Of this package, what a grader process imports, and what checks may.
+#: The parts of this package that a grader process imports, and those that checks may import.
 _CODE = (
     "catalog", "engines", "figures", "handed_in", "isolation", "physics", "progress", "scoring",
     "simulations",
@@ -44,22 +44,22 @@ _FILES = (
     "grading/__init__.py", "grading/kit.py", "grading/pipes.py",
     "grading/running/__init__.py", "grading/running/grader.py",
 )  # fmt: skip
-#: Wrong and unusual solutions take no part in grading; neither does what only people read.
+#: Wrong and unusual solutions take no part in grading, nor do files that only people read.
 _LEFT_OUT = {"__pycache__", "accepted", "mutants"}
 _PROSE = {".md", ".pyc"}
 _MAX_UNPACKED = 200 << 20
-#: Seconds that a compiled file must be younger than its source to be taken as its: one that was compiled in
-#: the second of an edit may be of the text before.
+#: A compiled file is used only if it is so many seconds younger than its source: one that was compiled in the
+#: second of an edit may be of the text before.
 _SETTLED_S = 2.0
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Graders as they were at one moment.
+    """Graders, frozen at one moment.
 
     Attributes:
         sha256: digest of the names and contents in it.
-        packed: all of it, as a zip.
+        packed: its content, as a zip.
     """
 
     sha256: str
@@ -78,10 +78,10 @@ class Snapshot:
 
     @classmethod
     def of(cls, packed: bytes, sha256: str) -> Snapshot:
-        """A snapshot as it was kept.
+        """A stored snapshot, opened.
 
         Raises:
-            IntegrityError: it is not what was kept.
+            IntegrityError: it has changed since.
         """
         digest = hashlib.sha256()
         for name, body in _members(packed):
@@ -102,19 +102,19 @@ def kept(book: Gradebook, sha256: str | None) -> Snapshot | None:
 
 
 def among_graders(folder: Path, content: Content) -> bool:
-    """Whether a folder is one of those that a snapshot is taken of, or lies in one."""
+    """Whether a folder goes into snapshots, or lies in one that does."""
     return any(folder.resolve().is_relative_to(one.resolve()) for one in _folders(content).values())
 
 
 def _folders(content: Content) -> dict[str, Path]:
-    """Those of the content, by their names in a snapshot."""
+    """The content's folders, by their names in a snapshot."""
     found = {"exercises": content.exercises, "quiz": content.quiz}
     found |= {"solutions": content.solutions} if content.solutions is not None else {}
     return found | ({"graders": content.graders} if content.graders is not None else {})
 
 
 def _files(content: Content) -> Iterator[tuple[str, Path]]:
-    """What belongs into a snapshot: its name there, and where it is."""
+    """The files of a snapshot: each name there, and the path."""
     folders = {f"course/{name}": _PACKAGE / name for name in _CODE}
     folders |= {f"content/{name}": folder for name, folder in _folders(content).items()}
     for name, folder in folders.items():
@@ -217,7 +217,7 @@ def _unpack(packed: bytes, folder: Path) -> None:
 
 
 def _take_compiled(original: Path, copy: Path, body: bytes) -> None:
-    """Save graders compiling a file anew, where the package has it compiled and it is the same file."""
+    """Copy the package's compiled file if it belongs to this source, so that graders need not compile."""
     with contextlib.suppress(OSError, NotImplementedError):
         status, compiled = original.stat(), Path(cache_from_source(str(original)))
         if compiled.stat().st_mtime < status.st_mtime + _SETTLED_S or original.read_bytes() != body:
@@ -225,5 +225,5 @@ def _take_compiled(original: Path, copy: Path, body: bytes) -> None:
         target = Path(cache_from_source(str(copy)))
         target.parent.mkdir(exist_ok=True)
         target.write_bytes(compiled.read_bytes())
-        # A compiled file is for the source of the size and time that stand in it.
+        # A compiled file names the size and time of its source.
         os.utime(copy, ns=(status.st_mtime_ns, status.st_mtime_ns))

@@ -1,4 +1,4 @@
-"""What a grading run came to, in numbers."""
+"""A grading run in numbers."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ class Ungraded(msgspec.Struct, frozen=True):
 
 @dataclass
 class Summary:
-    """What a run came to.
+    """The numbers of a run.
 
     Attributes:
         states: number of results by state.
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
-        already: results that an earlier run had.
-        missing: who is enrolled and handed in nothing at all; empty without a roster.
-        strangers: who handed in something and has no row of their own in the roster.
+        already: results of an earlier run.
+        missing: enrolled students who handed in nothing at all; empty without a roster.
+        strangers: students who handed in something and have no row in the roster.
         unrecognised: files in the class folder with an unknown owner, one sentence each.
-        unjudged: how often a check broke on what a submission returned: (exercise, check, where).
+        unjudged: how often a check broke on a submission's result: (exercise, check, where).
         graders: digest of the snapshot that judged.
-        unsettled: how many have files that may be meant for what could not be graded.
-        edited: what was scored by other graders than there are now: a run that is resumed keeps its own.
+        unsettled: ungraded entries with files that may be meant for them.
+        edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
         elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
     """
@@ -71,14 +71,14 @@ class Summary:
         return 6 if self.states["ungradable"] or self.unrecognised else 0
 
     def count(self, results: Results) -> None:
-        """Take in everything a gradebook has."""
+        """Count everything in a gradebook."""
         self.missing = results.absent()
         self.strangers = results.unmatched(results.students())
         for effective in results.all():
             verdict = effective.verdict
             if effective.missing:
                 continue
-            settled = effective.override is not None  # by hand, whatever the graders could make of it
+            settled = effective.override is not None  # a score by hand counts, even without a grading
             self.states["graded" if settled else verdict.state] += 1
             self.passed += effective.passed
             if verdict.isolation:

@@ -1,9 +1,9 @@
-"""Which submissions are alike: compared on this machine, and with the course's own code.
+"""Which submissions are alike, compared on this machine with each other and with the course's own code.
 
-Each fingerprint weighs the more, the fewer submissions have it; those of the stub weigh nothing. How much of
-the smaller of two submissions is in the other is their share. So code that all students write hardly counts,
-and a copy with changed names counts in full. Likeness is a reason to talk, not a finding: short exercises
-have few ways to be right.
+The fewer submissions have a fingerprint, the more it weighs; those of the stub weigh nothing. A pair's share
+is how much of the smaller submission is also in the other. So code that all students write hardly counts, and
+a copy with changed names counts in full. Similarity is a reason to talk, not a finding: a short exercise has
+few right solutions.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ __all__ = ["Document", "Pair", "Similar", "compare"]
 
 #: A fingerprint in more submissions than this proposes no pairs; it counts in those that others propose.
 _COMMON = 40
-#: Pairs that share less than this many fingerprints are chance.
+#: Pairs that share fewer fingerprints than this are alike by chance.
 _FEWEST = 3
 MAX_PAIRS = 200
 
@@ -39,8 +39,8 @@ class Document:
     """One source that is compared.
 
     Attributes:
-        label: the student, or what of the course's own it is.
-        own: the course's own code: compared with, never accused.
+        label: the student, or the name of the course's own file.
+        own: the course's own code: compared with, but never reported as a copy.
     """
 
     label: str
@@ -54,9 +54,9 @@ class Pair:
     """Two documents of one exercise.
 
     Attributes:
-        share: of the smaller one, by weight, that the other has too; 1 for all of it.
+        share: how much of the smaller one, by weight, the other has too; 1 for all of it.
         passages: lines of the first and of the second that correspond, as (first, last).
-        lines: of the first, that are in such passages.
+        lines: of the first one in such passages.
     """
 
     exercise: str
@@ -69,12 +69,12 @@ class Pair:
 
 @dataclass
 class Similar:
-    """What a comparison found.
+    """The result of a comparison.
 
     Attributes:
         pairs: the most alike first, at most ``MAX_PAIRS``.
         compared: number of submissions.
-        unreadable: "student exercise" of what is no Python, or too long to compare.
+        unreadable: "student exercise" of each file that is not Python, or is too long to compare.
         left_out: pairs beyond ``MAX_PAIRS``.
     """
 
@@ -92,7 +92,7 @@ def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, a
         at_least: the smallest share to report.
 
     Raises:
-        NotFoundError: nothing was graded for such an exercise.
+        NotFoundError: no submission of such an exercise was graded.
     """
     found = Similar()
     graded = [
@@ -139,7 +139,7 @@ def _submissions(results: Results, exercise: Exercise, parse: Parser, found: Sim
 def _own(
     catalog: Catalog, exercise: Exercise, shipped: dict[Path, Document], parse: Parser
 ) -> Iterator[Document]:
-    """The model solution, and what every student has: all modules of the course but the stub."""
+    """The model solution, and the modules every student has: all of the course's but the stub."""
     solutions = catalog.content.solutions
     if solutions is not None:
         yield from _read(solutions / exercise.id / exercise.module, "the model solution", parse)
@@ -189,7 +189,7 @@ def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least
         if first.own and second.own:
             continue
         shared = [mark for mark in first.prints.marks if mark in second.prints.marks and mark in weights]
-        # A textbook chapter is large: what counts is how much of the student's is in it.
+        # A textbook chapter is large: the share that counts is that of the student's code.
         smaller = size[one] if second.own else size[other] if first.own else min(size[one], size[other])
         share = sum(weights[mark] for mark in shared) / smaller if smaller else 0.0
         copy = first.prints.whole == second.prints.whole
@@ -200,8 +200,8 @@ def _pairs(exercise: str, documents: list[Document], ignored: set[int], at_least
 def _candidates(documents: list[Document], having: dict[int, list[int]]) -> set[tuple[int, int]]:
     """Pairs worth comparing: those with enough rare fingerprints in common, and copies of one another.
 
-    Of many copies each is paired with the first only, the course's own if there is one, and the first alone
-    with everything else: all pairs would be half a million for a thousand, and keep others off the list.
+    Of many copies each is paired only with the first, or with the course's own if there is one, and only the
+    first with everything else: a thousand copies would make half a million pairs, and crowd out all others.
     """
     firsts: dict[str, int] = {}
     for number, document in sorted(enumerate(documents), key=lambda item: not item[1].own):

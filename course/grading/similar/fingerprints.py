@@ -1,9 +1,9 @@
-"""What is characteristic of a piece of Python, whatever its names, comments and layout.
+"""Fingerprints of Python code that do not depend on names, comments or layout.
 
-The syntax tree is walked in order into a sequence of kinds of nodes; every run of a few of them is hashed,
-and of the hashes in each window the smallest is kept (winnowing: Schleimer, Wilkerson, Aiken, "Winnowing:
-local algorithms for document fingerprinting", SIGMOD 2003, section 3). Any passage of at least
-``RUN + WINDOW - 1`` nodes that two sources share leaves a fingerprint that they share.
+The syntax tree is flattened, in order, into a sequence of kinds of nodes; every run of a few of them is
+hashed, and in each window the smallest hash is kept (winnowing: Schleimer, Wilkerson, Aiken, "Winnowing:
+local algorithms for document fingerprinting", SIGMOD 2003, section 3). Any passage of at least ``RUN + WINDOW
+- 1`` nodes that two sources share leaves a fingerprint that they share.
 
 Parsing a stranger's source can exhaust the parser, so this module runs as a process of its own:
 ``python -m course.grading.similar.fingerprints`` reads sources as frames and answers with fingerprints. It
@@ -46,7 +46,7 @@ _CPU_S, _WALL_S = 10, 60.0
 LONGEST = 200_000
 _MEMORY = 1 << 30
 
-#: Whether a name is read or written, and what an import is called, does not make it another program.
+#: Reading or writing a name, or the name of an import, does not make another program.
 _SKIPPED = (ast.expr_context, ast.alias)
 
 
@@ -65,7 +65,7 @@ class Prints(msgspec.Struct, frozen=True):
 
 
 def fingerprints(source: bytes) -> Prints | None:
-    """The fingerprints of a source; None if it is no Python."""
+    """The fingerprints of a source; None if it is not Python."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -91,7 +91,7 @@ def fingerprints(source: bytes) -> Prints | None:
 
 
 def _parts(tree: ast.Module) -> Iterator[ast.AST]:
-    """Functions and classes of a module, each by itself: their order says nothing. The rest comes last."""
+    """Functions and classes of a module, each by itself: their order means nothing. The rest comes last."""
     definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     rest = ast.Module([], [])
     for statement in tree.body:
@@ -103,7 +103,7 @@ def _parts(tree: ast.Module) -> Iterator[ast.AST]:
 
 
 def _walk(tree: ast.AST) -> Iterator[tuple[str, int]]:
-    """Kinds of nodes in the order of the source, with their lines; without recursion, however deep."""
+    """Kinds of nodes in the order of the source, with their lines; no recursion, as trees may be deep."""
     waiting: deque[tuple[ast.AST, int]] = deque([(tree, 1)])
     while waiting:
         node, line = waiting.pop()
@@ -119,11 +119,11 @@ def _walk(tree: ast.AST) -> Iterator[tuple[str, int]]:
 
 
 def _kind(node: ast.AST) -> str:
-    """What a node is, without names and values: those are the first things to be changed."""
+    """A node's kind, without names and values: a copier changes these first."""
     if isinstance(node, ast.Constant):
         return f"Constant {type(node.value).__name__}"
     if isinstance(node, ast.Attribute):
-        return f"Attribute {node.attr}"  # a library's name, mostly: it says what is done
+        return f"Attribute {node.attr}"  # mostly a library's name, which says what is done
     return type(node).__name__
 
 
@@ -149,7 +149,7 @@ def _hash(kinds: list[str]) -> int:
 
 
 def _winnowed(hashes: list[int]) -> Iterator[tuple[int, int]]:
-    """Of every window the smallest hash, the rightmost of equals; each once."""
+    """The smallest hash of every window, of equal ones the rightmost; each once."""
     last = -1
     for start in range(max(1, len(hashes) - WINDOW + 1) if hashes else 0):
         window = hashes[start : start + WINDOW]
@@ -165,7 +165,7 @@ class _Reply(msgspec.Struct, frozen=True):
 
 
 class Parser:
-    """A process that fingerprints sources; started again if one of them ends it."""
+    """A process that fingerprints sources; started again if one of them kills it."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
@@ -177,7 +177,7 @@ class Parser:
         self._end()
 
     def __call__(self, source: bytes) -> Prints | None:
-        """The fingerprints of a source; None if it is no Python, takes too long or is too long."""
+        """The fingerprints of a source; None if it is not Python, takes too long or is too long."""
         if len(source) > LONGEST:
             return None
         process = self._process = self._process or _start()
@@ -214,7 +214,7 @@ def _start() -> subprocess.Popen[bytes]:
     environment = {**os.environ}
     environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
     command = [sys.executable, "-P", "-m", "course.grading.similar.fingerprints"]
-    # Nothing it says is of use: a source that cannot be parsed is reported by name.
+    # Its output is of no use: a source that cannot be parsed is reported by name.
     return subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
     )

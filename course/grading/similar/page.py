@@ -28,7 +28,7 @@ def page(found: Similar) -> str:
 
 
 def _sides(pair: Pair) -> Iterator[tuple[Document, list[tuple[int, str, bool, list[int]]]]]:
-    """Both sources line by line: number, text, whether the other has it too, passages that begin there."""
+    """Both sources by line: number, text, whether the other has it too, the passages that begin there."""
     blocks = _blocks(pair.passages)
     for side, document in enumerate((pair.first, pair.second)):
         marked = {line for passage in pair.passages for line in _lines(passage[side])}
@@ -49,7 +49,7 @@ def _lines(passage: Passage) -> range:
 
 
 def _blocks(passages: Iterable[tuple[Passage, Passage]]) -> list[tuple[Passage, Passage]]:
-    """Passages that follow each other on both sides, as one: what a reader takes for one."""
+    """Passages that follow each other on both sides, joined into one, as a reader sees them."""
     found: list[tuple[Passage, Passage]] = []
     near: list[int] = []  # of ``found``, those that a passage further down can continue
     for first, second in sorted(passages):

@@ -291,7 +291,7 @@ _CALLS = """
 # Two workers that run at once must not talk to each other. So these are left out too: sysinfo (how much
 # memory others use), getpgid, getsid, getpriority and get_robust_list (whether a process exists),
 # membarrier (interrupts the others), futex_waitv (its flags are out of a filter's reach), set_robust_list
-# (wakes whoever waits at an address), file locks; and what follows is allowed with some arguments only.
+# (wakes any thread that waits at an address), file locks; what follows is allowed with some arguments only.
 _OWN_PID = 0xFEEDFACE  # replaced by the worker's own pid when the filter is put in place
 _FUTEX_PRIVATE = 128
 _MSG_NOSIGNAL = 0x4000
@@ -340,7 +340,7 @@ def _restricted() -> dict[str, tuple[int, int, list[bytes]]]:
     """
     clocks = _below(0, 12)  # those of the system and one's own; a negative number is another process's
     return {
-        # On the one socket that is open: to whoever is at the other end, and nothing out of band.
+        # On the one socket that is open: to its other end, and nothing out of band.
         "sendto": (44, 206, [*_one_of(3, 0, _MSG_NOSIGNAL), *_null(4)]),
         "recvfrom": (45, 207, _one_of(3, 0)),
         # Others share the pages of libraries with us, and a futex in one of them wakes across processes.

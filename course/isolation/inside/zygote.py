@@ -87,7 +87,7 @@ def _here(config: dict[str, Any]) -> socket.socket:
 def _end_with_grader(sock: socket.socket) -> None:
     """End this process, whatever it does, when the other end of its socket is gone.
 
-    Linux does the same for a process that asks for it; elsewhere someone has to look.
+    Linux does the same for a process that asks for it; elsewhere the process has to look.
     """
     with contextlib.suppress(OSError):
         while not select.select([sock], [], [], None)[0] or sock.recv(1, socket.MSG_PEEK):
@@ -198,7 +198,7 @@ def _become_worker(config: dict[str, Any], newborn: _ForkSetup) -> socket.socket
             lockdown.become_unprivileged()
         lockdown.die_with_parent()
         lockdown.drop_capabilities()
-        # After the mounts: rules are about inodes. By ".": nobody may not go the way to a folder of root's.
+        # After the mounts: rules are about inodes. By ".": user nobody may not enter a folder of root's.
         own = lockdown.landlock_ruleset(["/"], ["."])
         lockdown.landlock_apply(own)
         os.close(own)

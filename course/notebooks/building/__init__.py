@@ -1,1 +1,1 @@
-"""The cells of the notebooks that the course generates, and a newer notebook merged with an older one."""
+"""Building the course's notebooks, cell by cell, and merging a newer notebook with an older one."""

@@ -1,10 +1,10 @@
 """Cells and whole notebooks, the same bytes every time they are generated.
 
-A cell's id is a digest of what it holds, so that a notebook generated again differs only where the content
-does. The digest is kept in the cell's metadata too, where Jupyter leaves it when it gives a copy another id;
-so each cell shows by itself whether it was edited. nbformat's own constructors draw ids at random, and its
-validation quietly replaces those that occur twice; so ids are made here, and a cell that repeats another
-counts its repetitions into its id.
+A cell's id is a digest of its content, so a notebook generated again differs only where the content does. The
+digest is also kept in the cell's metadata, which Jupyter leaves alone when it gives a copy another id; so
+each cell shows by itself whether it was edited. nbformat's own constructors draw ids at random, and its
+validation silently replaces duplicates; so ids are made here, and a cell that repeats another counts the
+repetition into its id.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import msgspec
 __all__ = ["Cell", "code", "digest", "document", "dumped", "markdown", "opening"]
 
 _KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
-#: In the first cell of every notebook. Nobody owns the package's name on an index: a file or folder is named.
+#: In the first cell of every notebook. The course is on no package index, so a file or folder is named.
 _NEEDS = """\
 <small>The code below needs the course itself. Where `import course` fails, install it from the wheel your
 course hands out, `%pip install FILE.whl`, or from a checkout of it, `%pip install -e FOLDER`, and restart the
@@ -35,7 +35,7 @@ class Cell:
     Attributes:
         kind: "markdown" or "code".
         source: its text, without a final newline.
-        metadata: what is kept with it; the course's own is under "course".
+        metadata: kept with it; the course's own is under "course".
     """
 
     kind: str
@@ -44,13 +44,13 @@ class Cell:
 
     @property
     def tags(self) -> dict[str, Any]:
-        """What the course wants to know of it again."""
+        """The course's own metadata."""
         tags: dict[str, Any] = self.metadata.get("course", {})
         return tags
 
 
 def markdown(source: str, **tags: Any) -> Cell:
-    """A text cell; ``tags`` is what the course wants to know of it again."""
+    """A text cell; ``tags`` is the course's own metadata."""
     return Cell("markdown", source.strip("\n"), {"course": {"role": "text", **tags}})
 
 
@@ -60,12 +60,12 @@ def opening(source: str) -> Cell:
 
 
 def code(source: str, **tags: Any) -> Cell:
-    """A code cell; ``tags`` is what the course wants to know of it again."""
+    """A code cell; ``tags`` is the course's own metadata."""
     return Cell("code", source.strip("\n"), {"course": tags})
 
 
 def digest(kind: str, source: str, tags: dict[str, Any]) -> str:
-    """Of what a cell holds; its ``slot``, and the digest itself, do not count."""
+    """The digest of a cell's content; its ``slot``, and the digest itself, do not count."""
     held = [kind, source, {name: value for name, value in tags.items() if name not in ("slot", "made")}]
     return hashlib.sha256(msgspec.json.encode(held, order="sorted")).hexdigest()[:16]
 
@@ -74,7 +74,7 @@ def document(cells: list[Cell], **about: Any) -> bytes:
     """A notebook file of format 4.5, without outputs.
 
     Args:
-        about: what the course wants to know of the whole notebook again.
+        about: the course's own metadata of the whole notebook.
     """
     seen: dict[str, int] = {}
     slots: dict[str, int] = {}
@@ -109,7 +109,7 @@ def dumped(notebook: dict[str, Any]) -> bytes:
 
 
 def _slot(cell: Cell, section: str) -> str:
-    """The place of a cell in any version of its notebook, by which two versions are laid side by side."""
+    """A cell's place, the same in every version of its notebook: it matches the cells of two versions."""
     role = cell.tags.get("role", cell.kind)
     if "task" in cell.tags or "exercise" in cell.tags:
         return f"{role}:{cell.tags.get('task', '')}"  # whatever the section around it is called

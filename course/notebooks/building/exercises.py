@@ -28,7 +28,7 @@ _LAST = """\
 ## All of it
 
 All public checks at once; the hidden ones run when it is graded."""
-#: A link of the course's own, which a notebook that may lie anywhere cannot follow.
+#: A link between files of the course: a notebook may lie anywhere, so it cannot follow it.
 _LINK = re.compile(r"\[([^\]]+)\]\((lesson|exercise):([a-z0-9-]+)[^)]*\)")
 _REPORT = """\
 ## See what your code does
@@ -44,10 +44,10 @@ def exercise_notebook(catalog: Catalog, exercise: Exercise) -> bytes:
 
 
 def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
-    """The cells, in the order they are worked through.
+    """The cells, in the order in which a student works through them.
 
     Args:
-        source: the module's text: the stub, or a student's work to be put into a notebook.
+        source: the module's text: the stub, or a student's work that goes into a notebook.
     """
     tasks = {task.id: task for task in exercise.task}
     about, parts = pieces(source, tasks)
@@ -81,7 +81,7 @@ def _as_command(link: re.Match[str]) -> str:
 
 
 def _sections(readme: str) -> list[str]:
-    """A README in parts that begin with a heading of the second level, fenced blocks left whole."""
+    """A README, cut before each second-level heading; fenced blocks stay whole."""
     found: list[list[str]] = [[]]
     fenced = False
     for line in readme.strip("\n").split("\n"):

@@ -40,7 +40,7 @@ class Layout:
         return PurePosixPath(self.of_exercise.format(id=exercise.id, module=module))
 
     def links(self, catalog: Catalog, lesson_id: str) -> Callable[[str], str]:
-        """What turns the targets that a lesson names into addresses that work from its notebook."""
+        """A function that turns a lesson's link targets into addresses that work from its notebook."""
 
         def link(target: str) -> str:
             kind, _, rest = target.partition(":")
@@ -56,11 +56,11 @@ class Layout:
         return link
 
 
-#: One folder for lessons and one for exercises: what ``--out`` is filled with.
+#: One folder for lessons and one for exercises, below ``--out``.
 FOLDERS = Layout("exercises/{id}.ipynb")
 #: In a workspace an exercise's notebook lies beside its module, where it can be handed in.
 WORKSPACE = Layout("{id}/{module}.ipynb")
-#: What nbgrader calls an assignment's source.
+#: Where nbgrader looks for an assignment's source.
 NBGRADER = Layout("source/{id}/{module}.ipynb")
 
 
@@ -69,7 +69,7 @@ def _between(start: PurePosixPath, target: PurePosixPath) -> str:
 
 
 def _anchor(catalog: Catalog, lesson_id: str, slug: str) -> str:
-    """JupyterLab's name for a heading: its words as they are written, joined by hyphens."""
+    """JupyterLab's anchor of a heading: its words, joined by hyphens."""
     if not slug:
         return ""
     for block in read_blocks(catalog.content.lessons / f"{lesson_id}.md"):

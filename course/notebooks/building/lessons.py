@@ -34,7 +34,7 @@ def lesson_notebook(catalog: Catalog, lesson: Lesson, layout: Layout) -> bytes:
 
 
 def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]:
-    """The cells, in reading order; text between two code cells is one cell a section."""
+    """The cells, in reading order; the text between two code cells is one cell for each section."""
     tasks = {one.id: one for one in catalog.warm_ups(lesson.id)}
     blocks = with_tasks(read_blocks(catalog.content.lessons / f"{lesson.id}.md"), tuple(tasks.values()))
     lowering = Lowering(layout.links(catalog, lesson.id))
@@ -105,7 +105,7 @@ def _described(alt: str) -> str:
 
 
 def _collapsed(cell: Cell) -> Cell:
-    """Code that only makes numbers or pictures starts folded away; it still runs."""
+    """Code that only makes numbers or pictures starts folded; it still runs."""
     if cell.metadata.get("course", {}).get("role") not in {"hidden", "figure", "setup"}:
         return cell
     return Cell(cell.kind, cell.source, {**cell.metadata, "jupyter": {"source_hidden": True}})

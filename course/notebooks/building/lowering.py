@@ -1,7 +1,7 @@
 """A lesson's blocks as Markdown that Jupyter shows without any extension.
 
-JupyterLab draws mermaid, mathematics, tables and alert boxes by itself and offline; of everything else a
-lesson has, this makes one of those.
+JupyterLab itself draws mermaid, mathematics, tables and alert boxes, offline. Everything else in a lesson is
+turned into one of these.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LABELS", "Lowering", "escaped"]
 
-#: The heading of each kind of set-apart passage, and JupyterLab's colour for it.
+#: The heading of each kind of box, and JupyterLab's colour for it.
 LABELS = {
     "myth": ("Myth", "danger"),
     "fact": ("Fact", "success"),
@@ -73,7 +73,7 @@ class Lowering:
         return "\n\n".join(self.block(block) for block in blocks)
 
     def boxed(self, kind: str, blocks: tuple[b.Block, ...]) -> str:
-        """A passage in a box that says in words what it is."""
+        """A passage in a box with a heading."""
         label, colour = LABELS[kind]
         # Jupyter renders Markdown inside HTML only between empty lines.
         return (
@@ -82,7 +82,7 @@ class Lowering:
         )
 
     def inlines(self, inlines: b.Inlines) -> str:
-        """Words of a line."""
+        """Inline pieces as Markdown."""
         return "".join(map(self._inline, inlines))
 
     def _inline(self, inline: b.Inline) -> str:
@@ -128,10 +128,10 @@ class Lowering:
 
 
 def escaped(text: str) -> str:
-    """Words whose every character Markdown shows as it is."""
+    """Text with Markdown's special characters escaped."""
     return _SPECIAL.sub(r"\\\1", html.unescape(text)) if _SPECIAL.search(text) else text
 
 
 def _without_comments(tex: str) -> str:
-    """The formula without the author's own text and spoken forms, which stand in comments."""
+    """The formula without the comments that hold its text and spoken forms."""
     return "\n".join(line for line in tex.split("\n") if not line.lstrip().startswith("%")).strip("\n")

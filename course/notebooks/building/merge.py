@@ -1,9 +1,9 @@
 """Merge a newer notebook with a student's work in the older one.
 
-Every generated cell knows its slot and the digest of what it held when it was generated. So a cell whose text
-no longer matches its digest was edited; one without a slot was added by the student. Edited cells and own
-cells stay, with their outputs, where they are; all others become what the newer notebook has. Where that is
-not safe nothing is merged, and the reason is given.
+Every generated cell has its slot and the digest of its original text. A cell whose text no longer matches its
+digest was edited; one without a slot was added by the student. Edited and added cells stay where they are,
+with their outputs; all others are replaced by the newer notebook's. Where that is not safe, nothing is
+merged, and the reason is given.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ _TEXT = "text"
 
 
 class CannotMergeError(Exception):
-    """Two notebooks cannot be put together; the message says why."""
+    """Two notebooks cannot be merged; the message says why."""
 
 
 def is_untouched(data: bytes) -> bool:
-    """Whether a notebook has no student's work: it was generated, and at most run since."""
+    """Whether a notebook holds no student's work: it was generated, and at most run since."""
     try:
         cells = [_Held(cell) for cell in _read(data)["cells"]]
     except CannotMergeError:
@@ -52,7 +52,7 @@ def merged(old: bytes, new: bytes) -> bytes:
         raise CannotMergeError("it does not say that it is this notebook")
     cells = _woven([_Held(cell) for cell in before["cells"]], [_Held(cell) for cell in after["cells"]])
     metadata = {**before["metadata"], "course": theirs}
-    # Unread fields of the file, such as a newer minor format, are theirs.
+    # Fields that are not read here, such as a newer minor format, come from the student's file.
     result = {**before, "metadata": metadata, "cells": _with_own_ids(cells)}
     return old if result == before else dumped(result)
 
@@ -79,7 +79,7 @@ class _Held:
 
     @property
     def made(self) -> str:
-        """The digest of what the cell held when it was generated."""
+        """The digest of the cell's original text."""
         return str(self.tags.get("made", ""))
 
     @property
@@ -108,11 +108,11 @@ def _woven(old: list[_Held], new: list[_Held]) -> list[RawCell]:
 
 
 def _either(old: _Held | None, new: _Held) -> list[RawCell]:
-    """What stands in one slot."""
+    """The cell that goes into one slot."""
     if old is None:
         return [new.cell]
     if not old.edited:
-        # What was run stays run, unless the newer one comes with outputs of its own.
+        # Outputs are kept, unless the newer cell comes with its own.
         same = old.made == new.made and not new.cell.get("outputs")
         return [{**old.cell, "metadata": {**old.cell["metadata"], "course": new.tags}} if same else new.cell]
     if old.made == new.made or old.source == new.source:
@@ -131,7 +131,7 @@ def _must_be_in_order(old: list[str], new: list[str]) -> None:
 
 
 def _with_own_ids(cells: list[RawCell]) -> list[RawCell]:
-    """The cells, no two with one id: Jupyter would give one of them another at random."""
+    """The cells with unique ids: Jupyter would replace a duplicate by a random one."""
     seen: set[str] = set()
     written = []
     for cell in cells:

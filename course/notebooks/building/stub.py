@@ -1,4 +1,4 @@
-"""A stub taken apart: what stands between the functions a student writes, and the functions."""
+"""A stub taken apart: the functions that a student writes, and the lines between them."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def pieces(source: str, tasks: Collection[str]) -> tuple[str, list[Piece]]:
 
 
 def _gap(text: str, node: ast.stmt) -> str:
-    """Empty lines before a statement that is joined to others, as a formatter would put them."""
+    """The empty lines that a formatter would put before a statement."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         return "\n\n"
     return "" if text.startswith(("import ", "from ")) else "\n"

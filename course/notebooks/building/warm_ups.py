@@ -1,7 +1,7 @@
-"""A warm-up in its place in a lesson's notebook: what is asked, and a cell that checks itself when it is run.
+"""A warm-up in its place in a lesson's notebook: its text, and a cell that checks itself when it is run.
 
-The cell stands for the warm-up's file. It does not run in the notebook's kernel, so that none of its names
-changes what the lesson's own cells give.
+The cell stands for the warm-up's file. It does not run in the notebook's kernel, so its names cannot change
+the results of the lesson's own cells.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ checked at once.*
 
 
 def warm_up_cells(exercise: Exercise, task: b.Task, lowering: Lowering) -> list[Cell]:
-    """What is asked, and the stub to be mended or written."""
+    """Its text, and the stub to mend or to fill in."""
     text = "\n\n".join(lowering.block(block) for block in task.blocks)
     asked = _ASKED.format(title=task.title, minutes=exercise.minutes, text=text)
     stub = exercise.stub_path.read_text(encoding="utf-8")

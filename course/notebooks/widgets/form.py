@@ -1,4 +1,4 @@
-"""A form in a cell, and below it the place where what follows from it opens."""
+"""A form in a cell, with a place below it for the reply."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class Form(anywidget.AnyWidget):  # type: ignore[misc]
         self.on_msg(lambda _, message, __: self._loop.call_soon_threadsafe(self._hear, message))
 
     def _hear(self, message: Any) -> None:
-        """Something that the page says."""
+        """Handle a message from the page."""
         raise NotImplementedError
 
     def _below(self) -> dict[str, str]:
-        """What stands below the form now, by MIME type."""
+        """The reply below the form, by MIME type."""
         raise NotImplementedError
 
     def _ipython_display_(self) -> None:

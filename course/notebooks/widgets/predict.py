@@ -1,4 +1,4 @@
-"""A field for a prediction in a cell; once it is kept, the answer stands below it."""
+"""A field for a prediction in a cell; once the prediction is kept, the answer appears below it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["Predict"]
 
 
 class Predict(Form):
-    """A prediction that waits to be typed.
+    """A field that waits for a prediction.
 
     Args:
-        asked: see ``predicting.Asked``, which stands above this file and is not imported here.
+        asked: see ``predicting.Asked``; that module imports this one.
 
     Raises:
         RuntimeError: no event loop runs here, as one does in every kernel.

@@ -17,7 +17,7 @@ export default {
       } else if (message.kind === "words") world.receive(message.text);
     };
     model.on("msg:custom", hear);
-    // The world waits while nobody can see it.
+    // The world waits while it is out of sight.
     const watch = (on) => model.send({ kind: "request", text: JSON.stringify({ do: "watch", on }) });
     const observer = new IntersectionObserver((entries) => watch(entries.at(-1).isIntersecting));
     model.send({ kind: "hello" });

@@ -1,4 +1,4 @@
-"""The sandbox alive in a notebook: the world runs in the kernel, the page draws it as the web view does."""
+"""The live sandbox in a notebook: the world runs in the kernel, the page draws it as the web view does."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Sandbox"]
 
-#: Between two frames, in s: what a person does has to get through as well.
+#: Between two frames, in s: the user's actions have to get through as well.
 _PAUSE = 0.02
 #: How long a page may take to draw a frame before it counts as gone, in s; it is asked again when it says
 #: anything.
@@ -27,7 +27,7 @@ _GONE = 5.0
 
 
 class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
-    """A world to look at and to take hold of.
+    """A world to watch and to move bodies in.
 
     Args:
         scene_id: see ``course sandbox list``, or the path of a scene of your own.
@@ -57,12 +57,12 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
         self.on_msg(lambda _, message, __: self._soon(self._hear, message))
 
     def _soon(self, call: Callable[..., None], *given: Any) -> None:
-        """Call something on the loop that the world lives in, from whichever thread."""
+        """Call a function on the loop that the world lives in, from any thread."""
         with contextlib.suppress(RuntimeError):  # the loop may have ended first, and the world with it
             self._loop.call_soon_threadsafe(call, *given)
 
     def _hear(self, message: Any) -> None:
-        """Something that a page says."""
+        """Handle a message from a page."""
         if self._page is not None and self._stalled:
             self._page.watching, self._stalled = True, False
         match message:
@@ -77,7 +77,7 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
                 self.session.receive(self._page, text)
 
     def _join(self) -> None:
-        """A page has come, or one that was there begins anew."""
+        """A page has opened or reloaded."""
         self._page = self.session.join()
         if self._page is not None:
             self._tasks = [
@@ -94,7 +94,7 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
             self._page = None
 
     async def _speak(self, page: Page) -> None:
-        """Hand on what the session says; a frame only once the one before it was drawn."""
+        """Forward the session's messages; a frame only once the last one was drawn."""
         while (data := await page.fetch()) is not None:
             if isinstance(data, str):
                 self.send({"kind": "words", "text": data})

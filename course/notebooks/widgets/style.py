@@ -1,4 +1,4 @@
-"""How the sandbox looks in a cell's output: the web view's own style, made for a place inside of a page."""
+"""The sandbox's style in a cell's output: the web view's own, adapted to a place inside a page."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ __all__ = ["STATIC", "style"]
 #: The web view's files.
 STATIC = Path(course.sandbox.views.web.__file__).parent / "static"
 
-#: What the web view asks of its window, a cell has to ask of its own width: two notebooks side by side leave
-#: half a window. Below this width the picture would be narrower than the panel beside it.
+#: Where the web view asks for its window's width, a cell has to ask for its own: two notebooks side by side
+#: leave half a window. Below this width the picture would be narrower than the panel beside it.
 _WINDOW, _CELL = "@media (max-width: 860px)", "@container (max-width: 720px)"
-#: A cell's output is no page of its own: what is above and below should stay in sight. JupyterLab lays lists
-#: of terms out in its own way.
+#: A cell's output is not a page: the cells above and below it should stay in sight. JupyterLab has its own
+#: layout for lists of terms.
 _HERE = f"""
 .sandbox {{ height: min(75vh, 44rem); }}
 .sandbox :is(dt, dd) {{ float: none; width: auto; margin: 0; padding: 0; }}

@@ -1,4 +1,4 @@
-"""The questions of an attempt as a form in a cell; once it is handed over, the marks stand below it."""
+"""The questions of an attempt as a form in a cell; once it is sent, the result appears below it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class QuizForm(Form):
     """An attempt at the quiz.
 
     Args:
-        taken: see ``taking.Taken``, which stands above this file and is not imported here.
+        taken: see ``taking.Taken``; that module imports this one.
 
     Raises:
         RuntimeError: no event loop runs here, as one does in every kernel.
@@ -38,7 +38,7 @@ class QuizForm(Form):
             self.send({"kind": "done"})
 
     def _questions(self) -> list[dict[str, Any]]:
-        """As they are asked: nothing in them says which option is right."""
+        """The questions as they are asked: nothing in them says which option is right."""
         answers = self.taken.attempt.answers
         return [
             {

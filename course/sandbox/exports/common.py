@@ -1,4 +1,4 @@
-"""What all exports share: the plane becomes a vertical slice of space, and bodies get a depth.
+"""Shared by all exports: the plane becomes a vertical slice of space, and bodies get a depth.
 
 x stays x, y becomes z (up), and y, the third dimension, is held or left alone.
 """

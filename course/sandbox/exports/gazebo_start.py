@@ -25,7 +25,7 @@ def _gazebo() -> Any:
 
 
 class StartVelocities:
-    """One model's. The plugin has an element for each joint that moves, named after it: m/s or rad/s."""
+    """One model's velocities: the plugin has an element named after each moving joint, m/s or rad/s."""
 
     def configure(self, entity: Any, sdf: Any, ecm: Any, event_mgr: Any) -> None:
         """Read the velocities and set them: called once, when the model is loaded."""

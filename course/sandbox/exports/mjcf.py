@@ -1,9 +1,9 @@
 """A scene as MJCF, MuJoCo's own format.
 
-Each movable body gets two slides and a hinge, which is a plane. MuJoCo has no coefficient of restitution: its
-contacts are springs with damping, and the damping is chosen so that one contact of two bodies rebounds as the
-scene says. It takes the larger friction of a pair where this engine multiplies, so every pair that can touch
-is listed with its own numbers.
+Each movable body gets two slides and a hinge, which make a plane. MuJoCo has no coefficient of restitution:
+its contacts are springs with damping, and the damping is chosen so that one contact of two bodies rebounds as
+the scene says. It takes the larger friction of a pair where this engine multiplies, so every pair that can
+touch is listed with its own numbers.
 """
 
 from __future__ import annotations

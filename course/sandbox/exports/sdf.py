@@ -30,7 +30,7 @@ _NOTE = " Written by `course sandbox export`. A plane in space: x is x, z is up,
 _NOTE_START = (
     f" Velocities at the start are set by {START}, which Gazebo finds by GZ_SIM_SYSTEM_PLUGIN_PATH. "
 )
-#: What Gazebo Sim loads when a world names no systems; a world that names one has to name them all.
+#: The systems that Gazebo Sim loads when a world names none; a world that names one has to name them all.
 _SYSTEMS = (
     ("physics", "Physics"),
     ("user-commands", "UserCommands"),

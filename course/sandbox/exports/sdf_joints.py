@@ -29,7 +29,7 @@ _RAIL, _ROD = 1e-6, 1e-3
 
 @dataclass(frozen=True, slots=True)
 class LightLink:
-    """A link that only helps to hold: a rail or a rod.
+    """An auxiliary link: a rail or a rod.
 
     Attributes:
         x, z, pitch: of its middle, m and rad.
@@ -67,7 +67,7 @@ class SdfJoint:
 
 @dataclass(slots=True)
 class Assembly:
-    """One model: bodies that joints hold together, and all that holds them."""
+    """One model: bodies connected by joints, with those joints and their auxiliary links."""
 
     bodies: list[Part] = field(default_factory=list)
     light: list[LightLink] = field(default_factory=list)
@@ -75,7 +75,7 @@ class Assembly:
 
 
 def assemblies(parts: Sequence[Part], joints: Sequence[Joint]) -> Iterator[Assembly]:
-    """The movable bodies of a scene in as many models as can be, in the scene's order.
+    """The movable bodies of a scene as models, one for each connected group, in the scene's order.
 
     Raises:
         UsageError: joints close a chain.
@@ -146,7 +146,7 @@ def _on_rails(made: Assembly, body: Part) -> None:
 
 
 def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> None:
-    """Hang a body from the other one of a joint, which stands or is in the model already."""
+    """Hang a body from a joint's other body, which is fixed or in the model already."""
     made.bodies.append(body)
     on_a = joint.a == body.name
     other = parts[joint.b if on_a else joint.a]

@@ -1,1 +1,1 @@
-"""Runs that are kept: measured without a picture, recorded and replayed, filmed, described in sentences."""
+"""Runs and what is made of them: measured without a view, recorded and replayed, filmed, put into words."""

@@ -33,7 +33,7 @@ def sentence(event: Event) -> str:
 
 
 def _place(value: float) -> str:
-    """To the centimetre, and never minus nothing."""
+    """To the centimetre, and never "-0.00"."""
     return f"{round(value, 2) + 0.0:.2f}"
 
 
@@ -86,7 +86,7 @@ def account(receipt: Receipt) -> list[str]:
 
 
 def momentum(done: Run) -> list[str]:
-    """The change of the momentum, in a sentence."""
+    """The change of momentum, in a sentence."""
     (px, py, _), (qx, qy, _) = done.momentum_before, done.momentum_after
     size = max(abs(px), abs(py), abs(qx), abs(qy), 1e-12)
     now = f"({qx if abs(qx) > 1e-9 * size else 0.0:.4g}, {qy if abs(qy) > 1e-9 * size else 0.0:.4g}) kg m/s"
@@ -122,7 +122,7 @@ def _contact(event: Event) -> str:
 
 
 def _the(name: str) -> str:
-    """A body's name as one says it: ``ball-3`` is "ball 3", ``floor`` "the floor"."""
+    """A body's name in a sentence: ``ball-3`` is "ball 3", ``floor`` is "the floor"."""
     words = name.replace("-", " ")
     return words if words[-1:].isdigit() else f"the {words}"
 

@@ -52,7 +52,7 @@ class Film:
     """Collects frames of one run.
 
     Args:
-        scene: what is filmed; its view is what is seen.
+        scene: the scene to film; the picture shows its view.
         width: of a frame in pixels; its height follows from the view.
     """
 

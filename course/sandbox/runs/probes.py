@@ -73,7 +73,7 @@ class Probes:
         return (value - self._start[probe.name] * probe.change) * probe.scale
 
     def _watch(self, block: Block) -> None:
-        """Pick the values of probes that have their own moment."""
+        """Read the probes that are due at a moment of their own."""
         if self._times is None:
             self._times = self._moments()
         for probe in self._scene.probe:

@@ -26,7 +26,7 @@ FORMAT = "course.sandbox-recording/1"
 EVERY = 240
 #: Steps that a recording may hold; a day at 1/240 s is 20.7 million.
 _MOST_TICKS = 100_000_000
-#: What a line of a recording may call.
+#: The methods that a line of a recording may call.
 _INPUTS = {"reset", "set", "grab", "drag", "release", "throw", "spawn"}
 
 
@@ -91,7 +91,7 @@ class Recording:
         world.on_tick = (every, self._hash)
 
     def encode(self) -> bytes:
-        """The file, up to where the world is now."""
+        """The file, up to the present step."""
         world = self._world
         end = End(tick=world.ticks, hash=world.state_hash())
         return b"".join(msgspec.json.encode(line) + b"\n" for line in (*self._lines, end))
@@ -127,7 +127,7 @@ class Difference(msgspec.Struct, frozen=True, kw_only=True):
         good_until: the last one at which they still agreed.
         t: simulated time at ``tick``, in s.
         checked: hashes compared.
-        versions: what was recorded with another version than this machine has: (recorded, here).
+        versions: parts whose recorded version differs from the one here: (recorded, here).
     """
 
     same: bool
@@ -143,7 +143,7 @@ def read(path: Path) -> Replay:
 
     Raises:
         NotFoundError: there is no such file.
-        UsageError: it is no recording, or of a newer format.
+        UsageError: it is not a recording, or has a newer format.
         IntegrityError: it is damaged, or has no end.
     """
     try:
@@ -228,7 +228,7 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
 
 
 def _versions() -> dict[str, str]:
-    """What bits depend on: the engine, the machine it was built for, and this course."""
+    """Versions that the bits depend on: the engine, the machine it was built for, and this course."""
     from course import __version__
 
     machine = f"{platform.system()} {platform.machine()}"

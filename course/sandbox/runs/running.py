@@ -83,7 +83,7 @@ def run(
         chosen: the scene with its settings.
         duration: in s; the scene's own if None.
         guess: the student's number, if one was asked for.
-        every: keep a sample of everything this often, in s; 0 keeps none.
+        every: keep a sample of all bodies this often, in s; 0 keeps none.
         on_frame: called ``fps`` times per simulated second, at the start and at the end.
         also_at: times of further frames, in s; those after the end are left out.
         watch: called with the world before it starts.
@@ -118,7 +118,7 @@ def finish(
     guess: float | None,
     samples: tuple[tuple[float, tuple[str, ...], Floats], ...] = (),
 ) -> Run:
-    """The run that a world has just been through."""
+    """The results of the run that a world has just made."""
     answers = probes.read(events)
     asked = chosen.scene.prediction
     comparison = None
@@ -144,7 +144,7 @@ def finish(
 def _stops(
     until: float, every: float, fps: float, also_at: tuple[float, ...]
 ) -> list[tuple[float, bool, bool]]:
-    """When to look, in s, and whether for a sample, for a frame."""
+    """The times to stop at, in s, and whether for a sample or for a frame."""
     # Events are fetched at least once a second so that none is dropped for want of room.
     times: dict[float, list[bool]] = {}
     for interval, kind in ((1.0, None), (every, 0), (1.0 / fps if fps else 0.0, 1)):

@@ -1,1 +1,1 @@
-"""A scene as data: what a file may say, its rules and settings, and every body laid out as plain numbers."""
+"""A scene as data: the file's fields, its rules and settings, and every body as plain numbers."""

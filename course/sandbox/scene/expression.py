@@ -23,7 +23,7 @@ _MAX_LENGTH = 300
 #: Longest chain of operations; a deeper tree is not a formula that a person wrote.
 _MAX_DEPTH = 40
 
-#: Largest n of a binomial coefficient: beyond about a thousand it is no float any more.
+#: Largest n of a binomial coefficient: beyond about a thousand the result is too large for a float.
 _MOST = 1000
 
 
@@ -68,7 +68,7 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
         values: the value of each name.
 
     Raises:
-        UsageError: it is no formula, names something unknown, or has no value (a division by zero, say).
+        UsageError: it is not a formula, names something unknown, or has no value (a division by zero, say).
     """
     try:
         return _value(_tree(text), values)
@@ -110,7 +110,7 @@ def _depth(tree: ast.AST) -> int:
 
 
 def _collect(node: ast.expr, text: str, found: set[str]) -> None:
-    """Walk the tree, refuse what is no arithmetic, and note the names."""
+    """Walk the tree, refuse everything but arithmetic, and note the names."""
     match node:
         case ast.Constant(value=bool()):
             raise _refused(text, "may hold numbers, not True or False")

@@ -63,7 +63,7 @@ def scene_ids() -> tuple[str, ...]:
 
 
 def scenes() -> tuple[Scene, ...]:
-    """The course's scenes, in the order they are best played.
+    """The course's scenes, in the order in which to play them.
 
     Raises:
         ContentError: one is wrong.
@@ -147,7 +147,7 @@ def values_of(chosen: Chosen) -> dict[str, float]:
 
 
 def unchanged(scene: Scene) -> Chosen:
-    """A course's scene with nothing asked to be different."""
+    """One of the course's scenes, unchanged."""
     ready, parameters, _ = _put_in(scene, {})
     return Chosen(scene=ready, parameters=parameters, settings={}, path=FOLDER / f"{scene.id}.toml")
 
@@ -175,7 +175,7 @@ def _read(path: Path) -> Document[Scene]:
 
 
 def _check_formulas(document: Document[Scene]) -> None:
-    """The formulas of texts and times have values: for the scene as it is, and at both ends of each range."""
+    """Check that all formulas have values: for the scene as it is, and at both ends of each range."""
     scene = document.value
     texts: dict[tuple[str | int, ...], str] = {
         ("probe", i, "time"): f"{{{probe.time}}}"
@@ -192,7 +192,7 @@ def _check_formulas(document: Document[Scene]) -> None:
         try:
             ready, parameters, rest = _put_in(scene, dict(settings))
         except UsageError:
-            continue  # that end is out of reach, as whoever asks for it is told
+            continue  # that end is out of reach; a user who asks for it is told so
         values = values_of(Chosen(scene=ready, parameters=parameters, settings=rest, path=document.path))
         for where, text in texts.items():
             try:

@@ -1,4 +1,4 @@
-"""Scenes: what a file under ``scenes/`` or a student's own file may say.
+"""Scenes: the fields of a file under ``scenes/``, or of a student's own file.
 
 Everything is in SI units and in the plane: x to the right, y up, angles counter-clockwise. Lengths in m,
 masses in kg, times in s; a name that ends in ``_deg`` is in degrees. Ranges are part of the types, so that a

@@ -18,7 +18,7 @@ __all__ = ["check_scene", "matching"]
 
 #: The fields that ``body.field`` may name in a formula.
 FIELDS = ("x", "y", "vx", "vy", "mass", "radius", "restitution", "friction")
-#: What a formula may use besides parameters and bodies.
+#: Names that a formula may use besides parameters and bodies.
 WORDS = ("g", "step", "iterations", "duration", "left", "right")
 
 _NEEDS = {"circle": ("radius",), "box": ("size",), "polygon": ("points",), "segment": ("points", "thickness")}
@@ -251,7 +251,7 @@ def _check_prediction(document: Document[Scene]) -> None:
 
 
 def _check_names(document: Document[Scene], where: tuple[str | int, ...], used: frozenset[str]) -> None:
-    """That a formula uses nothing but what ``loading.values_of`` gives."""
+    """Check that a formula uses only names that ``loading.values_of`` gives."""
     scene = document.value
     bodies = {part.name.replace("-", "_") for part in layout(scene)}
     known = {parameter.name.replace("-", "_") for parameter in scene.parameter} | set(WORDS)

@@ -60,7 +60,7 @@ def checked(key: str, value: object) -> float:
     """A value for a setting.
 
     Raises:
-        UsageError: there is no such setting, or the value is no number in its range.
+        UsageError: there is no such setting, or the value is not a number in its range.
     """
     setting = SETTINGS.get(key)
     if setting is None:

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["fill", "used"]
 
-#: How a number may be shown; few digits, for a text is no table.
+#: The formats a number may have; few digits, because a text is not a table.
 _SHAPE = re.compile(r"\+?(\.\d)?[efg]")
-#: Where nothing is said: 0.4, 30, 0.004167.
+#: The default: 0.4, 30, 0.004167.
 _USUAL = ".4g"
 _HELP = "Write {speed * step} or {speed:.2f}; a brace that is meant as one is doubled: {{."
 

@@ -1,1 +1,1 @@
-"""Ways to look at one world. Each view is imported only when it is used."""
+"""Views of one world. Each is imported only when it is used."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Experiment", "Narrator"]
 
-#: Sentences that a view gets when it is opened later.
+#: Sentences that a view gets when it opens in the middle of a run.
 _KEPT = 60
 #: A pair that touches again within this time, in s, is not reported again.
 _PATIENCE = 0.05
@@ -34,7 +34,7 @@ _MOST = 50_000
 
 
 class Narrator:
-    """Turns events into lines of a list: what happened, and where."""
+    """Turns events into the lines of a list: what happened, and where."""
 
     def __init__(self) -> None:
         self._last: dict[tuple[str, str], float] = {}
@@ -52,7 +52,7 @@ class Narrator:
         self._left = 0
 
     def tell(self, events: Sequence[Event], now: float) -> list[dict[str, Any]]:
-        """Lines for those of the events that are worth one.
+        """Lines for the events that are worth one.
 
         Args:
             events: in order.
@@ -139,7 +139,7 @@ class Experiment:
         self._probes = Probes(self._world, self._chosen)
 
     def answer(self, guess: float | None) -> None:
-        """The guess, or that there is none; it counts for the runs from here on."""
+        """Take the guess, or None; it counts for all runs from here on."""
         if self.stage == "ask":
             self.guess, self._answered = guess, True
             self.stage = "run"
@@ -160,18 +160,18 @@ class Experiment:
             self.touch()
 
     def take(self, events: Sequence[Event]) -> None:
-        """What happened, for the probes."""
+        """Hand events to the probes."""
         if self.stage in {"ask", "run"} and len(self._events) < _MOST:
             self._events += [event for event in events if event.kind == "contact"]
 
     def left(self) -> float | None:
-        """Simulated time until the comparison, in s; None if there is none to come."""
+        """Simulated time until the comparison, in s; None if there will be none."""
         if self.stage not in {"ask", "run"}:
             return None
         return max(0.0, self._chosen.scene.duration - self._world.t)
 
     def passed(self) -> bool:
-        """Time passed, and ``take`` has the events: compare if the end of the run was reached.
+        """After time has passed and ``take`` has the events: compare, if the run has reached its end.
 
         Returns:
             whether it was.

@@ -1,4 +1,4 @@
-"""Books kept while a world runs: who gave energy, who took it, and a minute of history."""
+"""The accounts of a running world: where energy came from, where it went, and a minute of history."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["BLOCK", "Accounts", "Clock", "History"]
 
-#: Steps that are booked together. More would save nothing; the arrays would only leave the cache.
+#: Steps that are booked together. More would save nothing, because the arrays would not fit the cache.
 BLOCK = 32
 #: How often the history is sampled, in s of simulated time, and how many samples are kept.
 _SAMPLE = 1 / 60
 _KEPT = 3600
-#: What presses wheels onto the ground of a scene that has no floor, in m/s².
+#: The gravity that presses wheels onto the ground of a scene without a floor, in m/s².
 _WEIGHT = 9.81
 
 
@@ -81,7 +81,7 @@ class Clock:
 
 
 class Accounts:
-    """The books of one space.
+    """The accounts of one space.
 
     Args:
         space: whose bodies.
@@ -161,13 +161,13 @@ class Accounts:
         self._remember(block.times[rows], block.states[rows], changes)
 
     def gave(self) -> None:
-        """Something was changed from outside since ``base``: what energy that brought was given."""
+        """Something was changed from outside since ``base``: book the energy it brought as given."""
         had = self._energy()
         self.base = self.space.state()
         self.ledger.given += self._energy() - had
 
     def recast(self, gravity: tuple[float, float]) -> None:
-        """Bodies came or went, or gravity is another: what energy that brought was given."""
+        """Bodies came or went, or gravity changed: book the energy it brought as given."""
         had = self._energy()
         self.ledger.adopt(self.space.parts, gravity)
         self.base = self.space.state()

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MINOR", "ContactCollector", "contact_events"]
 
-#: Contacts softer than this, in m/s, are what resting and rolling are made of.
+#: Contacts softer than this, in m/s, belong to resting and rolling.
 MINOR = 0.05
 
 
@@ -37,7 +37,7 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
     a, b = np.where(swap, b, a), np.where(swap, a, b)
     normal = np.where(swap[:, None], -normal, normal)
     rows = np.stack([block.before[k, a], block.before[k, b], block.states[k, a, 3:], block.states[k, b, 3:]])
-    # Where the bodies are when the engine looks is where they are after the step: it moves them first.
+    # The engine moves bodies first, so it looks for contacts where they are after the step.
     arm_a, arm_b = point - block.states[k, a, :2], point - block.states[k, b, :2]
     came = _relative(rows[0], rows[1], arm_a, arm_b)
     left = _relative(rows[2], rows[3], arm_a, arm_b)
@@ -127,7 +127,7 @@ class ContactCollector:
 
 
 def _goes_second(a: Part, b: Part) -> bool:
-    """Whether a sentence about the two begins with ``b``: what moves before what is fixed, then by name."""
+    """Whether a sentence about the two begins with ``b``: a moving body before a fixed one, then by name."""
     return (a.fixed, a.name) > (b.fixed, b.name)
 
 

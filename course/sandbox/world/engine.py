@@ -45,7 +45,7 @@ _BOTH_POINTS = _CONTACT | batch.ArbiterFields.CONTACT_COUNT | batch.ArbiterField
 
 
 def versions() -> dict[str, str]:
-    """What a run depends on to repeat bit by bit."""
+    """The versions that a run needs in order to repeat bit by bit."""
     return {"pymunk": pymunk.version, "chipmunk": pymunk.chipmunk_version}
 
 
@@ -66,7 +66,7 @@ class Space:
         self.space = pymunk.Space()
         self.space.iterations = iterations
         self.space.collision_slop = slop
-        # Arbiters of bodies that have parted are dropped at once: what is listed is what touches.
+        # Arbiters of bodies that have parted are dropped at once, so the list holds only touching pairs.
         self.space.collision_persistence = 1
         self._bodies: dict[int, tuple[Part, pymunk.Body, pymunk.Shape]] = {}
         self._by_name: dict[str, int] = {}
@@ -82,7 +82,7 @@ class Space:
     # -- building --------------------------------------------------------------------------------
 
     def add(self, part: Part, settings: Mapping[str, float]) -> None:
-        """Put one more body in; restitution and friction in ``settings`` go before its own."""
+        """Add a body; restitution and friction in ``settings`` override its own."""
         restitution = settings.get("restitution", part.restitution)
         friction = settings.get("friction", part.friction)
         self._insert(replace(part, restitution=restitution, friction=friction))
@@ -258,8 +258,8 @@ class Recorder:
 def _perfect_hash(ids: Ids) -> tuple[np.uint64, np.uint64, Ints]:
     """A factor and a shift that send every id to a place of its own, and the table of what stands there.
 
-    Ids are addresses, so there is no telling how far apart they are. Factors are tried until none collide, in
-    a table that starts small, since it has to stay in the cache, and is doubled when luck does not come.
+    Ids are addresses, so they may be any distance apart. Factors are tried until no two ids collide, in a
+    table that starts small, since it has to stay in the cache, and is doubled after too many failures.
     """
     bits = max(6, math.ceil(math.log2(16 * max(len(ids), 1))))
     while bits < 40:

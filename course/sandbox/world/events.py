@@ -1,4 +1,4 @@
-"""What a world reports: contacts, bodies that stop or leave, and what the user did to it."""
+"""Events that a world reports: contacts, bodies that stop or leave, and the user's actions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One thing that happened.
 
     Attributes:
-        kind: "contact", "rest" (a body came to a stop), "gone" (it left the world), or "input" (somebody
+        kind: "contact", "rest" (a body came to a stop), "gone" (it left the world), or "input" (the user
             did something).
         t: in s; step: number of the step, the first is 1.
         a, b: names of the bodies; ``a`` moves, ``b`` is "" unless it is a contact.
@@ -60,12 +60,12 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
     """Where the energy is. All in J; the parts always add up: ``start + given`` equals all the others.
 
     Attributes:
-        start: what there was at time 0.
-        given: what hands, motors, spawned bodies and changes of gravity have added since.
-        kinetic, potential: what there is; potential energy is zero at y = 0 (x = 0).
+        start: the energy at time 0.
+        given: added since by hands, motors, spawned bodies and changes of gravity.
+        kinetic, potential: now; potential energy is zero at y = 0 (x = 0).
         contacts: lost across contacts, along their normals.
         friction: lost along surfaces, and to the floor of a scene seen from above.
-        residual: what is missing and was lost nowhere. Below zero: the solver made energy.
+        residual: missing without a known loss. Below zero: the solver made energy.
         integrator: the part of ``residual`` that comes from moving bodies before accelerating them: half a
             step's worth of gravity's power, -m g (v - v at the start) h/2. It comes back with the velocity.
     """

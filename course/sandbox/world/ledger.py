@@ -6,9 +6,9 @@ with ``P`` the sum of its impulses, and that is exact: gravity's part and that o
 terms. A body that rests gains and loses nothing in this way of counting. Friction's share is known contact by
 contact: impulse along the surface times the mean of the sliding speed before and after.
 
-Asking Python in the middle of each contact would cost more than the physics. Velocities and impulses are
-instead copied out after each step by two calls that stay in C, and the arithmetic is done for many steps at
-once. Reading them then is legitimate because nothing has touched them: they are good until the next step.
+A Python callback in each contact would cost more than the physics. Instead, two calls that stay in C copy
+velocities and impulses after each step, and the arithmetic is done for many steps at once. That is safe:
+nothing changes them before the next step.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Some steps in a row, as they went.
+    """A few consecutive steps.
 
     Attributes:
         first_step: number of the first of them.
@@ -76,7 +76,7 @@ class Block:
 
 
 class Ledger:
-    """Sums of what was lost and where.
+    """Sums of the losses, by place.
 
     Args:
         parts: the bodies, in the order of the rows of every state.
@@ -94,7 +94,7 @@ class Ledger:
         self.adopt(parts, gravity)
 
     def adopt(self, parts: Sequence[Part], gravity: tuple[float, float]) -> None:
-        """Take over another set of bodies, or another gravity; the sums stay."""
+        """Switch to another set of bodies, or another gravity; the sums stay."""
         finite = [p.moment if np.isfinite(p.moment) else 0.0 for p in parts]
         self.mass = np.array([p.mass for p in parts])
         self.inertia = np.array(finite)
@@ -161,7 +161,7 @@ class Ledger:
         )
 
     def _of_contacts(self, block: Block, mean: Floats, count: int) -> tuple[Floats, Floats]:
-        """What impulses took along normals and along surfaces, by step.
+        """Energy that impulses took along normals and along surfaces, by step.
 
         The velocity of a body's point p is ``(vx + w y - w py, vy - w x + w px)``: what does not depend on p
         is computed once per body, and only three numbers per body are looked up for each contact.

@@ -1,4 +1,4 @@
-"""What acts on a world from outside its contacts: a hand that drags, wheels that drive, a floor that rubs.
+"""Pushes from outside the contacts: a hand that drags, wheels that drive, a floor that rubs.
 
 Each is an impulse before a step, sized for that step, so the account of energy knows exactly what it did.
 """

@@ -1,4 +1,4 @@
-"""Who left the scene, and who came to rest."""
+"""Which bodies left the scene, and which came to rest."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """A scene that runs: fixed steps, one stream of events, and an account of energy and momentum.
 
 Views know nothing of the engine. They say how much real time has passed (``advance``), draw ``snapshot()``,
-read ``drain_events()``, ``receipt`` and ``history``, and pass on what hands do. Whatever is done to a world
-is also handed to ``on_input``, with the tick before which it happened: all that a replay needs.
+read ``drain_events()``, ``receipt`` and ``history``, and pass on the user's actions. Each action also goes to
+``on_input``, with the tick before which it happened: all that a replay needs.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _MAX_EVENTS = 5000
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """What is to be drawn. Rows are in the order of ``World.parts`` as long as ``version`` is the same.
+    """A frame to draw. Rows are in the order of ``World.parts`` as long as ``version`` is the same.
 
     Attributes:
         version: changes when bodies were added or removed: fetch ``World.parts`` again.
@@ -85,7 +85,7 @@ class World:
         paused, speed: for views: ``advance`` does nothing while paused, and runs ``speed`` times real time.
         dropped: events that were not drained in time.
         on_input: called with the tick, the method and its arguments, before anything done by hand acts.
-        on_tick: how many steps apart, and what is called then.
+        on_tick: every how many steps, and the function to call then.
         on_block: called with every stretch of steps that was booked.
     """
 
@@ -107,7 +107,7 @@ class World:
         self._build({key: checked(key, value) for key, value in (settings or {}).items()})
 
     def _build(self, settings: Mapping[str, float]) -> None:
-        """Everything as the scene has it, with the settings in force."""
+        """Build the scene, with the settings in force."""
         scene = self.scene
         parts = layout(scene)
         self._wheeled = [part for part in parts if part.wheels is not None]
@@ -237,7 +237,7 @@ class World:
     # -- time ------------------------------------------------------------------------------------
 
     def advance(self, real_dt: float) -> int:
-        """Let real time pass: as many whole steps as fit; the rest is kept for the next call.
+        """Let real time pass: make as many whole steps as fit; the rest is kept for the next call.
 
         Args:
             real_dt: since the last call, in s; a long gap is cut, so that a stalled view does not race.
@@ -430,7 +430,7 @@ class World:
         self._accounts.push(self._hand, self._wheeled, speeds, self.scene.floor)
 
     def _settle(self) -> None:
-        """Book what was only copied so far, and report its contacts."""
+        """Book the steps that were only copied so far, and report their contacts."""
         block = self._accounts.close()
         if block is None:
             if not self._with_receipt:
@@ -442,7 +442,7 @@ class World:
             listener(block)
 
     def _let_in(self) -> None:
-        """Put in the bodies whose time has come."""
+        """Add the bodies whose time has come."""
         self._settle()
         while self._waiting and self._waiting[-1].appears <= self.t:
             self._space.add(self._waiting.pop(), self.settings)
@@ -453,7 +453,7 @@ class World:
         self.version += 1
 
     def _tidy(self) -> None:
-        """Report bodies that came to rest, and take out those that left."""
+        """Report bodies that came to rest, and remove those that left."""
         self._settle()
         state, parts = self._space.state(), self.parts
         gone, resting = self._watch.look(parts, state)

@@ -77,7 +77,7 @@ def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
         "print the result: is every number finite, and of an ordinary size?"
     )
     if not proven:
-        advice += " If all is as the README says, report the check to whoever teaches the course."
+        advice += " If all is as the README says, report the check to your instructor."
     return Finding(message=f"This check could not judge {what}.{doubt}", help=advice, diagnosis=NOT_JUDGED)
 
 

@@ -71,7 +71,7 @@ def test_a_lesson_with_everything_has_no_findings() -> None:
         (
             "> **Predict.** What?",
             "> **Predict.** What?\n\n> **Answer.** A.\n\n## Two",
-            "a figure that nobody was asked about",
+            "a figure without a prediction",
         ),
         ("> **Answer.** That.", "", "a prediction that is not answered"),
         (
@@ -96,9 +96,9 @@ def test_what_is_missing_or_wrong_is_found(old: str, new: str, problem: str) -> 
 
 def test_a_run_needs_a_prediction_and_a_cell_that_shows_nothing_does_not() -> None:
     text = "## One\n\n```python\nprint(4)\n```\n\n```output\n4\n```\n"
-    assert "a run that nobody was asked about" in [finding.problem for finding in lint(text)]
+    assert "a run without a prediction" in [finding.problem for finding in lint(text)]
     silent = "## One\n\n```python\nx = 4\n```\n"
-    assert "a run that nobody was asked about" not in [finding.problem for finding in lint(silent)]
+    assert "a run without a prediction" not in [finding.problem for finding in lint(silent)]
 
 
 def test_a_value_link_may_be_quoted_as_code() -> None:

@@ -73,7 +73,7 @@ def test_options_that_round_to_the_same_are_refused_where_they_are_posed(quiz: P
     path.write_text(path.read_text().replace('formula = "a + 1"', 'formula = "a + b + 0.001"'))
     bank = Bank(read_questions(quiz))
     seed = next(seed for seed in range(60) if bank.variant("sums", seed) == "numbers")
-    with pytest.raises(ContentError, match=r"nobody can tell options total and next apart") as caught:
+    with pytest.raises(ContentError, match=r"options total and next are too close to tell apart") as caught:
         bank.pose(seed)
     line = path.read_text().split("\n").index('text = "{next} in all"') + 1
     assert (caught.value.file, caught.value.line) == (path, line)

@@ -351,7 +351,7 @@ def test_the_audit_wants_four_variants(quiz: Path) -> None:
             "no option is tied to the misconception takes-two",
         ),
         ('source = "Somebody 2001"', 'source = "Somebody"', "the source of variant apples has no date"),
-        ('formula = "a + 1"', 'formula = "a + b"', "nobody can tell them apart"),
+        ('formula = "a + 1"', 'formula = "a + b"', "too close to tell apart"),
         ('title = "Sums"', 'title = "<<FILL IN: a title>>"', "still to be filled in: a title"),
         ('title = "Sums"', "", "lacks the key `title`"),
     ],

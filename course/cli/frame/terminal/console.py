@@ -38,7 +38,7 @@ __all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
 
 #: Long lines of prose are hard to read however wide the window is.
 MAX_WIDTH = 100
-#: Columns below which a table folds its cells until nobody can read them.
+#: Columns below which a table folds its cells until they cannot be read.
 _NARROW = 60
 #: Work that takes less than this shows nothing while it runs. In s.
 PATIENCE = 0.5

@@ -1,4 +1,4 @@
-"""What the charts show: shares, times and scores in words, and counted for histograms."""
+"""The charts' content: shares, times and scores in words, and counted for histograms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _STEPS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 
 @dataclass(frozen=True)
 class Bin:
-    """One bar: what it stands for in words, the number under its left edge (or its middle), and its count."""
+    """One bar: its meaning in words, the number under its left edge (or its middle), and its count."""
 
     words: str
     label: str

@@ -1,4 +1,6 @@
-"""The page about a class: where it struggles, who needs a look, and how it was graded. For the instructor."""
+"""The page about a class: where it struggles, which students need a look, and how it was graded.
+
+For the instructor."""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["class_page"]
 
 _STATES = {"ungradable": "could not be graded", "grader_error": "fault of the grader"}
-#: Protection level -> what it keeps a submission from.
+#: Protection level -> what a submission cannot do there.
 _LEVELS = {
     "L3": "no file but its own, no network, no other process, limited time and memory",
     "L2": "no file but its own and Python's, no network, no other process; its temporary folder has no quota",
@@ -94,7 +96,7 @@ def _middle(scores: Sequence[float]) -> tuple[str, str]:
 
 
 def _mean_points(item: ExerciseTally) -> list[tuple[str, float, float]]:
-    """What each task gave on average; lateness and overrides are about the whole and not in it."""
+    """Each task's average; without lateness and overrides, which are about the whole exercise."""
     return [
         (task.task, round(task.points / task.submissions, 2), round(task.max_points / task.submissions, 2))
         for task in item.tasks.values()
@@ -112,6 +114,6 @@ def _otherwise(check: CheckTally, quiz: bool) -> str:
 
 
 def _times(values: Sequence[float]) -> tuple[float, float, float]:
-    """Median, what 19 of 20 stay below, and the longest, in s."""
+    """Median, 95th percentile and longest, in s."""
     seconds = sorted(values)
     return median(seconds), seconds[min(len(seconds) - 1, int(0.95 * len(seconds)))], seconds[-1]

@@ -19,7 +19,7 @@ __all__ = ["IndexRow", "index_page", "index_row"]
 
 @dataclass(frozen=True, slots=True)
 class IndexRow:
-    """One student: number of the page, and for each exercise points and whatever is unusual about them."""
+    """One student: number of the page, and for each exercise the points and anything unusual."""
 
     student: str
     place: int

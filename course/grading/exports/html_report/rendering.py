@@ -20,10 +20,10 @@ from course.printable import one_line
 
 __all__ = ["MARKER", "macro", "render", "script", "shortened"]
 
-#: Begins every page; what does not begin so is not ours to replace.
+#: The beginning of every page; a file that begins otherwise is not ours to replace.
 MARKER: Final = "<!DOCTYPE html>\n<!-- course grade -->\n"
 _TEMPLATES = Path(__file__).with_name("templates")
-#: Nothing that means something to HTML is left when this is looked for.
+#: Searched for after escaping, when no character of HTML is left.
 _CODE = re.compile(r"`([^`\n]{1,200})`")
 #: Characters of a name that are shown: a folder may be called anything.
 _LONGEST_NAME = 120
@@ -41,7 +41,7 @@ def render(template: str, **words: Any) -> str:
 
 
 def macro(template: str, name: str, *arguments: Any, **more: Any) -> Markup:
-    """What one macro of a template gives."""
+    """The result of one macro of a template."""
     found = getattr(_environment().get_template(f"{template}.html.j2").module, name)
     return Markup(found(*arguments, **more))
 
@@ -53,7 +53,7 @@ def shortened(value: str, longest: int) -> str:
 
 @cache
 def script() -> str:
-    """What sorts and filters tables, where scripts run; everything is there without it."""
+    """The script that sorts and filters tables; the page is complete without it."""
     return (_TEMPLATES / "tables.js").read_text("utf-8")
 
 
@@ -94,7 +94,7 @@ def _environment() -> jinja2.Environment:
 
 
 def _shown(value: Any) -> Any:
-    """Every value on its way into a page: characters that steer others are spelled out, line breaks stay."""
+    """Every value that goes into a page: control characters are spelled out, line breaks stay."""
     if isinstance(value, Markup) or not isinstance(value, str) or value.isprintable():
         return value
     return "\n".join(map(one_line, value.split("\n")))

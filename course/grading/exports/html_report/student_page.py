@@ -1,4 +1,4 @@
-"""One student's page, to be handed out: what was found, what it looks like, what to do, and the points.
+"""One student's page, to hand out: what was found, the likely mistake, what to do, and the points.
 
 It has only what ``handout`` lets this student see, and nothing about other students.
 """
@@ -42,7 +42,7 @@ class _Shown:
     """A student's result in one exercise, as the page has it.
 
     Attributes:
-        tasks: what there is to do first; a task with its checks, those that do not pass first.
+        tasks: unsolved ones first; each with its checks, failed ones first.
     """
 
     title: str
@@ -79,7 +79,7 @@ class _Shown:
 
 
 def student_page(results: Results, student: str, found: Sequence[Effective]) -> str:
-    """The page about everything one student handed in.
+    """The page about all of one student's work.
 
     Args:
         found: the student's results, in the order of the course.
@@ -130,7 +130,7 @@ def _share_of(check: CheckResult) -> str:
 
 
 def _numbers(check: CheckResult) -> list[tuple[str, str]]:
-    """What was measured and expected, and which mistake it looks like."""
+    """The measured and the expected value, and the likely mistake."""
     return [(label, shortened(value, _LONGEST_VALUE)) for label, value in numbers_of(check)]
 
 

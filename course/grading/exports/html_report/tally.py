@@ -70,7 +70,7 @@ class TaskTally:
 
 @dataclass
 class DiagnosisTally:
-    """How many students of an exercise made a known mistake, where, and what they read about it."""
+    """How many students of an exercise made a known mistake, where, and the advice they got."""
 
     exercise: str
     code: str
@@ -120,7 +120,7 @@ class ExerciseTally:
             return
         self.results += 1
         self.passed += effective.passed
-        # An instructor's decision alone is not a submission.
+        # An override alone is not a submission.
         self.handed_in += effective.result.number > 0 and (
             verdict.error is None or verdict.error.code != "no_file"
         )
@@ -203,10 +203,10 @@ class Tally:
     """A class, counted.
 
     Args:
-        exercises: what is counted, in the order of the course.
+        exercises: to count, in the order of the course.
 
     Attributes:
-        troubled: without a grade, for whatever reason, an instructor's score or none.
+        troubled: without a grade, for any reason, with or without an instructor's score.
         reasons: number of those by exercise, state and code.
         untimed: number of results without a trusted submission time.
         flagged: number of results that the download calls late, without saying by how much.

@@ -54,11 +54,11 @@ def write_pages(
 
     Args:
         path: of the page about the class; the rest lies beside it.
-        found: results ordered by student; what only an override is about may come at the end.
+        found: results ordered by student; those that have only an override may come at the end.
         exercises: ids, in the order they are shown.
 
     Returns:
-        What was written: the class page, the list of students as a page and as a table, the folder of pages.
+        The written paths: the class page, the list of students as a page and as a table, the folder of pages.
 
     Raises:
         MissingCapabilityError: a file cannot be written.
@@ -89,10 +89,10 @@ def write_pages(
 
 
 def _by_student(results: Results, found: Iterable[Effective]) -> Iterator[tuple[str, list[Effective]]]:
-    """Everything of one student together.
+    """All results of one student together.
 
-    A student with an override may have a result at the end, where nothing was handed in, so these wait for
-    it.
+    A student with an override for work that was not handed in has that result at the end, so the others wait
+    for it.
     """
     held: dict[str, list[Effective]] = {override.student: [] for override in results.book.overrides()}
     for student, group in itertools.groupby(found, key=lambda effective: effective.student):

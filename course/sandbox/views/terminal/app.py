@@ -35,7 +35,7 @@ __all__ = ["SandboxApp"]
 
 #: A run that is over sooner than this, in s, starts in slow motion, so that it can be seen.
 _BLINK, _SEEN = 0.5, 3.0
-#: How often numbers and curves are written anew, in s: faster than that nobody reads.
+#: How often numbers and curves are written anew, in s: the eye reads no faster.
 _READ = 0.2
 #: Pictures a second for those who asked for little motion.
 _CALM_FPS = 4.0
@@ -49,7 +49,7 @@ _COLOURS = {"ink": "#d5dae1", "paper": "#1b2028", "bar": "#2a323d"}
 
 
 class SandboxApp(FullScreenApp):
-    """A world, a picture of it, and everything that can be done to it.
+    """A world, its picture, and everything that a user can do to it.
 
     Args:
         world: before its first step, with a receipt.
@@ -135,7 +135,7 @@ class SandboxApp(FullScreenApp):
     # -- coming and going ------------------------------------------------------------------------
 
     def compose(self) -> ComposeResult:
-        """A line, the picture with what stands beside it, events, and a line of keys."""
+        """A headline, the picture with a panel beside it, events, and a line of keys."""
         yield self.head
         with Horizontal(id="middle"):
             yield self.canvas
@@ -148,7 +148,7 @@ class SandboxApp(FullScreenApp):
         self.begin()
 
     def begin(self) -> None:
-        """Start the frames, and ask first if there is something to ask."""
+        """Start the frames; first ask the scene's question, if it has one."""
         self._last = self._clock()
         self.set_interval(1 / self._fps, self.tick)
         self.world.paused = self.calm
@@ -188,7 +188,7 @@ class SandboxApp(FullScreenApp):
             self._write()
 
     def _hear(self, now: float) -> None:
-        """Take in what happened."""
+        """Take in the events."""
         events = self.world.drain_events()
         self.experiment.take(events)
         if self.experiment.passed():
@@ -285,7 +285,7 @@ class SandboxApp(FullScreenApp):
         self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r",), hint=hint), read)
 
     def action_question(self) -> None:
-        """The question again, or what came of it."""
+        """Show the question again, or its result."""
         stage, asked = self.experiment.stage, self.chosen.scene.prediction
         if stage == "ask":
             self.ask()
@@ -313,7 +313,7 @@ class SandboxApp(FullScreenApp):
     # -- keys ------------------------------------------------------------------------------------
 
     def action_pause(self) -> None:
-        """Run, or stand still."""
+        """Run or pause."""
         self.world.paused = not self.world.paused
         self._stopped = False
         self.renew()
@@ -325,7 +325,7 @@ class SandboxApp(FullScreenApp):
         self.renew()
 
     def action_reset(self) -> None:
-        """From the start; settings stay."""
+        """Begin again; settings stay."""
         self.pointer.drop()
         self.world.reset()
         self.experiment.again()
@@ -351,7 +351,7 @@ class SandboxApp(FullScreenApp):
             return
         now = self.world.settings.get(key)
         if now is None:
-            # Each body has its own until then; the first press says one for all, where those that move are.
+            # Until then each body has its own; the first press starts from the value that most of them have.
             now = self.stage.usual(key)
         value = now * spec.notch**way if spec.times else now + way * spec.notch
         value = float(round(value)) if spec.whole else round(value, 9)
@@ -365,7 +365,7 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.pointer.spawn(shape))
 
     def action_take(self) -> None:
-        """Take what is near the keyboard's pointer, or let it go."""
+        """Grab the body near the keyboard's pointer, or let it go."""
         self._attempt(self.pointer.toggle)
 
     def action_point(self, dx: int, dy: int) -> None:
@@ -379,12 +379,12 @@ class SandboxApp(FullScreenApp):
         self.say("Names on." if self.stage.names else "Names only where there is room.")
 
     def action_calm(self) -> None:
-        """Little motion, or all of it."""
+        """Switch between little motion and full motion."""
         self.calm = not self.calm
         self.say("Calm: four pictures a second, no flashes." if self.calm else "All pictures, all flashes.")
 
     def action_panel(self) -> None:
-        """Hide or show what is beside the picture."""
+        """Hide or show the panel beside the picture."""
         self._panel_wanted = not self._panel_wanted
         self.renew(layout=True)
 
@@ -399,7 +399,7 @@ class SandboxApp(FullScreenApp):
     # -- the mouse -------------------------------------------------------------------------------
 
     def on_mouse_down(self, event: Any) -> None:
-        """Take what is near, or put a new ball there."""
+        """Grab a body that is near, or add a new ball there."""
         place = self._cell(event)
         if place is None or len(self.screen_stack) > 1:
             return

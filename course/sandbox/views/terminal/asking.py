@@ -1,4 +1,4 @@
-"""What is laid over the picture: the question before a run, the numbers after it, the keys, the events."""
+"""Boxes over the picture: the question before a run, the numbers after it, the keys, the events."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class QuestionOverlay(Overlay[float]):
         self._scene, self._question, self._unit, self._calm = scene, question, unit, calm
 
     def compose(self) -> ComposeResult:
-        """Title, what to know, the question and a place for the answer."""
+        """Title, note, the question and a field for the answer."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
             box.border_subtitle = "Enter: run   Escape: run without a guess"
@@ -57,7 +57,7 @@ class QuestionOverlay(Overlay[float]):
             yield Static("", id="wrong", markup=False)
 
     def on_mount(self) -> None:
-        """Ready to type, and the question in sight however low the window is."""
+        """Focus the field, and keep the question in sight in a low window."""
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
@@ -109,7 +109,7 @@ def comparison(result: dict[str, Any], after: str) -> Page:
     """Theory, guess and simulation side by side, why, and what to think about next.
 
     Args:
-        result: a ``Comparison`` as plain values; None where a number is none.
+        result: a ``Comparison`` as plain values; None where it has no number.
     """
     unit = "" if result["unit"] == "1" else f" {clean(result['unit'])}"
     rows = [("theory", result["theory"]), ("simulation", result["simulation"])]

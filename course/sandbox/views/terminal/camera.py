@@ -1,4 +1,4 @@
-"""Where in a terminal a place of the world is drawn.
+"""Maps places in the world to cells and pixels of a terminal.
 
 A cell is twice as high as wide and shows two pixels, one above the other, so pixels are square. Pixel (0, 0)
 is the upper left one, x goes right and y goes down; its centre is at (0.5, 0.5).
@@ -59,5 +59,5 @@ class Camera:
         return int((x - self.left) * self.scale // 1), int((self.top - y) * self.scale // 2)
 
     def place(self, column: int, row: int) -> tuple[float, float]:
-        """What the middle of a cell shows, in m."""
+        """The place in the middle of a cell, in m."""
         return self.left + (column + 0.5) / self.scale, self.top - (2 * row + 1) / self.scale

@@ -1,4 +1,4 @@
-"""Hands: where the pointer is, what it holds, and where it aims while time stands still."""
+"""Hands: where the pointer is, what it holds, and where it aims while the world is paused."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Pointer:
     """A mouse, or a cross moved by arrows, over a picture of a world.
 
     Args:
-        stage: whose camera says what is where.
+        stage: its camera maps cells to places.
         on_touch: called before anything is done to a body.
 
     Attributes:
@@ -59,7 +59,7 @@ class Pointer:
     # -- mouse -----------------------------------------------------------------------------------
 
     def press(self, column: int, row: int) -> str | None:
-        """The button goes down. Returns what there is to say."""
+        """The button goes down. Returns a message, or ""."""
         self.at, self.by_keys, self.pressed = (column, row), False, True
         return self._take()
 
@@ -87,7 +87,7 @@ class Pointer:
         self._follow()
 
     def toggle(self) -> str | None:
-        """Take what is near, or let go of what is held."""
+        """Grab a body that is near, or let go of the one held."""
         self.by_keys = True
         return self._let_go() if self._world.held or self.aim else self._take()
 
@@ -111,7 +111,7 @@ class Pointer:
         return f"{math.hypot(vx, vy):.2f} m/s at {math.degrees(math.atan2(vy, vx)):.0f}°"
 
     def status(self) -> str:
-        """What is held and how fast it is, for the last line; "" if nothing is."""
+        """The held body and its speed, for the last line; "" if no body is held."""
         name = self._world.held
         if name is None:
             return ""
@@ -127,7 +127,7 @@ class Pointer:
     def _take(self) -> str | None:
         x, y = self._place()
         if self._world.paused:
-            # Time stands still, so a hand could not pull: it aims instead.
+            # The world is paused, so a hand cannot pull: it aims instead.
             near = self._stage.nearest(x, y, self.reach)
             if near is not None:
                 name, ax, ay = near

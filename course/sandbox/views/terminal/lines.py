@@ -33,7 +33,7 @@ class Canvas(Widget):
 
     def __init__(self, *, colour: bool, id: str | None = None) -> None:  # noqa: A002
         super().__init__(id=id)
-        #: Rows sent so far, for whoever measures.
+        #: Rows sent so far; read by measurements.
         self.sent = 0
         self._colour = colour
         self._cells: Cells | None = None
@@ -99,11 +99,11 @@ class Lines(Widget):
 
     @property
     def text(self) -> str:
-        """What is shown, without styles."""
+        """The lines, without styles."""
         return "\n".join("".join(piece for piece, _ in line) for line in self._lines)
 
     def show(self, lines: Sequence[Line]) -> None:
-        """What to show from now on."""
+        """Replace the lines."""
         before, self._lines = self._lines, list(lines)
         width, height = self.size
         most = max(len(before), len(self._lines))

@@ -1,4 +1,4 @@
-"""How much of a frame goes into stepping: keys and picture stay quick however hard the physics is."""
+"""How much of a frame goes into stepping: keys and picture stay quick, however slow the physics is."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Pacer", "speed_in_words"]
 
 #: Steps between looks at the clock.
 _CHUNK = 16
-#: The longest stretch of real time that is made up for, in s.
+#: The longest lag behind real time that is caught up, in s.
 _GAP = 0.1
 
 
@@ -27,7 +27,7 @@ class Pacer:
         clock: real time, in s.
 
     Attributes:
-        pace: how much of what was asked for was made lately, 0 to 1.
+        pace: the share of the requested steps that was made lately, 0 to 1.
     """
 
     def __init__(self, world: World, budget: float, clock: Callable[[], float] = perf_counter) -> None:

@@ -1,7 +1,7 @@
 """A frame of the world as cells: a character, the colour of its ink and the colour of its paper.
 
-In colour each cell is two pixels, drawn as a half block. Without colour each cell is a character that says
-what is there: what a picture says it never says by colour alone.
+In colour each cell is two pixels, drawn as a half block. Without colour each cell is a character for its
+content: nothing is ever shown by colour alone.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _ROD = 0x6F7782
 _HAND = 0xFFC857
 _SPARK = np.array([255.0, 244.0, 214.0])
 _HALF, _SPACE = ord("▀"), ord(" ")
-#: Without colour: what stands for what.
+#: The characters used without colour.
 _GLYPHS = {"circle": "o", "polygon": "#", "segment": "="}
 _FIXED, _LINE, _BURST, _POINTER = "▒", "·", "*", "+"
 _ARROWS = "→↗↑↖←↙↓↘"
@@ -56,7 +56,7 @@ class Spark:
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """What is drawn over the world.
+    """The overlay on the world.
 
     Attributes:
         pointer: the keyboard's pointer, in m.
@@ -92,7 +92,7 @@ class Cells:
 
 @dataclass
 class Picture:
-    """Draws one cast of bodies through one camera; make another when either changes.
+    """Draws one set of bodies through one camera; make a new one when either changes.
 
     Args:
         parts: all of the world's.
@@ -114,7 +114,7 @@ class Picture:
         self._glyphs = np.array(
             [_SPACE, *map(ord, glyphs), ord(_LINE), ord(_LINE), ord(_BURST)], dtype=np.uint32
         )
-        # Of two things in one cell that is shown which moves; rods are behind, hands and bursts before it.
+        # Of two things in one cell the moving one is shown; rods lie behind it, hands and flashes in front.
         self._rank = np.array([0, *(1 if part.fixed else 3 for part in self.parts), 2, 4, 5])
         self._marked = np.flatnonzero(
             [
@@ -293,6 +293,6 @@ def _rgb(colour: int) -> Floats:
 
 
 def _paint(part: Part) -> Floats:
-    """A body's colour for dark paper: a little lighter than on white, and what is fixed stands back."""
+    """A body's colour on a dark background: a little lighter than on white; fixed bodies are dimmer."""
     own = _rgb(int(part.colour.lstrip("#"), 16))
     return own * 0.62 if part.fixed else own * 0.85 + 255 * 0.15

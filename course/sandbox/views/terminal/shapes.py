@@ -1,7 +1,7 @@
 """Bodies as pixels: how much of each pixel a body covers.
 
-Bodies of one kind and about one size are computed together: a hundred balls cost as much as a few. The cover
-of a pixel is what its centre's distance to the outline says: exact enough for edges that look smooth.
+Bodies of one kind and about one size are computed together: a hundred balls cost as much as a few. A pixel's
+cover follows from the distance of its centre to the outline: exact enough for edges that look smooth.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ __all__ = ["Group", "Stamp", "grouped", "reaches"]
 
 Ints = NDArray[np.int64]
 
-#: Half of the thinnest wall that is drawn, and the radius of the smallest ball, in pixels; what is thinner or
-#: smaller is drawn that large, or it would fade away between pixels.
+#: Half of the thinnest wall that is drawn, and the radius of the smallest ball, in pixels. Anything thinner
+#: or smaller is drawn this large, or it would fade away between pixels.
 _THINNEST, _SMALLEST = 0.55, 0.8
 #: Steps of cover: fewer make fewer different colours to send, more make smoother edges.
 _SHADES = 6
@@ -40,7 +40,7 @@ class Stamp:
     Attributes:
         where: index into the flattened picture.
         cover: above 0, up to 1.
-        part: whose it is, as an index into the world's parts.
+        part: the body, as an index into the world's parts.
     """
 
     where: Ints
@@ -56,7 +56,7 @@ class Group:
         rows: which of the world's parts, (m,).
         window: side of the square of pixels that holds any of them.
         shape: "circle", "polygon" or "segment".
-        radius: in pixels, (m,); what the outline is grown by.
+        radius: in pixels, (m,); the outline is grown by it.
         normals, offsets: of a polygon's sides, outward, in the body's frame, (m, k, 2) and (m, k) in pixels.
         ends: of segments, in pixels, (m, 2, 2).
     """

@@ -1,4 +1,4 @@
-"""The world as it looks at this moment: which picture, through which camera, with which flashes."""
+"""The world as it looks now: which picture, through which camera, with which flashes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FLASH, _MOST = 0.3, 40
 
 
 class Stage:
-    """Draws a world into whatever room there is.
+    """Draws a world into the room that there is.
 
     Attributes:
         camera: of the last frame.
@@ -80,7 +80,7 @@ class Stage:
         del self._flashes[:-_MOST]
 
     def forget(self) -> None:
-        """The world was reset: nothing flashes any more."""
+        """The world was reset: stop all flashes."""
         self._flashes = []
 
     def nearest(self, x: float, y: float, reach: float) -> tuple[str, float, float] | None:
@@ -94,5 +94,5 @@ class Stage:
         return parts[row].name, float(shot.x[row]), float(shot.y[row])
 
     def usual(self, key: str) -> float:
-        """What most of the bodies that move have, for a setting that each has of its own."""
+        """The value that most moving bodies have, for a setting that each has of its own."""
         return float(median([getattr(part, key) for part in self._world.parts if not part.fixed] or [0.5]))

@@ -1,4 +1,4 @@
-"""What stands beside the picture: numbers, small curves and lines of text, as plain pieces."""
+"""The panel beside the picture: numbers, small curves and lines of text, as plain pieces."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ _NAME, _NUMBER = 9, 8
 
 
 def clean(text: str) -> str:
-    """A text on one line, without anything that a terminal would obey."""
+    """A text on one line, without control codes."""
     return " ".join(_CONTROLS.sub(" ", text).split())
 
 
 def shown(value: float, scale: float = 0.0) -> str:
-    """A number in at most seven characters; 0 if it is nothing beside ``scale``."""
+    """A number in at most seven characters; 0 if it is negligible beside ``scale``."""
     if not math.isfinite(value):
         return "none"
     if abs(value) <= 1e-9 * scale or value == 0.0:
@@ -80,7 +80,7 @@ def bars(values: Floats, width: int, low: float, span: float, height: int = 1) -
     means = np.add.reduceat(values, edges[:-1]) / np.diff(edges)
     means = np.interp(np.linspace(0, 1, width), np.linspace(0, 1, len(means)), means)
     full = np.nan_to_num((means - low) / span if span > 0 else means * 0.0)
-    # What is there is seen: the lowest bar is an eighth, so that a curve is never blank.
+    # The lowest bar is an eighth of a line, so that a curve is never blank.
     eighths = np.clip(np.rint(full * (8 * height - 1)) + 1, 1, 8 * height).astype(int)
     rows = range(height - 1, -1, -1)
     return ["".join(_BARS[k] for k in np.clip(eighths - 8 * row, 0, 8)) for row in rows]
@@ -100,7 +100,7 @@ def wrapped(text: str, width: int) -> list[str]:
 
 def head(world: World, state: str, pace: float, width: int) -> Line:
     """The line above the picture."""
-    # What is not quite kept up with for a moment is not worth a word.
+    # A short lag is not worth a word.
     slow = "" if world.paused or pace > 0.75 else f", but this machine manages {100 * pace:.0f} % of it"
     right = f"{world.t:.3f} s  {state or speed_in_words(world.speed)}{slow} "
     title = clean(world.scene.title)

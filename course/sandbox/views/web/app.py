@@ -1,4 +1,4 @@
-"""What is served, and to whom: this machine's own browser, from a page of ours, with the token; nobody else.
+"""What is served, and to whom: only to this machine's own browser, from a page of ours, with the token.
 
 A page elsewhere can make a browser send requests here, by a link, a form, a script, a WebSocket, or by a name
 that it lets point to 127.0.0.1. So every request must name this server as its host, come from no other
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["STATIC", "Guard", "make_app"]
 
 STATIC = Path(__file__).parent / "static"
-#: Everything there is to fetch; a path is looked up here and never joined to a folder.
+#: All files that can be fetched; a path is looked up here and never joined to a folder.
 _FILES = {
     "": ("index.html", "text/html"),
     "world.js": ("world.js", "text/javascript"),
@@ -47,7 +47,7 @@ _BEHIND = 1008
 
 
 def _headers(host: str) -> dict[str, str]:
-    """What every answer carries: nothing from elsewhere is loaded, nobody may frame or read it."""
+    """What every answer carries: it loads nothing from elsewhere, and no other page may frame or read it."""
     policy = {
         "default-src": "'none'",
         "script-src": "'self'",
@@ -125,7 +125,7 @@ class Guard:
         return 200 if given and hmac.compare_digest(given[0], self._token) else 404
 
     def _from_here(self, scope: Scope, own: str) -> bool:
-        """Whether a page of this origin asks, or somebody followed the address."""
+        """Whether a page of this origin asks, or the user followed the address."""
         # Browsers always send it with a socket, and a script elsewhere cannot leave it out.
         named = scope["type"] == "websocket" or any(key == b"origin" for key, _ in scope["headers"])
         if named and self._header(scope, b"origin") != own:
@@ -135,7 +135,7 @@ class Guard:
 
     @staticmethod
     def _header(scope: Scope, name: bytes) -> str | None:
-        """A header that is there once; one that is there twice counts as none."""
+        """A header that occurs once; one that occurs twice counts as missing."""
         found = [value for key, value in scope["headers"] if key == name]
         return found[0].decode("latin-1").lower() if len(found) == 1 else None
 
@@ -203,7 +203,7 @@ async def _serve(websocket: WebSocket, session: Session, page: Page) -> None:
     """Talk to one page until it leaves, or is too far behind, or the server stops."""
 
     async def until_done(talk: Awaitable[None]) -> None:
-        # Leaving in the middle of a word is how pages leave.
+        # Pages often leave in the middle of a message.
         with contextlib.suppress(WebSocketDisconnect, OSError):
             await talk
         both.cancel_scope.cancel()

@@ -1,4 +1,4 @@
-"""What a page and the world say to each other: small JSON requests one way, float32 frames the other."""
+"""Messages between a page and the world: small JSON requests one way, float32 frames the other."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Name = Annotated[str, Meta(max_length=60)]
 
 
 class _Request(msgspec.Struct, forbid_unknown_fields=True, tag_field="do"):
-    """One thing that a page asks for; ``do`` says which."""
+    """One request of a page; ``do`` says which."""
 
 
 class Grab(_Request, tag="grab"):

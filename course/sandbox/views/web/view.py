@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["play"]
 
-#: This machine, and nobody else.
+#: This machine alone.
 _LOOPBACK = "127.0.0.1"
 
 

@@ -487,7 +487,7 @@ class View {
     this.speed.setAttribute("aria-valuetext", `${plain(status.speed)} times real time`);
     if (!before || before.stage !== status.stage || before.guess !== status.guess) this.predict(status);
     else if (before.question !== status.question) {
-      const asked = this.card.querySelector(".question"); // beside a field that somebody may be typing in
+      const asked = this.card.querySelector(".question"); // beside a field that the student may be typing in
       if (asked) asked.textContent = status.question;
     }
     this.changed = true;

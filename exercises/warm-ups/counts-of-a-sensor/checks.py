@@ -46,5 +46,5 @@ def test_beyond(submission):
             units="m",
             input=dict(zip(("distance", "resolution", "limit"), args, strict=True)),
             message="A reading beyond reach is wrong.",
-            help="The sensor never says more than its limit.",
+            help="The reading never exceeds the limit.",
         )

@@ -24,5 +24,5 @@ def test_factors(submission):
             units="1",
             input=dict(zip(("k", "m", "h"), args, strict=True)),
             message="The factor of one step is wrong.",
-            help="Square x + h v and v - h (k/m) x, weigh them as in the energy, and add.",
+            help="Square x + h v and v - h (k/m) x, weight them as in the energy, and add.",
         )

@@ -143,6 +143,6 @@ def test_error_is_taken_at_one_moment(submission):
         quantity="error",
         units="m",
         input={"omega": 2.0, "samples": 2},
-        message="A position that is off by a quarter of a metre has another error.",
+        message="The error of a position that is off by a quarter of a metre is wrong.",
         help="Take the size of the difference between the last position and the exact one.",
     )

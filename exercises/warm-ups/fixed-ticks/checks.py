@@ -8,7 +8,7 @@ from course.grading import kit
 @pytest.mark.task("ticks")
 @pytest.mark.points(1)
 def test_frames(submission):
-    """Short and long frames give the right steps and the right rest"""
+    """Short and long frames give the right steps and leave the right time over"""
     cases = [
         ((0.025, 0.01, 0.006), [3, 0.001]),
         ((0.004, 0.01, 0.003), [0, 0.007]),
@@ -24,6 +24,6 @@ def test_frames(submission):
             quantity="steps and time left",
             units="1",
             input=dict(zip(("frame", "h", "left"), args, strict=True)),
-            message="Steps or rest of a frame are wrong.",
-            help="What goes into the account must come out as steps or stay in it.",
+            message="The steps of a frame, or the time left over, are wrong.",
+            help="All time that goes into the account must come out as steps or stay in it.",
         )

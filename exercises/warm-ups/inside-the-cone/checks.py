@@ -8,7 +8,7 @@ from course.grading import kit
 @pytest.mark.task("friction")
 @pytest.mark.points(1)
 def test_within(submission):
-    """What is within the limit is given whole"""
+    """An impulse within the limit is given in full"""
     cases = [
         (([0.3, -0.4], 2.0, 0.5), [0.3, -0.4]),
         (([0.0, 0.0], 1.0, 0.3), [0.0, 0.0]),
@@ -31,7 +31,7 @@ def test_within(submission):
 @pytest.mark.task("friction")
 @pytest.mark.points(1)
 def test_beyond(submission):
-    """What is beyond the limit is cut to it, in its own direction"""
+    """An impulse beyond the limit is cut to it and keeps its direction"""
     cases = [
         (([3.0, -4.0], 2.0, 0.5), [0.6, -0.8]),
         (([0.5, 1.2], 1.0, 0.65), [0.25, 0.6]),

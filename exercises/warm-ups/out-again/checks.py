@@ -24,7 +24,7 @@ def test_deep(submission):
             units="m/s",
             input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
             message="The speed that pushes out is wrong.",
-            help="Which distance is to be covered, and in which time?",
+            help="What distance must be covered, and in what time?",
         )
 
 
@@ -46,6 +46,6 @@ def test_within_slop(submission):
             quantity="separating speed",
             units="m/s",
             input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
-            message="Bodies that are not too deep are moved.",
+            message="Bodies that overlap by no more than the slop are moved.",
             help="The speed is never negative: a contact does not pull.",
         )

@@ -24,5 +24,5 @@ def test_distances(submission):
             units="1",
             input=dict(zip(("simulated", "doubt_s", "measured", "doubt_m"), args, strict=True)),
             message="The distance in doubts is wrong.",
-            help="How unsure is the difference of two numbers that are both unsure?",
+            help="How uncertain is the difference of two uncertain numbers?",
         )

@@ -27,5 +27,5 @@ def test_rules(submission):
             units="1",
             input=dict(zip(("mu1", "mu2", "rule"), args, strict=True)),
             message="The coefficient of a pair is wrong.",
-            help="Take the rule by its word.",
+            help="Apply exactly the rule that is given.",
         )

@@ -24,6 +24,6 @@ def test_positions(submission):
             quantity="x and y of the hand",
             units="m",
             input=dict(zip(("a1", "a2", "l1", "l2"), args, strict=True)),
-            message="The hand is somewhere else.",
+            message="The position of the hand is wrong.",
             help="Draw the arm with a1 = 90 degrees and a2 = 0: where does the second link point?",
         )

@@ -24,7 +24,7 @@ def test_energy_stays(submission):
             quantity="energy over the energy at the start",
             input={"k": k, "m": m, "h": h, "n": n},
             message="The energy of the swing does not stay where it began.",
-            help="Do one step on paper. Which line uses a value that the other has renewed?",
+            help="Do one step on paper. Which line uses a value that the other has just computed?",
         )
 
 
@@ -47,5 +47,5 @@ def test_quarter(submission):
         units="m",
         input={"k": k, "m": m, "h": h, "n": n},
         message="After a quarter of a period the mass is not where a mass on a spring would be.",
-        help="Keep the force -k x and the two sums; only the order of things is to change.",
+        help="Keep the force -k x and the two sums; change only the order.",
     )

@@ -218,7 +218,7 @@ class _Places:
 def as_markdown(coverage: Coverage) -> str:
     """The table for readers, as ``docs/coverage.md`` holds it."""
     out = [
-        "# Where the course has what the chapter has",
+        "# Where each part of the chapter is",
         "",
         "The course grew out of a chapter that introduces physics simulation for robots. If you know that",
         "chapter, this page says where each part of it is now, and what became of it:",

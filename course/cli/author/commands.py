@@ -82,7 +82,7 @@ def _any_id(incomplete: str) -> list[str]:
 _Functions = Annotated[
     list[str] | None,
     typer.Option(
-        "--function", metavar="'NAME(ARGUMENTS)'", help="A function that it asks for; as often as needed."
+        "--function", metavar="'NAME(ARGUMENTS)'", help="A function for students to write; repeatable."
     ),
 ]
 _Title = Annotated[str, typer.Option("--title", metavar="WORDS", help="Its title, for readers.")]
@@ -100,7 +100,7 @@ def new_exercise(
         typer.Option(
             "--lesson",
             metavar="ID",
-            help="To be read first; the last one if left out.",
+            help="The lesson to read first; the last one if left out.",
             autocompletion=lesson_ids,
         ),
     ] = "",
@@ -119,7 +119,7 @@ def new_warm_up(
     name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
     lesson: Annotated[
         str,
-        typer.Option("--lesson", metavar="ID", help="Where it stands.", autocompletion=lesson_ids),
+        typer.Option("--lesson", metavar="ID", help="The lesson it belongs to.", autocompletion=lesson_ids),
     ],
     function: _Functions = None,
     title: _Title = "",

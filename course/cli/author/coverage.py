@@ -24,7 +24,7 @@ __all__ = ["counted", "coverage", "is_command", "shown"]
 
 
 def coverage(
-    write: Annotated[bool, typer.Option("--write", help="Make docs/coverage.md anew.")] = False,
+    write: Annotated[bool, typer.Option("--write", help="Write docs/coverage.md again.")] = False,
 ) -> int:
     """Show where the course covers each part of the chapter that it is based on.
 

@@ -59,10 +59,14 @@ def export(
     ] = False,
     exercise: Exercises = None,
     seed: Annotated[
-        int | None, typer.Option("--seed", min=0, max=LARGEST_SEED, help="Of an autograder without OUT.")
+        int | None,
+        typer.Option("--seed", min=0, max=LARGEST_SEED, help="For an autograder, if no OUT is given."),
     ] = None,
     timeout: Annotated[
-        float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="Of an autograder, per check.")
+        float,
+        typer.Option(
+            "--timeout", metavar="S", min=0.1, max=60.0, help="CPU seconds per check, for an autograder."
+        ),
     ] = 10.0,
 ) -> int:
     """Write the grades in the format of another program.

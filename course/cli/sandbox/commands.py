@@ -43,7 +43,7 @@ _SCENE = typer.Argument(
     metavar="SCENE", help="A scene, or a file of your own that ends in .toml.", autocompletion=scene_ids
 )
 _SET = typer.Option(
-    "--set", metavar="KEY=VALUE", help="Set a parameter; as often as needed.", autocompletion=scene_settings
+    "--set", metavar="KEY=VALUE", help="Set a parameter; repeatable.", autocompletion=scene_settings
 )
 
 

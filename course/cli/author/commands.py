@@ -78,7 +78,7 @@ def _any_id(incomplete: str) -> list[str]:
     return [*lesson_ids(incomplete), *exercise_ids(incomplete), *scenes]
 
 
-#: What is known of something new with functions, before its files are written.
+#: Options of new content with functions, given before its files are written.
 _Functions = Annotated[
     list[str] | None,
     typer.Option(
@@ -127,8 +127,8 @@ def new_warm_up(
 ) -> int:
     """Write a warm-up with blanks to fill in.
 
-    As `course author new exercise`, and smaller: public checks only, two accepted solutions, three wrong.
-    Once the blanks are filled, `course author build ID` computes what the wrong ones answer.
+    Like `course author new exercise`, but smaller: only public checks, two accepted solutions, three wrong
+    ones. Once the blanks are filled, `course author build ID` computes the answers of the wrong ones.
     """
     return _new_with_functions(scaffold.new_warm_up, "warm-up", name, function, title, summary, lesson)
 
@@ -171,7 +171,7 @@ def new_lesson(
 ) -> int:
     """Write a lesson with blanks to fill in.
 
-    Nothing is overwritten. Put its id into syllabus.toml where it is to be read.
+    Nothing is overwritten. Put its id into syllabus.toml at the place where students should read it.
     """
 
     catalog = load_catalog()
@@ -339,7 +339,7 @@ def build(
         from course.authoring.exercises.diagnosis.confusion import confusion_of, write_confusion
         from course.scoring.explain.table import read_table
 
-        read_table.cache_clear()  # it was just written anew
+        read_table.cache_clear()  # it was just written
         for exercise in chosen:
             if exercise.readme_path.with_name("diagnoses.toml").is_file() and not exercise.is_warm_up:
                 with meter(console) as on_progress:

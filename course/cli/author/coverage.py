@@ -109,7 +109,7 @@ def is_command(words: tuple[str, ...]) -> bool:
 
 
 def shown(path: Path, catalog: Catalog) -> str:
-    """A path as it is called in the checkout."""
+    """A path relative to the checkout."""
     root = catalog.content.root
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
 

@@ -1,7 +1,7 @@
-"""``course author pictures``: the pictures of the README, made from what the program really says and does.
+"""``course author pictures``: the README's pictures, made from the program's real output.
 
-Beside them lies a digest of what each was made from. A test makes the digests anew, which takes seconds, and
-says which picture no longer shows what the program does.
+A file beside them has the digest of each picture's source. A test computes the digests again, which takes
+seconds, and names each picture that is out of date.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ __all__ = ["PICTURES", "pictures"]
 _MADE_FROM = "made-from.json"
 _COLUMNS = 84
 _SCENE = "newtons-cradle"
-#: Between the samples that the film's digest is made of, in s; rounded to a millimetre and less.
+#: Between the samples in the film's digest, in s; positions are rounded to a millimetre or less.
 _EVERY, _DECIMALS = 0.25, 3
 
 
@@ -71,7 +71,7 @@ def pictures(
 def _known(folder: Path) -> dict[str, str]:
     try:
         return dict(json.loads((folder / _MADE_FROM).read_text(encoding="utf-8")))
-    except (OSError, ValueError):  # none yet, or damaged: every picture is made anew
+    except (OSError, ValueError):  # missing or damaged: make every picture again
         return {}
 
 

@@ -1,1 +1,1 @@
-"""``course engines``: real engines on this machine, put through tests whose answers are known."""
+"""``course engines``: real engines on this machine, in tests with known answers."""

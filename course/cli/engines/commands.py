@@ -1,4 +1,4 @@
-"""``course engines``: which real engines this machine has, and the same scenarios through each of them."""
+"""``course engines``: which real engines this machine has, and the same scenarios in each of them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-#: The longest step and the shortest that scenarios make sense with, s.
+#: The longest and the shortest step that make sense in the scenarios, s.
 _LONGEST, _SHORTEST = 0.02, 1e-4
 
 
@@ -125,7 +125,7 @@ def compare(
 def _write(
     console: Console, comparison: Comparison, plot: Path | None, csv: Path | None
 ) -> tuple[tuple[WrittenFile, ...], WrittenFile | None]:
-    """Write the figures and the table that were asked for, and say where they are."""
+    """Write the requested figures and table, and say where they are."""
     plots: tuple[WrittenFile, ...] = ()
     if plot:
         with console.working("Drawing"):

@@ -1,4 +1,4 @@
-"""Files that ``course engines compare`` writes, and its rows as they leave the program."""
+"""The files that ``course engines compare`` writes, and its rows as data."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def _plain(value: object) -> str:
 
 
 def figures(comparison: Comparison, path: Path) -> list[tuple[Path, bytes]]:
-    """The figures that the rows suffice for, each with the name it is to be written under."""
+    """The figures that can be drawn from the rows, each with the name of its file."""
     from course.figures.engine_comparison import render
 
     kind = path.suffix.lower().removeprefix(".")

@@ -27,7 +27,7 @@ class Engine(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EngineScenario(msgspec.Struct, frozen=True, kw_only=True):
-    """One scenario; ``truth`` is None where nothing is true or false, "inf" for "whatever comes"."""
+    """One scenario; ``truth`` is None where nothing is true or false, "inf" for "any speed"."""
 
     id: str
     title: str

@@ -30,7 +30,7 @@ _STATUS = {
 
 
 def show(console: Console, comparison: Comparison, findings: Sequence[str]) -> None:
-    """Everything a comparison gave, for a person."""
+    """A whole comparison, for a person."""
     best = best_rows(comparison.rows)
     for scenario in SCENARIOS.values():
         rows = [row for row in comparison.rows if row.scenario == scenario.id]
@@ -70,7 +70,7 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
 
 
 def _tuned(cells: Mapping[Setting, str], rows: Sequence[Row], engine: str, dt: float) -> str:
-    """What the engine gave well set; a word where it has nothing to set."""
+    """The well-set result of the engine; a word where it has nothing to set."""
     tuned = next((r for r in rows if (r.engine, r.setting, r.dt) == (engine, TUNED, dt) and r.ok), None)
     default = next((r for r in rows if (r.engine, r.setting, r.dt) == (engine, DEFAULT, dt) and r.ok), None)
     same = tuned is not None and default is not None and not tuned.options
@@ -89,8 +89,8 @@ def _lines(rows: Iterable[Row]) -> list[tuple[str, bool]]:
 def best_rows(rows: Sequence[Row]) -> frozenset[int]:
     """Which rows, by ``id``, come nearest the truth in their column; ties are all best.
 
-    A column is a scenario, a step and a setting. The reference does not compete: its speed is another
-    machine's, and what is best here should have been seen here.
+    A column is a scenario, a step and a setting. The reference does not compete: it comes from another
+    machine, and the best row should have been measured on this one.
     """
     columns: dict[tuple[str, float, str], list[Row]] = {}
     for row in rows:
@@ -103,7 +103,8 @@ def best_rows(rows: Sequence[Row]) -> frozenset[int]:
             continue
         distance = [_distance(scenario, row) for row in column]
         nearest, first = min(zip(distance, column, strict=True), key=lambda pair: pair[0])
-        # What is the same on the screen is the same rank, and so is what a phase or a start could change.
+        # Values that look equal on the screen share a rank, and so do those within the spread of phases or
+        # starts.
         slack = max(0.5 * 10.0**-scenario.digits, 0.5 * (first.highest - first.lowest))
         if scenario.better == "large":
             slack = 1e-9
@@ -145,7 +146,7 @@ def number(scenario: Scenario, value: float) -> str:
 
 
 def _digits(scenario: Scenario, value: float) -> str:
-    """A value: signed where the truth is zero, and never a nought that is none."""
+    """A value: signed where the truth is zero, and never "0" for a number that is not zero."""
     sign = "+" if scenario.truth == 0.0 and scenario.unit == "%" else ""
     size = abs(value)
     if size >= 1000:
@@ -176,7 +177,7 @@ def _step(dt: float) -> str:
 
 
 def _troubles(console: Console, comparison: Comparison) -> None:
-    """What has no number, and why; and what would install what is missing."""
+    """The rows without a number, and why; and the command that installs what is missing."""
     said: set[tuple[str, str]] = set()
     for row in comparison.rows:
         if row.status in ("ok", "not_installed", "not_applicable"):

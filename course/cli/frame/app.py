@@ -29,8 +29,8 @@ OUR_FAULT = 70
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 
 
-#: Loading a command makes tens of thousands of objects, and no garbage among them. Collecting every 700, as
-#: Python does of itself, was a tenth of the time to a lesson's first page.
+#: Loading a command makes tens of thousands of objects, none of them garbage. Python's default, to collect
+#: after every 700, took a tenth of the time to a lesson's first page.
 _GARBAGE = 50_000
 
 
@@ -43,7 +43,7 @@ def main() -> NoReturn:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run one command line and return its exit code; whatever happens, nothing is raised."""
+    """Run one command line and return its exit code; never raises."""
     line = global_options(arguments)
     console = install(Console(line.settings))
     try:
@@ -82,7 +82,7 @@ def _dispatch(line: Line, console: Console) -> int:
     program = _program(fancy=console.fancy)
     if not console.json:
         return _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
-    # Whatever a library prints by itself must not end up beside the one object.
+    # A library's own output must not end up beside the one object.
     stray = io.StringIO()
     with contextlib.redirect_stdout(stray):
         code = _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
@@ -141,7 +141,7 @@ def _version(console: Console) -> int:
 
 
 def _completion(console: Console, option: str, shell: str) -> int:
-    """For the shell that is named; typer's own options take none, and look which one they run in."""
+    """For the named shell; typer's own options take no name, and find out which shell they run in."""
     from typer.completion import get_completion_script, install  # type: ignore[attr-defined]
 
     if shell not in SHELLS:
@@ -180,7 +180,7 @@ def _say(
     message: str,
     help: str = "",  # noqa: A002
 ) -> int:
-    """Report an ending that is no result."""
+    """Report an error in place of a result."""
     console.error(message, help)
     if console.json and not console.emitted:
         from course.cli.frame.replies import ErrorBody, ErrorReply

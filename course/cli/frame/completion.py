@@ -104,7 +104,7 @@ def scene_ids(incomplete: str) -> list[str]:
 
 
 def notebook_ids(incomplete: str) -> list[str]:
-    """Everything there is a notebook of whose id begins with what was typed."""
+    """Everything that has a notebook, and whose id begins with what was typed."""
     extra = [name for name in ("quiz", "sandbox") if name.startswith(incomplete)]
     return sorted({*exercise_ids(incomplete), *lesson_ids(incomplete), *extra})
 
@@ -126,7 +126,7 @@ def check_ids(ctx: Any, incomplete: str) -> list[str]:
 
 
 def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
-    """What ``--set`` takes for the simulation on the line, up to the sign of equality."""
+    """The names that ``--set`` takes for the simulation on the line, with the equals sign."""
     from course.errors import NotFoundError
     from course.simulations.registry import get
 
@@ -138,7 +138,7 @@ def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
 
 
 def scene_settings(ctx: Any, incomplete: str) -> list[str]:
-    """What ``--set`` takes for the scene on the line, up to the sign of equality."""
+    """The names that ``--set`` takes for the scene on the line, with the equals sign."""
     import tomllib
     from pathlib import Path
 
@@ -174,7 +174,7 @@ def run_numbers(ctx: Any, incomplete: str) -> list[str]:
 
 
 def _in_gradebook(ctx: Any, query: str) -> list[Any]:
-    """A column of a gradebook, which is looked at and never made; nothing if that cannot be."""
+    """A column of an existing gradebook; empty if it cannot be read."""
     import sqlite3
     from contextlib import closing
     from pathlib import Path
@@ -194,8 +194,8 @@ def _beginning(incomplete: str, names: Iterable[str]) -> list[str]:
 def _given(ctx: Any, name: str) -> str:
     """The first argument of the command; "" if it is not on the line.
 
-    A line that ends in an option without its value is no line that can be parsed: what the parser had read
-    of it by then are the arguments, and none of them has its name yet.
+    A line that ends in an option without its value cannot be parsed. The arguments that the parser had read
+    by then have no names yet.
     """
     value = ctx.params.get(name) or (ctx.args[0] if ctx.args else "")
     return str(value)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMATS", "inserted", "target", "write"]
 
-#: What a figure can be written as, by the end of its name.
+#: The formats of a figure, by the suffix of its name.
 FORMATS = ("png", "svg", "pdf")
 
 
@@ -54,7 +54,7 @@ def write(path: Path, data: bytes, *, why: str = "sim") -> WrittenFile:
 
     Raises:
         UsageError: the file cannot be written.
-        MissingCapabilityError: the copy cannot be written; the file is then as it was.
+        MissingCapabilityError: the copy cannot be written; the file is then unchanged.
     """
     from course.cli.frame.replies import Backup, WrittenFile
     from course.progress.workspace import write_atomically

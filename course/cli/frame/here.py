@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MAX_FILE_BYTES", "Here", "cwd", "find_workspace", "load_catalog"]
 
-#: What the intake of a grading run accepts; more is refused here too. In bytes.
+#: The largest file that a grading run accepts, in bytes; larger ones are refused here too.
 MAX_FILE_BYTES = 1_000_000
 
 
@@ -56,7 +56,7 @@ class Here:
 
     @cached_property
     def course(self) -> CourseRef:
-        """Which course this is, for answers."""
+        """The course's id and version, for replies."""
         return self.catalog.ref
 
     def exercise(self, wanted: str | None) -> Exercise:
@@ -121,7 +121,7 @@ class Here:
             ) from error
 
     def stub(self, exercise: Exercise) -> bytes:
-        """The module as it was handed out here, or as it would be now."""
+        """The module as it was handed out here, or else as it would be handed out now."""
         given = self.workspace.given(exercise.place, exercise.module)
         return exercise.stub_path.read_bytes() if given is None else given
 

@@ -148,7 +148,7 @@ COMMANDS: dict[str, Entry] = {
 }
 
 
-#: What ``course`` alone does: a module and its function.
+#: The command behind ``course`` alone: a module and its function.
 HOME = "home.overview", "dashboard"
 
 

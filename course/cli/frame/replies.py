@@ -1,4 +1,4 @@
-"""What ``--json`` prints, as types; scripts depend on every name here.
+"""The replies of ``--json``, as types; scripts depend on every name here.
 
 Each answer is one struct whose tag is its schema, ``course.<command>/1``. A field may be added within a
 version; renaming, removing or changing the meaning of one makes a new version.
@@ -35,7 +35,7 @@ class NextStep(msgspec.Struct, frozen=True):
 
 
 class ErrorBody(msgspec.Struct, frozen=True):
-    """A stable code, what is the case, and what to do about it."""
+    """A stable code, what is wrong, and what to do about it."""
 
     code: str
     message: str
@@ -43,7 +43,7 @@ class ErrorBody(msgspec.Struct, frozen=True):
 
 
 class Envelope(msgspec.Struct, frozen=True, kw_only=True, tag_field="schema"):
-    """What every answer begins with.
+    """The fields that every reply begins with.
 
     Attributes:
         refers_to: structs that its schema names and msgspec does not see.

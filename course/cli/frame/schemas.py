@@ -1,4 +1,4 @@
-"""``course schema``: what ``--json`` prints, as JSON Schemas for programs that read it."""
+"""``course schema``: the JSON Schemas of the replies that ``--json`` prints."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["NO_COMMAND", "reply_types", "schema", "schema_names", "schema_of", "schema_of_line"]
 
-#: What a line answers in which no command was found: an error.
+#: The reply to a line without a known command: an error.
 NO_COMMAND = "course.error/1"
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -79,7 +79,7 @@ def schema_of(tag: str) -> dict[str, Any]:
     names = [kind, ErrorReply, Bare, *getattr(kind, "refers_to", ())]
     (answer, *without), definitions = msgspec.json.schema_components(names, ref_template="#/$defs/{name}")
     for name in (ErrorReply.__name__, Bare.__name__):
-        # Or any answer would be one of these, with something added.
+        # Otherwise any reply would match one of these, with something added.
         definitions[name]["additionalProperties"] = False
     named = {"properties": {"schema": {"const": tag}}}
     return {

@@ -1,1 +1,1 @@
-"""``course grade``: what an instructor does with a class. Needs a checkout."""
+"""``course grade``: an instructor's commands for a class. They need a checkout."""

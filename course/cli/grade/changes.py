@@ -15,7 +15,7 @@ __all__ = ["points", "show_change"]
 
 
 def show_change(console: Console, change: Change) -> None:
-    """Scores and states before and after, and the checks that ended otherwise."""
+    """Scores and states before and after, and the checks with another outcome."""
     scores = f"{points(change.raw_before)} -> {points(change.raw_after)}"
     if change.state_before != change.state_after:
         scores += f", {change.state_before} -> {change.state_after}"

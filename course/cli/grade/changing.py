@@ -1,4 +1,4 @@
-"""``course grade rerun``, ``override``, ``late`` and ``similar``: what comes after a run."""
+"""``course grade rerun``, ``override``, ``late`` and ``similar``: the commands after a run."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def rerun(
     against: Against = "",
     reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the regrading.")] = "",
 ) -> int:
-    """Grade again, with the graders as they are now, or as they were.
+    """Grade again, with the present graders or earlier ones.
 
     Regrades the results of other graders, and results that a fault of the grader left without a score. Shows
     whose score changes, by how much and because of which check. The submissions are in the gradebook; old
@@ -238,7 +238,7 @@ def _take_in(book: Gradebook, people: Roster | None, times: list[SubmittedAt]) -
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
-    """What a file of times and the policy name, and the gradebook has not."""
+    """Names in a file of times or in the policy that the gradebook does not have."""
     students = _everybody(results)
     exercises = {item.id: item for item in results.exercises()}
     unknown = sorted({f"student {item.student}" for item in times if item.student not in students})
@@ -305,7 +305,7 @@ def similar(
     """Find submissions that are alike.
 
     Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
-    layout do not count, and neither does the stub. Likeness is a reason to talk with students, not a finding.
+    layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
     from course.cli.grade.replies import GradeSimilar, SimilarPair
     from course.grading.running.folder import open_results

@@ -1,4 +1,4 @@
-"""``course grade``: what an instructor does with a class. Needs a checkout."""
+"""``course grade``: an instructor's commands for a class. They need a checkout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``course grade export``: a gradebook in the form another program reads."""
+"""``course grade export``: a gradebook in the format of another program."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def _from_gradebook(
         is_new = people is not None and opened.book.meta().get("roster") != people.dump()
     if people is not None and is_new:
         try:
-            # Its extensions count: what lies beside the gradebook is written anew.
+            # Its extensions count, so the files beside the gradebook are written again.
             with open_results(out, writing=True) as opened:
                 remember(opened.book, people)
         except CourseError as error:  # the export itself is complete

@@ -1,4 +1,4 @@
-"""What ``course grade --json`` prints beside ``course.grade/1``, which the exports define."""
+"""The replies of ``course grade --json``, except ``course.grade/1``, which the exports define."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
 
 
 class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):
-    """Who changes, or changed, by how much and by which check."""
+    """The students whose scores change, by how much, and because of which check."""
 
     dry_run: bool
     regraded: int
@@ -84,7 +84,7 @@ class FoundFile(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
-    """What could not be graded by its name; ``reason`` is the code of the problem."""
+    """Work that could not be graded by its name; ``reason`` is the code of the problem."""
 
     student: str
     exercise: str
@@ -93,7 +93,7 @@ class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=True):
-    """What was assigned, and what is left to settle."""
+    """The assigned files, and the cases that are left."""
 
     dry_run: bool
     assigned: tuple[AssignedOne, ...]
@@ -108,7 +108,7 @@ class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):
 
 
 class GradeSalvage(Envelope, tag="course.grade-salvage/1", frozen=True, kw_only=True):
-    """Rows by table, those of them that only a backup had, and what is known to be lost."""
+    """Rows by table, the number that only a backup had, and the known losses."""
 
     dry_run: bool
     rows: dict[str, int]
@@ -141,7 +141,7 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
 
 
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):
-    """What was written. ``unmatched`` are students the roster has not, left out with ``--partial``."""
+    """The export. ``unmatched`` are students without a row in the roster, left out with ``--partial``."""
 
     format: str
     paths: tuple[str, ...]

@@ -105,7 +105,7 @@ def run(
 def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
-    """Who would get another score from the graders as they are now, which a resumed run does not use."""
+    """The students who would get another score from the present graders, which a resumed run does not use."""
     from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions, rerun
 
@@ -147,7 +147,7 @@ def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -
 def _graders(
     catalog: Catalog, jobs: int, local_cluster: int | None, scheduler: str | None
 ) -> AbstractContextManager[GradeAll]:
-    """Who grades: processes of this machine, or a cluster."""
+    """The graders: processes on this machine, or a cluster."""
     from course.grading.running.batch import grade_all
 
     if local_cluster is None and scheduler is None:
@@ -203,7 +203,7 @@ def explain(
 
 
 class _progress:  # noqa: N801 - used as a function
-    """Shows results as they come: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``."""
+    """Shows results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``."""
 
     def __init__(self, console: Console, course: CourseRef) -> None:
         self._console = console
@@ -370,5 +370,5 @@ def _show_result(
 
 
 def score_of(found: Effective) -> str:
-    """What the checks gave, in words."""
+    """The checks' result in words."""
     return "no score" if found.raw_score is None else format_points(found.raw_score)

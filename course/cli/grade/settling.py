@@ -1,4 +1,4 @@
-"""``course grade assign``, ``log`` and ``salvage``: whose file it is, who decided what, a damaged book."""
+"""``course grade assign``, ``log`` and ``salvage``: misnamed files, the journal, a damaged gradebook."""
 
 from __future__ import annotations
 

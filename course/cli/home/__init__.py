@@ -1,1 +1,1 @@
-"""Where a student is: objectives with their evidence, what is done, what is next."""
+"""Where a student is: objectives with their evidence, work done, the next step."""

@@ -1,4 +1,4 @@
-"""``course next`` and ``course go``: the next step named, and done."""
+"""``course next`` names the next step, and ``course go`` runs it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from course.cli.home.replies import Go, Next
 
 __all__ = ["go", "next_command"]
 
-#: What a step is, by its command.
+#: A step in words, by its command.
 _WHY = {
     "lesson": "the next lesson you have not read to its end",
     "lessons": "everything this course has was read",
@@ -46,9 +46,9 @@ def next_command() -> int:
 def go() -> int:
     """Go on from where you stopped.
 
-    Runs the next command: a lesson, its predictions and small tasks, its exercise, the next lesson, at last
-    the quiz and what to hand in. In a terminal it asks before each further step. With --json it runs nothing
-    and says what it would run.
+    Runs the next command: a lesson, its predictions and small tasks, its exercise, the next lesson, and at
+    last the quiz and `course submit`. In a terminal it asks before each further step. With --json it runs
+    nothing and says what it would run.
     """
     console, here = current(), Here.load()
     step = next_in_course(here)
@@ -57,7 +57,7 @@ def go() -> int:
         return 0
     while True:
         words = _as_run(console, step)
-        if not (words[0] == "lesson" and console.fancy):  # the reader covers it, and says where it was left
+        if not (words[0] == "lesson" and console.fancy):  # the reader covers it and tells where it continues
             console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(here, step)}", "dim"))
         code = again(words)
         if not console.interactive:

@@ -1,4 +1,4 @@
-"""What ``course progress`` says about learning: predictions, mistakes, what to read again."""
+"""The part of ``course progress`` about learning: predictions, mistakes, sections to read again."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DAYS = 7
 
 
 class Learning:
-    """What the record shows about learning.
+    """A student's learning, by the record.
 
     Attributes:
         predictions: None if the student made no predictions.
@@ -69,7 +69,7 @@ class Learning:
         )
 
     def _script(self, lesson: str) -> Script | None:
-        """The lesson; None if the course has it no more."""
+        """The lesson; None if the course no longer has it."""
         try:
             return read_script(self._catalog.lesson(lesson))
         except CourseError:

@@ -57,7 +57,7 @@ def show_objectives(
     """Each objective with its evidence.
 
     Args:
-        exercises: what is to be said of each exercise, by id.
+        exercises: the line about each exercise, by id.
     """
     console.heading("After this course you can …")
     for number, one in enumerate(objectives, 1):

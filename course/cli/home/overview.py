@@ -1,4 +1,4 @@
-"""``course`` and ``course progress``: where am I, what is next, what is done."""
+"""``course`` and ``course progress``: where am I, what is next, what have I done."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
 
 
 def quiz_state(here: Here) -> QuizState | None:
-    """What the record says about the quiz; None if the course has none."""
+    """The quiz, by the record; None if the course has none."""
     questions = len(list(here.catalog.content.quiz.glob("*.toml")))
     if not questions:
         return None
@@ -208,7 +208,7 @@ def _state(here: Here, exercise: Exercise, history: History) -> str:
         return "started" if exercise.id in here.workspace.started() else "new"
     if last.state != "graded":
         return "broken"
-    if whole is None:  # only some of the checks were ever run, which says nothing about the others
+    if whole is None:  # only some checks were ever run
         return "failing"
     if whole.all_pass and last.all_pass:
         return "complete"

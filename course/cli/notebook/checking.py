@@ -26,8 +26,8 @@ def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose
     """Check one notebook, show what was found, and give the exit code.
 
     Raises:
-        UngradableError: it is no notebook, or holds nothing that can be checked.
-        NotFoundError: there is no such file or exercise, or it cannot be told which.
+        UngradableError: it is not a notebook, or has nothing to check.
+        NotFoundError: there is no such file or exercise, or the exercise is not clear.
     """
     from course.handed_in.notebook import notebook_source
 
@@ -65,7 +65,7 @@ def _course() -> tuple[Here | None, Catalog]:
 
 
 def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> Exercise:
-    """The exercise that a notebook is about: as said, or as its cells, its name or its functions tell."""
+    """A notebook's exercise: the given one, or the one that its cells, its name or its functions show."""
     from course.handed_in.notebook import notebook_source
 
     if wanted is not None:

@@ -1,4 +1,4 @@
-"""Notebooks on disk. Student's work is never overwritten, and a copy of every replaced file is kept."""
+"""Notebooks on disk. Students' work is never overwritten, and a copy of every replaced file is kept."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def place(out: Path | None) -> tuple[Path, Layout]:
 
 
 def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFile:
-    """Write a notebook, or bring the one that is there up to date.
+    """Write a notebook, or bring an existing one up to date.
 
     Args:
-        update: what is there; False leaves it as it is, whatever it holds.
+        update: an existing one; False leaves it alone, whatever it holds.
 
     Raises:
-        UsageError: what is there cannot be read, or no copy of it can be kept.
+        UsageError: the existing file cannot be read, or no copy of it can be kept.
         MissingCapabilityError: the folder cannot be written.
     """
 

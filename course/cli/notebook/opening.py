@@ -35,8 +35,8 @@ def open_notebook(
 ) -> int:
     """Open a notebook in JupyterLab.
 
-    One that is not there is written first, in the workspace, and outside of one in notebooks/. One that is
-    there stays as it is: `course notebook update` brings newer text. Ctrl+C ends it.
+    A missing notebook is written first, in the workspace, or outside of one in notebooks/. An existing one is
+    not changed: `course notebook update` brings newer text. Ctrl+C ends it.
     """
     from course.notebooks.server import started
 

@@ -1,1 +1,1 @@
-"""``course quiz``: five questions, an explanation for every option, and what was missed comes back."""
+"""``course quiz``: five questions, an explanation of every option, and a review of missed questions."""

@@ -1,4 +1,4 @@
-"""``course quiz``: five questions, an explanation for every option, and what was missed comes back."""
+"""``course quiz``: five questions, an explanation of every option, and a review of missed questions."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ QuestionsOption = Annotated[
 
 
 def today() -> date:
-    """The day it is for the student."""
+    """Today, in the student's time zone."""
     return datetime.now().astimezone().date()
 
 
@@ -61,9 +61,9 @@ def today() -> date:
 def take(answers: AnswersOption = None, seed: SeedOption = None, questions: QuestionsOption = False) -> int:
     """Answer the questions; exit code 0 if passed, 1 below the mark.
 
-    An attempt that was interrupted goes on where it was. Without a terminal: print the questions with
-    --questions, put the answers into a file, and hand it over with --answers. Afterwards every option of
-    what was missed is explained.
+    An interrupted attempt continues where it stopped. Without a terminal: print the questions with
+    --questions, put the answers into a file, and pass it with --answers. Afterwards every option of a missed
+    question is explained.
     """
 
     console = current()
@@ -115,7 +115,7 @@ def _need_terminal(console: Console, command: str) -> None:
 
 
 def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion]) -> bool:
-    """Ask what is not answered yet; False if the student stops."""
+    """Ask the unanswered questions; False if the student stops."""
     for number, question in enumerate(posed, start=1):
         if question.question in attempt.answers:
             continue
@@ -199,10 +199,10 @@ def _step(missed: Sequence[MarkedQuestion], due: Sequence[Due], *, passed: bool)
 
 @app.command(epilog="Example: course quiz review")
 def review(answers: AnswersOption = None, seed: SeedOption = None, questions: QuestionsOption = False) -> int:
-    """Bring back what was missed, in new words and numbers.
+    """Ask missed questions again, in new words and numbers.
 
-    A missed question is due every two days until it was right three times in a row. Exit code 1 if
-    something was missed again; 0 if not, or if nothing is due. A review changes no score.
+    A missed question is due every two days until it was right three times in a row. Exit code 1 if a question
+    was missed again; 0 if not, or if none is due. A review changes no score.
     """
 
     console = current()

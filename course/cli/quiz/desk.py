@@ -1,4 +1,4 @@
-"""A student's side of the quiz: the questions, the record, and the attempt that is under way."""
+"""A student's side of the quiz: the questions, the record, and the present attempt."""
 
 from __future__ import annotations
 

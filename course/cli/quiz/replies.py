@@ -58,7 +58,7 @@ class QuizPlace(msgspec.Struct, frozen=True):
 
 
 class QuizAsked(msgspec.Struct, frozen=True):
-    """One question that is asked; which option is right is not said."""
+    """One question to answer; it does not say which option is right."""
 
     id: str
     title: str
@@ -92,7 +92,7 @@ class Quiz(Envelope, tag="course.quiz/1", frozen=True, kw_only=True):
 
 
 class QuizQuestions(Envelope, tag="course.quiz-questions/1", frozen=True, kw_only=True):
-    """Questions to be answered in a file; ``template`` is that file, to be filled in."""
+    """Questions to answer in a file; ``template`` is that file, to fill in."""
 
     course: CourseRef
     seed: int
@@ -104,7 +104,7 @@ class QuizQuestions(Envelope, tag="course.quiz-questions/1", frozen=True, kw_onl
 
 
 class QuizReview(Envelope, tag="course.quiz-review/1", frozen=True, kw_only=True):
-    """A review. ``ok`` is "nothing was missed again"; ``next_due`` is None when nothing is under review."""
+    """A review. ``ok`` is "no question was missed again"; ``next_due`` is None with none under review."""
 
     course: CourseRef
     seed: int | None

@@ -1,4 +1,4 @@
-"""How the quiz looks: questions, explanations and dates, on the screen and as parts of a reply."""
+"""The quiz's questions, explanations and dates, on the screen and as parts of a reply."""
 
 from __future__ import annotations
 
@@ -51,12 +51,12 @@ _LABEL = 11
 
 
 def show_mark(console: Console, total: int) -> None:
-    """The pass mark, before anything is asked."""
+    """The pass mark, before the first question."""
     console.line((f"{mark_sentence(total)}.", "bold"))
 
 
 def show_keys(console: Console) -> None:
-    """Which keys answer."""
+    """The keys for answers."""
     console.note(_KEYS)
 
 
@@ -128,7 +128,7 @@ def _show_choice(console: Console, label: str, choice: Choice, style: str) -> No
 
 
 def show_due(console: Console, due: Sequence[Due], today: date) -> None:
-    """When each question under review is due."""
+    """The day on which each question under review is due."""
     if not due:
         return
     console.blank()
@@ -230,7 +230,7 @@ def question_reply(marked: MarkedQuestion) -> QuizQuestion:
 
 
 def due_reply(due: Sequence[Due]) -> tuple[QuizDue, ...]:
-    """What is under review, as a script reads it."""
+    """The questions under review, as a script reads them."""
     return tuple(QuizDue(entry.question, entry.on.isoformat(), entry.rounds) for entry in due)
 
 

@@ -1,1 +1,1 @@
-"""``course lessons`` and ``course lesson``: what there is to read, and reading it."""
+"""``course lessons`` and ``course lesson``: the list of lessons, and reading one."""

@@ -1,6 +1,6 @@
-"""A lesson read by lines: a page at a time, and what is typed below it does what keys do on the whole screen.
+"""A lesson read by lines: one page at a time; typed words do what keys do in the full-screen reader.
 
-Each line is written once and stays: nothing is drawn again, so that a screen reader says it once.
+Each line is written once and stays: nothing is drawn again, so a screen reader says it once.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ __all__ = ["LineReader"]
 
 _STOP = ("q", "quit", "n", "no")
 _ON = "Enter goes on"
-#: A cell that takes longer says so, in s.
+#: After this time a running cell is announced, in s.
 _PATIENCE = 1.0
 _WORDS = (
     ("Enter", "the next page"),
@@ -91,7 +91,7 @@ class LineReader:
         }
 
     def read(self) -> bool:
-        """Read from where it was left; False if the student stops before the end."""
+        """Continue at the student's place; False if the student stops before the end."""
         number: int | None = _page(self._events, self._progress.place.block, self._starts)
         if number:
             self._say(f"Going on with page {number + 1} of {len(self._pages)}.")
@@ -128,7 +128,7 @@ class LineReader:
         self._say(task.summary)
 
     def _talk(self, number: int) -> int | None:
-        """What the student types below a page, until it leads to another one; None to stop."""
+        """Obey the student's words below a page, until one leads to another page; None to stop."""
         question = self._asked(number)
         is_open = question is not None and self._progress.prediction(question) is None
         following = self._starts[number if is_open else min(number + 1, len(self._pages) - 1)]
@@ -152,7 +152,7 @@ class LineReader:
         return None
 
     def _offers(self, number: int) -> list[str]:
-        """What can be done on a page beside going on."""
+        """The actions that a page offers, besides going on."""
         offers = []
         if self._unjudged(number) is not None:
             offers.append("1 2 3 say if you were right")
@@ -167,7 +167,7 @@ class LineReader:
         return offers
 
     def _do(self, typed: str, number: int) -> int | None:
-        """Do what a word asks for; the page that it leads to, if any."""
+        """Do what a word asks for; returns the page that it leads to, if any."""
         word, _, rest = typed.partition(" ")
         if typed.startswith("/"):
             self._search(typed[1:])
@@ -198,7 +198,7 @@ class LineReader:
         return number + 1
 
     def _remind(self, number: int) -> None:
-        """What was predicted, above the answer or where it was asked."""
+        """Repeat the prediction, above its answer or where it was asked."""
         question = self._asked(number) or self._unjudged(number)
         said = self._progress.prediction(question) if question is not None else None
         if said is not None:
@@ -267,7 +267,7 @@ class LineReader:
             self._tell(cell, self._gave)
 
     def _ran(self, _cell: Cell, _source: str, gave: CellOutput) -> None:
-        """From the cells' thread: it has ended."""
+        """A cell has ended (called in the cells' thread)."""
         self._gave = gave
         self._over.set()
 
@@ -287,7 +287,7 @@ class LineReader:
             self._say(f"{ran} and printed nothing.")
 
     def _listing(self, label: str, text: str) -> None:
-        """Text as it is, with its length said before it and its end after it, as in a printed lesson."""
+        """Unchanged text, with its length before it and "End of output" after it, as in a printed lesson."""
         rows = len(text.splitlines())
         if rows:
             self._say(f"{label}, {rows} line{'s' if rows > 1 else ''}:")
@@ -371,12 +371,12 @@ class LineReader:
 
 
 def _leads_elsewhere(typed: str) -> bool:
-    """Whether it is a word that does something while a prediction is open; all else is the prediction."""
+    """Whether a word is a command while a prediction is open; everything else is the prediction."""
     return typed in {"?", "b", "t"} or re.fullmatch(r"g \d+|/.+|course .+", typed) is not None
 
 
 def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
-    """What is recorded about a lesson; nothing where that cannot be read."""
+    """The recorded events of a lesson; none where the record cannot be read."""
     if here is not None:
         with contextlib.suppress(CourseError):
             return here.workspace.store.events(subject=lesson.id)
@@ -384,8 +384,8 @@ def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
 
 
 def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:
-    """The page to go on with: where this or the reader on the whole screen was left, or the first if the
-    lesson was read since.
+    """The page to continue with: where the student left this or the full-screen reader, or the first page if
+    the lesson was read since.
 
     Args:
         block: the one at the top when the student stopped; below 0 for none.
@@ -394,7 +394,7 @@ def _page(events: Sequence[Event], block: int, starts: Sequence[int]) -> int:
     last = next((event for event in reversed(events) if event.kind in {"place", "bookmark", "lesson"}), None)
     if last is None or last.kind == "lesson":
         return 0
-    if last.kind == "place":  # as version 1.2 kept it
+    if last.kind == "place":  # the form of version 1.2
         page = last.data.get("page", 0)
         return page if isinstance(page, int) and 0 <= page < len(starts) - 1 else 0
     return max(0, bisect.bisect_right(starts, block) - 1)

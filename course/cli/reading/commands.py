@@ -1,4 +1,4 @@
-"""``course lessons`` and ``course lesson``: what there is to read, and reading it."""
+"""``course lessons`` and ``course lesson``: the list of lessons, and reading one."""
 
 from __future__ import annotations
 
@@ -200,7 +200,7 @@ def _read_on_screen(
 
 
 def _print_code(console: Console, chosen: Lesson, number: int) -> int:
-    """The code of one cell as it is in the lesson, ready for a file."""
+    """Print the code of one cell, unchanged, ready for a file."""
     from course.reading.parts import read_script
 
     cells = read_script(chosen).shown_cells
@@ -230,7 +230,7 @@ def _print_all(reader: Reader) -> bool:
 
 
 def _after(here: Here | None, chosen: Lesson) -> str:
-    """What comes after a lesson that was read in a workspace, or that was printed."""
+    """The next step after a lesson that was read in a workspace, or that was printed."""
     if here is not None:
         with contextlib.suppress(CourseError):  # a record that cannot be read is warned about elsewhere
             return next_in_course(here)

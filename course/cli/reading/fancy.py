@@ -1,7 +1,7 @@
 """A lesson for sighted readers: wrapped prose, highlighted code, drawings, pictures where possible.
 
 Colour and weight only repeat what a word or a mark already says. Prose is at most 78 columns wide; code,
-output and drawings are as they are and, in lessons that pass the audit, fit in 60.
+output and drawings are not wrapped and, in lessons that pass the audit, fit in 60.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["KEEP", "FancyPrinter"]
 _MARGIN = 2
 _PROSE = 78
 _GAP = 3  # between the columns of a table
-#: A space that Rich does not break a line at, of Unicode's private use; the last step makes it a space.
+#: A character of Unicode's private use, at which Rich does not break a line; the last step makes it a space.
 KEEP = "\ue000"
 #: A formula up to this length stays on one line.
 _SHORT = 16
@@ -201,7 +201,7 @@ class FancyPrinter:
         return Group(*shown)
 
     def _where(self, figure: b.Figure) -> Text:
-        """Where the picture is, or the command that writes it."""
+        """The picture's path, or the command that writes it."""
         if self._figures_dir is not None:
             from course.figures.registry import save
 
@@ -243,7 +243,7 @@ class FancyPrinter:
 
 
 class _Prefixed:
-    """Something with the same mark before each of its lines, and no blanks after them to be copied along."""
+    """Output with the same mark before each line, and without trailing blanks, so that none are copied."""
 
     def __init__(self, inner: RenderableType, mark: str, style: Style | None = None) -> None:
         self._inner = inner
@@ -281,7 +281,7 @@ def _commands(commands: tuple[b.Command, ...]) -> RenderableType:
 
 
 def _column_widths(header: list[Text], rows: list[list[Text]], room: int) -> list[int] | None:
-    """Widths that fit: no column narrower than its longest word, what is left shared out by need.
+    """Widths that fit: no column is narrower than its longest word, and the rest is shared out by need.
 
     None if the longest words alone do not fit.
     """

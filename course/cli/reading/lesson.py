@@ -48,8 +48,8 @@ class Reader:
 
     Args:
         catalog: names what the lesson links to.
-        lesson: which one.
-        console: where to.
+        lesson: the one to show.
+        console: where to print.
         plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
         figures_dir: folder to write the figures to as PNG; None writes none.
         width: columns to use; the console's own if left out.

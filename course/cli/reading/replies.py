@@ -9,7 +9,7 @@ __all__ = ["LessonReply", "Lessons", "WarmUps"]
 
 
 class WarmUps(Envelope, tag="course.warmup/1", frozen=True, kw_only=True):
-    """The warm-ups, in the order of the lessons. With an id the answer is that of ``start`` or ``check``."""
+    """The warm-ups, in the order of the lessons. With an id the reply is that of ``start`` or ``check``."""
 
     warm_ups: tuple[WarmUpState, ...]
     next: NextStep | None = None

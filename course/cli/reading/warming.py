@@ -1,4 +1,4 @@
-"""``course warmup``: the small tasks of the lessons: a list of them, one to do, one to check."""
+"""``course warmup``: lists the lessons' small tasks, starts one, checks one."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     """The warm-up of that id.
 
     Raises:
-        NotFoundError: there is none; an exercise is none.
+        NotFoundError: there is none of that id, or it is an exercise.
     """
     chosen = catalog.exercise(name.rstrip("/\\"))
     if not chosen.is_warm_up:

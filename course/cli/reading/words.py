@@ -1,4 +1,4 @@
-"""Words that every way of printing a lesson shares."""
+"""Words shared by all ways of printing a lesson."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LABELS", "link_words", "value_spoken", "value_text"]
 
-#: What a passage with a role is headed by.
+#: The heading of a passage with a role.
 LABELS = {
     "predict": "Predict first",
     "answer": "Answer",

@@ -1,1 +1,1 @@
-"""``course sandbox``: scenes to play with, to run unseen, to film, to replay and to export."""
+"""``course sandbox``: scenes to play with, to run without a view, to film, to replay and to export."""

@@ -1,4 +1,4 @@
-"""``course sandbox``: scenes to play with, to run unseen, to film, to replay and to export."""
+"""``course sandbox``: scenes to play with, to run without a view, to film, to replay and to export."""
 
 from __future__ import annotations
 
@@ -124,8 +124,8 @@ def play(
 ) -> int:
     """Play a scene, or run it unseen.
 
-    In a terminal the scene opens to be played with. With --headless, --describe, --json, a file to write, or
-    anywhere but in a terminal, it runs to its end, and theory, guess and simulation are set side by side.
+    In a terminal the scene opens for you to play with. With --headless, --describe, --json, a file to write,
+    or outside a terminal, it runs to its end and shows theory, guess and simulation side by side.
     """
     return sandbox_play.play(current(), sandbox_play.PlayOptions(**locals()))  # a field for each option
 

@@ -1,4 +1,4 @@
-"""Files that ``course sandbox`` reads and writes, and the settings it is given."""
+"""The files that ``course sandbox`` reads and writes, and the settings on its command line."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
     """``KEY=VALUE`` as numbers.
 
     Raises:
-        UsageError: one is no such pair, or its value is no number.
+        UsageError: one is not such a pair, or its value is not a number.
     """
     found: dict[str, object] = {}
     for pair in settings:
@@ -57,7 +57,7 @@ def chosen(scene: str, settings: Sequence[str]) -> Chosen:
 
 
 def write(console: Console, path: Path, data: bytes, kind: str) -> SandboxFile:
-    """Write a file, keep a copy of what was there, and say so."""
+    """Write a file, keep a copy of an earlier one, and say so."""
     file = files.write(path, data, why="sandbox")
     if file.backup:
         console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")

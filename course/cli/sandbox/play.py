@@ -1,4 +1,4 @@
-"""``course sandbox play``: open a scene in a view, or run it unseen and tell what happened."""
+"""``course sandbox play``: open a scene in a view, or run it without one and report the events."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _LONGEST = 86_400.0
 
 @dataclass(frozen=True)
 class PlayOptions:
-    """What was asked for on the command line; see the command's options."""
+    """The command's options; see its help."""
 
     scene: str
     settings: list[str] | None
@@ -57,7 +57,7 @@ class PlayOptions:
 
     @property
     def unseen(self) -> bool:
-        """Something was asked for that needs no eyes on it."""
+        """An option was given that shows no picture."""
         return self.headless or self.describe or any((self.csv, self.gif, self.mp4, self.png))
 
 
@@ -115,7 +115,7 @@ def _check(options: PlayOptions) -> None:
 
 
 def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | None:
-    """The student's number: given, or asked for if a user is there to answer."""
+    """The student's guess: from the command line, or asked for in a terminal."""
     asked = chosen.scene.prediction
     if asked is None or options.guess is not None:
         return options.guess
@@ -153,7 +153,7 @@ def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: 
     try:
         view(world, chosen.scene, **more)
     except KeyboardInterrupt:
-        pass  # how one leaves
+        pass  # the usual way to leave
     finally:
         if recording is not None:
             sandbox_files.write(console, targets.paths["record"], recording.encode(), "record")
@@ -221,7 +221,7 @@ def _run_unseen(
 
 
 def _picture_times(chosen: Chosen, options: PlayOptions) -> tuple[float, ...]:
-    """When the one picture is taken: at the end unless said otherwise."""
+    """The time of the one picture: the end by default."""
     if options.png is None:
         return ()
     end = chosen.scene.duration if options.duration is None else options.duration
@@ -234,10 +234,10 @@ def _taker(
     """Takes every frame of a film, and the one picture."""
 
     def take(world: World, snapshot: Snapshot) -> None:
-        # A moment asked for with --at lies between the film's frames and is none of them.
+        # The moment of --at lies between the film's frames.
         if filming and round(snapshot.t * _FPS, 6) >= len(film):
             film.take(world.parts, snapshot)
-        # The picture is the last frame that is not later than asked for.
+        # The picture is the last frame up to that moment.
         if options.png is not None and (options.at is None or snapshot.t <= options.at + 1e-9):
             made["picture"] = (world.parts, snapshot)
 

@@ -33,7 +33,7 @@ class SandboxParameter(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SandboxEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """A scene in a list; ``question`` is to be answered before it is run, ``after`` afterwards."""
+    """A scene in a list; the student answers ``question`` before the run, ``after`` afterwards."""
 
     id: str
     title: str
@@ -67,9 +67,9 @@ class SandboxMomentum(msgspec.Struct, frozen=True, kw_only=True):
 class Sandbox(Envelope, tag="course.sandbox/1", frozen=True, kw_only=True):
     """One run of a scene.
 
-    ``settings`` holds everything that was set or has a default; ``probes`` what the scene measures, "nan" for
-    what did not happen; ``prediction`` is None where a scene asks for none. ``description`` is the run in
-    sentences.
+    ``settings`` holds everything that was set or has a default; ``probes`` the scene's measurements, "nan"
+    for events that did not happen; ``prediction`` is None where a scene asks for none. ``description`` is the
+    run in sentences.
     """
 
     scene: str
@@ -91,7 +91,7 @@ class Sandbox(Envelope, tag="course.sandbox/1", frozen=True, kw_only=True):
 
 
 class SandboxVersion(msgspec.Struct, frozen=True, kw_only=True):
-    """Something a recording was made with another version of."""
+    """A part whose version differs from that of the recording."""
 
     name: str
     recorded: str
@@ -114,7 +114,7 @@ class SandboxReplay(Envelope, tag="course.sandbox-replay/1", frozen=True, kw_onl
 class SandboxExport(Envelope, tag="course.sandbox-export/1", frozen=True, kw_only=True):
     """A scene as another engine's world; ``text`` is empty if it went to a file.
 
-    ``beside`` is what a world for Gazebo needs in its folder to start with velocities.
+    ``beside`` is the file that a world for Gazebo needs in its folder to start with velocities.
     """
 
     scene: str

@@ -1,1 +1,1 @@
-"""What stands around the work: a first look, a workspace, this machine, and a report when something fails."""
+"""Commands around the work: the demo, a workspace, a check of this machine, a report of a fault."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["bug", "redacted"]
 
-#: The last line of a crash report that is not its traceback: what was typed may name a student.
+#: The last line of a crash report before its traceback: the command line, which may name a student.
 _TYPED = re.compile(r"^command: .*$", re.MULTILINE)
 
 
@@ -64,19 +64,19 @@ def bug(
 
 
 def redacted(text: str) -> str:
-    """A text without the names of the user and the machine, and without the folders that bear them."""
+    """A text without the names of the user and the machine, or folders with these names."""
     for place, name in _places():
         for way in _spellings(place) | _spellings(place.replace("\\", "/")):
             text = re.sub(re.escape(way) + r"(?![\w-])", name, text, flags=re.IGNORECASE)
     for word, name in _names():
         for way in _spellings(word):
-            # An underscore parts words: a folder may be called ada_thesis.
+            # An underscore separates words: a folder may be called ada_thesis.
             text = re.sub(rf"(?<![^\W_]){re.escape(way)}(?![^\W_])", name, text, flags=re.IGNORECASE)
     return text
 
 
 def _spellings(text: str) -> set[str]:
-    """As it is; with its accents apart, as macOS has them; and as Python, JSON and an address write it."""
+    """A name's spellings: unchanged; with decomposed accents, as on macOS; and in Python, JSON and a URL."""
     forms = {unicodedata.normalize(form, text) for form in ("NFC", "NFD")}
     return {
         way
@@ -91,7 +91,7 @@ def _spellings(text: str) -> set[str]:
 
 
 def _places() -> list[tuple[str, str]]:
-    """Folders and what they are called instead, the innermost first."""
+    """Folders and their replacements, the innermost first."""
     installed = sysconfig.get_paths()
     package = Path(__file__).resolve().parents[3]
     found = {
@@ -109,7 +109,7 @@ def _places() -> list[tuple[str, str]]:
 
 
 def _names() -> Iterator[tuple[str, str]]:
-    """Words that tell whose machine it is; a system without a list of users has the environment's."""
+    """Words that identify the user; on a system without a list of users, those of the environment."""
     words = {os.environ.get(name, "") for name in ("USER", "LOGNAME", "USERNAME")} | {Path.home().name}
     try:
         words.add(getpass.getuser())

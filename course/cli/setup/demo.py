@@ -1,4 +1,4 @@
-"""``course demo``: a mistake found, explained and mended, for a person who installed the course a minute ago.
+"""``course demo``: a mistake found, explained and mended, for a user who has just installed the course.
 
 A worked example is checked with its mistake and without it, through the session that grades a class, and
 both motions are drawn. Nothing is written anywhere.
@@ -31,23 +31,23 @@ if TYPE_CHECKING:
 
 __all__ = ["MISTAKEN", "WORKED", "demo", "worked_example"]
 
-#: The worked example, a folder beside the lessons; it is no exercise.
+#: The worked example, a folder beside the lessons; not an exercise.
 WORKED = "worked/spring"
 #: The same module with one line wrong.
 MISTAKEN = "mistaken.py"
 
-#: What is drawn: stretch in m, rate in rad/s, step in s, number of steps. 10 s, about three periods.
+#: The drawn motion: stretch in m, rate in rad/s, step in s, number of steps. 10 s, about three periods.
 STRETCH, RATE, STEP, STEPS = 0.1, 2.0, 0.05, 200
 #: Two panels stand side by side from this width on, in columns.
 _WIDE = 70
 _PANEL_ROWS = 17
-#: Lines beside the picture: the heading, what is to be seen, where to read on.
+#: Lines beside the picture: the heading, the description, where to read on.
 _WORDS = 9
 
 
 @dataclass(frozen=True)
 class _Motion:
-    """A module, what its checks said, and the motion it computed: positions (m) and velocities (m/s)."""
+    """A module, its checks' results, and the motion it computed: positions (m) and velocities (m/s)."""
 
     source: str
     verdict: Verdict
@@ -65,7 +65,7 @@ def demo() -> int:
     """See a mistake found and mended, without a workspace.
 
     An integrator that says Euler and does something else is checked, mended and checked again, as your own
-    code will be. Leaves nothing behind.
+    code will be. It leaves nothing behind.
     """
 
     from course.cli.work.checking import open_session
@@ -128,7 +128,7 @@ def _show(
 
 
 def worked_example(catalog: Catalog) -> Exercise:
-    """The worked example, in the form of an exercise, so that the same session can check it."""
+    """The worked example as an exercise, so that the same session can check it."""
     import msgspec
 
     folder = catalog.content.lessons / WORKED
@@ -163,7 +163,7 @@ def _loop(source: str) -> str:
 
 
 def _change(before: str, after: str) -> tuple[str, ...]:
-    """The lines that differ, as a diff without its heads, indented as little as they can be."""
+    """The lines that differ, as a diff without its head, indented as little as possible."""
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     changed = [line for line in lines if line[:2] in {"- ", "+ "}]
     margin = min(len(line) - 2 - len(line[2:].lstrip()) for line in changed)
@@ -171,7 +171,7 @@ def _change(before: str, after: str) -> tuple[str, ...]:
 
 
 def _said(before: _Motion, after: _Motion) -> str:
-    """What the picture shows, with its numbers."""
+    """The picture in words, with its numbers."""
     low, high = before.energy
     return (
         f"Explicit Euler is supposed to gain energy: over {STEP * STEPS:g} s of this spring, the mended "
@@ -202,7 +202,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
     from course.figures.drawing.described import Panel, Plot, Series
 
-    # Each with the other in grey: the two then have the same axes, and the growth is seen.
+    # Each with the other in grey: then both have the same axes, and the growth shows.
     panels = tuple(
         Panel(
             "position / m",

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["doctor", "packages", "protection", "terminal"]
 
-#: What a student needs none of.
+#: Parts that no student needs.
 _NOT_FOR_USERS = {"dev", "all"}
 _LEVELS = {
     "L3": "your code runs in a locked sandbox of its own: no files, no network, no processes",
@@ -39,8 +39,8 @@ def doctor(
 ) -> int:
     """Say what works on this machine.
 
-    And what is missing, with the command that installs it. Exit code 4 if something is missing that the
-    course cannot do without.
+    It also says what is missing, with the command that installs it. Exit code 4 if the course cannot work
+    without a missing part.
     """
 
     console = current()
@@ -117,7 +117,7 @@ def packages() -> Iterable[Package]:
 
 
 def _satisfies(installed: str, wanted: str) -> bool:
-    """Whether the version is in the range; one that is no version is taken to be."""
+    """Whether the version is in the range; a text that is not a version counts as in it."""
     from packaging.specifiers import SpecifierSet
     from packaging.version import InvalidVersion
 
@@ -148,7 +148,7 @@ def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
 
 
 def protection() -> tuple[str, tuple[str, ...], tuple[str, ...]]:
-    """The level this machine reaches, why no higher one, and what would raise it."""
+    """The level this machine reaches, why it is not higher, and what would raise it."""
     try:
         from course.isolation.probe import probe
 
@@ -161,7 +161,7 @@ def protection() -> tuple[str, tuple[str, ...], tuple[str, ...]]:
 
 
 def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
-    """The workspace, what was repaired in it, and what is wrong with it."""
+    """The workspace, the repairs in it, and its faults."""
     try:
         here = find_workspace()
     except CourseError as error:

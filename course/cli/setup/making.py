@@ -1,4 +1,6 @@
-"""``course init``: a workspace, and what brings the checks to where people work. Nothing is overwritten."""
+"""``course init``: a workspace, and files that bring the checks to an editor or GitHub.
+
+Nothing is overwritten."""
 
 from __future__ import annotations
 
@@ -46,8 +48,8 @@ def init(
 ) -> int:
     """Make a workspace.
 
-    Creates the folder if need be, and course.toml in it. Nothing that is there already is changed; of a file
-    that --with replaces a copy is kept.
+    Creates the folder if necessary, and course.toml in it. Existing files are not changed; if --with replaces
+    one, a copy is kept.
     """
 
     console, catalog = current(), load_catalog()

@@ -1,4 +1,4 @@
-"""What the commands around the work answer."""
+"""The replies of the commands around the work."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Package(msgspec.Struct, frozen=True):
 
 
 class Fix(msgspec.Struct, frozen=True):
-    """Something that is missing and the command that installs it."""
+    """A missing part and the command that installs it."""
 
     problem: str
     command: str

@@ -50,10 +50,10 @@ _ENV = """\
 
 
 def usable(requirement: str | None) -> str | None:
-    """A requirement that pip, a shell and GitHub take for nothing else.
+    """A requirement that pip, a shell and GitHub all read in the same way.
 
     Raises:
-        UsageError: it would be read as something else.
+        UsageError: one of them would read it differently.
     """
     if requirement is not None and (
         not requirement.isprintable() or requirement.startswith("-") or "${{" in requirement
@@ -67,7 +67,7 @@ def usable(requirement: str | None) -> str | None:
 
 
 def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | None) -> list[WrittenFile]:
-    """Write the files of some kinds into a workspace; a copy of what was there is kept.
+    """Write the files of some kinds into a workspace; a copy of each replaced file is kept.
 
     Args:
         requirement: where pip gets the course from; None for the wheel in ``wheels/``.
@@ -93,7 +93,7 @@ def chosen_kinds(text: str) -> tuple[str, ...]:
     """The kinds in a list such as "github,vscode".
 
     Raises:
-        UsageError: one of them is none.
+        UsageError: there is no such kind.
     """
     kinds = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
     unknown = [kind for kind in kinds if kind not in KINDS]
@@ -122,7 +122,7 @@ def _workflow(requirement: str | None) -> str:
 
 def _container(requirement: str | None) -> str:
     install = ["python", "-m", "pip", "install"]
-    # As one string a shell runs it, which finds the wheel; as a list none does.
+    # One string is run by a shell, which finds the wheel; a list is not.
     command = " ".join([*install, WHEELS]) if requirement is None else [*install, requirement]
     return _json(
         {
@@ -163,7 +163,7 @@ def _json(value: object) -> str:
     return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
 
 
-#: What there is: its file, and what that holds for a requirement.
+#: The kinds: each one's file, and a function that gives its content for a requirement.
 KINDS: dict[str, tuple[str, Callable[[str | None], str]]] = {
     "github": (".github/workflows/course.yml", _workflow),
     "devcontainer": (".devcontainer/devcontainer.json", _container),

@@ -1,1 +1,1 @@
-"""``course sim``: simulations, and their numbers beside theory's."""
+"""``course sim``: simulations, with their numbers beside those of theory."""

@@ -1,4 +1,4 @@
-"""``course sim``: run the simulations and see their numbers beside theory's."""
+"""``course sim``: runs simulations, and shows their numbers beside those of theory."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-#: What the introductory simulations show together.
+#: The common finding of the introductory simulations.
 CONCEPTS = (
     "A body is its mass and its state: where it is and how it moves, to which rotation adds two more.",
     "Forces add up and give it an acceleration, a = F / m; nothing else does.",
@@ -74,7 +74,7 @@ def list_simulations(
 
 
 def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
-    """One simulation: what it shows, what to guess first, what can be set."""
+    """One simulation: its subject, its question, its parameters."""
     from course.simulations.settings import describe
 
     console.heading(simulation.id, simulation.title)

@@ -1,4 +1,4 @@
-"""What ``course sim`` writes of a run: a table and a figure."""
+"""The files that ``course sim`` writes: a table and a figure."""
 
 from __future__ import annotations
 

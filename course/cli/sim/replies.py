@@ -28,7 +28,7 @@ class SimParameter(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SimEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """A simulation in a list: ``question`` is to be answered before it is run."""
+    """A simulation in a list: the student answers ``question`` before the run."""
 
     id: str
     title: str
@@ -56,7 +56,7 @@ class SimRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SimSetting(msgspec.Struct, frozen=True):
-    """What a parameter was set to."""
+    """A parameter and its value."""
 
     value: Value
     unit: str

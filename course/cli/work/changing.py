@@ -1,6 +1,6 @@
 """``course diff``, ``course reset`` and ``course update``: the stub, and newer versions of it.
 
-Whatever is replaced is copied to ``.course/backups`` first, and the copy's path is printed.
+Every replaced file is copied to ``.course/backups`` first, and the copy's path is printed.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
-    """Bring one file up to date, or say what that would mean."""
+    """Bring one file up to date, or say what would happen."""
     workspace = here.workspace
     path = workspace.path(exercise.place, name)
     given = workspace.given(exercise.place, name)

@@ -1,4 +1,4 @@
-"""``course check``: the public checks, run through the very session that a grading run uses."""
+"""``course check``: the public checks, run by the same session as in a grading run."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
 
 
 def report_source_file(console: Console, here: Here, work: StudentWork) -> None:
-    """Which file was read, where there is a choice; what else there is becomes a warning."""
+    """Say which file was read, where there is a choice; warn about the other."""
     if work.notebook is not None or work.notes:
         console.note(f"Reading {work.path}.")
     here.warnings.extend(work.notes)
@@ -103,7 +103,7 @@ def grade_once(session: GradingSession, submission: Submission, only: str | None
     """The verdict of an open session on one submission.
 
     Args:
-        only: run this check and what it requires, and nothing else.
+        only: run this check and those it requires, and no others.
 
     Raises:
         NotFoundError: there is no check ``only``.
@@ -140,8 +140,8 @@ def record_verdict(
 
     Args:
         seconds: how long it took.
-        only: the one check that was asked for.
-        one_of_many: every exercise was checked, so that this one is not what the student turned to.
+        only: the one requested check.
+        one_of_many: every exercise was checked, so the student did not choose this one.
     """
 
     version = here.catalog.version
@@ -159,7 +159,7 @@ def reply_to(
     """The answer that ``--json`` prints for a verdict.
 
     Args:
-        printed: by the file while it was loaded.
+        printed: the file's output while it was loaded.
         curves: of its failed checks.
     """
     return Check(
@@ -189,7 +189,7 @@ def _check_one(
     verbose: bool = False,
     form: str = "text",
 ) -> Check:
-    """Check, record, show; raises what keeps it from being checked."""
+    """Check, record, show; raises the error if it cannot be checked."""
     exercise, source = work.exercise, work.source
     if form == "text":
         report_source_file(console, here, work)
@@ -208,7 +208,7 @@ def _check_one(
             annotate_error(console, here, work, problem, form)
         raise problem
     if form == "text":
-        # A warm-up is small, and one thing at a time is enough of it.
+        # For a small warm-up, one finding at a time is enough.
         brief = exercise.is_warm_up and not verbose
         if console.draws:  # above, so that the finding stays on the screen
             show_curve(console, exercise, verdict, session)
@@ -224,7 +224,7 @@ def _check_one(
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:
     known = worked_on(here)
-    # A repository need not hold the record of what was started; the files are there all the same.
+    # A repository may lack the record of started exercises, but it has the files.
     started = [
         one
         for one in here.catalog.exercises()
@@ -270,7 +270,7 @@ def _must_exist(wanted: str, known: list[str], exercise: Exercise) -> None:
 
 
 def _estimate(here: Here, exercise: Exercise) -> str:
-    """How long it took last time, once that is long enough to wonder."""
+    """How long it took last time, if that was long."""
     try:
         last = here.history(exercise).last
     except CourseError:

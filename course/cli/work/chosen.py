@@ -1,7 +1,8 @@
-"""Which file of an exercise counts: the module, or the notebook that was worked in instead.
+"""Which file of an exercise counts: the module, or the notebook if the student worked in that.
 
-One rule for handing in and for everything before it (check, watch, diff, report): the module, unless it is
-not there, or still the stub and the notebook was worked in. So what a check reads is what is handed in.
+One rule holds for handing in and for everything before it (check, watch, diff, report): the module counts,
+unless it is missing, or is still the stub while the notebook was edited. So a check reads the file that will
+be handed in.
 """
 
 from __future__ import annotations
@@ -34,15 +35,15 @@ NOTEBOOK = ".ipynb"
 
 @dataclass(frozen=True)
 class StudentWork:
-    """What a student has of one exercise.
+    """A student's file for one exercise.
 
     Attributes:
         name: of the file.
-        data: its content as it is.
+        data: its content, unchanged.
         source: the module that is graded.
         stub: the module as it was handed out, as this kind of file holds it.
-        notebook: where its lines stand; None if the file is the module itself.
-        notes: what else there is of this exercise and does not count, a sentence each.
+        notebook: the cells of the module's lines; None if the file is the module itself.
+        notes: other files of this exercise that do not count, a sentence each.
     """
 
     exercise: Exercise
@@ -60,7 +61,7 @@ class StudentWork:
 
     @property
     def submission(self) -> Submission:
-        """What is graded of it."""
+        """The part that is graded."""
         if self.notebook is not None:
             return self.notebook.submission(self.exercise)
         from course.scoring.judging.session import Submission
@@ -90,10 +91,10 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
 
 
 def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> StudentWork:
-    """The file of an exercise that counts, or the one that was named.
+    """The file of an exercise that counts, or the named one.
 
     Raises:
-        UngradableError: there is none, or it cannot be read, or holds nothing that could be graded.
+        UngradableError: there is none, it cannot be read, or it has nothing to grade.
     """
     notebook_there = here.workspace.path(exercise.place, _notebook_name(exercise)).exists()
     if named == _notebook_name(exercise):
@@ -110,7 +111,7 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
 
 
 def worked_on(here: Here) -> tuple[Exercise, ...]:
-    """The exercises that were started, or whose notebook was worked in."""
+    """The exercises that were started, or whose notebook was edited."""
     started = {exercise.id for exercise in here.started()}
     return tuple(
         exercise
@@ -120,7 +121,7 @@ def worked_on(here: Here) -> tuple[Exercise, ...]:
 
 
 def work_of(here: Here, *, warm_ups: bool = False) -> tuple[list[StudentWork], list[FileReply]]:
-    """What goes in, and what does not and why; warm-ups only if they are asked for."""
+    """The files to hand in, and those left out with the reason; warm-ups only on request."""
     chosen: list[StudentWork] = []
     left_out: list[FileReply] = []
     for exercise in (*here.catalog.exercises(), *(here.warm_ups_started() if warm_ups else ())):
@@ -162,7 +163,7 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
     """The notebook as it lies in the workspace.
 
     Raises:
-        UngradableError: it is not there, or no notebook, or has none of the exercise's functions.
+        UngradableError: it is missing, is not a notebook, or has none of the exercise's functions.
         UsageError: it cannot be read.
     """
     from course.handed_in.notebook import notebook_source
@@ -197,7 +198,7 @@ def _is_edited(here: Here, work: StudentWork) -> bool:
 
 
 def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
-    """A module that was worked in, with a word about the notebook beside it if that holds something else."""
+    """An edited module, with a note if the notebook beside it has other code."""
     from dataclasses import replace
 
     try:
@@ -217,7 +218,7 @@ def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
 
 
 def _handed_in_module(here: Here, exercise: Exercise) -> StudentWork | str:
-    """The module as it is handed in, or why it is not."""
+    """The module to hand in, or why there is none."""
     if not here.workspace.path(exercise.place, exercise.module).exists():
         return _MISSING
     module = _module(here, exercise)
@@ -225,7 +226,7 @@ def _handed_in_module(here: Here, exercise: Exercise) -> StudentWork | str:
 
 
 def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | None, str]:
-    """The notebook as it is handed in; or None and why not, "" where there is none."""
+    """The notebook to hand in; or None and the reason, "" where there is none."""
     from dataclasses import replace
 
     if not here.workspace.path(exercise.place, _notebook_name(exercise)).exists():

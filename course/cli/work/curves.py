@@ -1,4 +1,4 @@
-"""The curve of a failed check over the right one: drawn where the terminal can, said in any case."""
+"""The curve of a failed check over the right one: drawn where the terminal can, and always in words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["curve_replies", "show_curve"]
 
 
 def curve_replies(exercise: Exercise, verdict: Verdict, session: GradingSession) -> tuple[CurveReply, ...]:
-    """The curves as ``--json`` tells of them."""
+    """The curves as ``--json`` prints them."""
     return tuple(_reply(check, curve) for check, curve in _curves(exercise, verdict, session))
 
 

@@ -1,8 +1,8 @@
-"""``course hint`` and ``course solution``: help, as much as has been worked for.
+"""``course hint`` and ``course solution``: as much help as the student has worked for.
 
-Hints come one at a time, and each needs an attempt since the last one: a check that failed on code that had
-changed. The next one fits what that check thinks is wrong, or else it is the mildest. How many are left is
-never shown, because people who can count them down click through them.
+Hints come one at a time, and each needs an attempt since the last one: a failed check of changed code. The
+next hint fits that check's diagnosis, or else is the mildest one left. The number left is never shown,
+because students who see a countdown click through it.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
 
 
 def _file_name(here: Here, exercise: Exercise) -> str:
-    """The file that the student works in, as far as it can be told."""
+    """The file that the student works in, as far as it is known."""
     try:
         return chosen_work(here, exercise).name
     except CourseError:
@@ -215,11 +215,11 @@ def solution(exercise: ExerciseName = None) -> int:
 
 
 def _released(here: Here, exercise: Exercise) -> tuple[str, Mapping[str, str]]:
-    """Where a solution is, and its files.
+    """A solution's source, and its files.
 
     Raises:
         NotFoundError: none was released to this machine.
-        IntegrityError: the pack that might hold it is damaged.
+        IntegrityError: a pack that may hold it is damaged.
     """
     problem: IntegrityError | MissingCapabilityError | None = None
     for path in sorted(here.workspace.root.glob(PACKS)):

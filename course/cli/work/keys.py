@@ -1,4 +1,4 @@
-"""Single keys while a command waits or works, on a terminal only."""
+"""Single key presses while a command waits or works, on a terminal only."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Keys", "keys_of_terminal"]
 
-#: How often the thread looks whether it is still wanted, in s.
+#: How often the thread checks whether to go on, in s.
 _LOOK = 0.1
 
 
@@ -30,12 +30,12 @@ class Keys:
         self._on_key = on_key
 
     def press(self, key: str) -> None:
-        """A key came."""
+        """Take a key."""
         self._queue.put(key)
         self._on_key(key)
 
     def taken(self) -> Iterator[str]:
-        """What was pressed since the last look, oldest first."""
+        """The keys since the last call, oldest first."""
         with contextlib.suppress(queue.Empty):
             while True:
                 yield self._queue.get_nowait()
@@ -45,7 +45,7 @@ class Keys:
 def keys_of_terminal(on_key: Callable[[str], None]) -> Iterator[Keys | None]:
     """Keys as they are pressed, without Enter; None where the system has no such terminals.
 
-    Ctrl-C stays what it is. The terminal is as it was afterwards.
+    Ctrl-C keeps its meaning. The terminal is restored afterwards.
     """
     try:
         import termios

@@ -1,7 +1,7 @@
-"""``course reflect``: a question that no check can judge, answered in prose and graded by its author.
+"""``course reflect``: a question that no check can judge, answered in prose and graded by the student.
 
-The good answer and the points to grade by are shown after something was written, and what was written stays
-in the record of progress. It is not scored and not handed in.
+The good answer and the points to grade by appear after the student has written. The answer is kept in the
+record of progress; it is not scored and not handed in.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ def reflect(
 ) -> int:
     """Answer in prose, and grade your answer.
 
-    Once the exercise's checks pass. You write first; then you see a good answer and the points to grade yours
-    by. What you wrote is kept with your progress. It is not scored and not handed in.
+    It is open once the exercise's checks pass. You write first; then you see a good answer and the points to
+    grade yours by. Your answer is kept with your progress. It is not scored and not handed in.
     """
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
@@ -114,7 +114,7 @@ def _rubric(here: Here, chosen: Exercise) -> Rubric:
 
 
 def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[str, ...]]:
-    """What was written and how it was graded, the newest of each."""
+    """The newest answer and the newest grades."""
     said = ""
     graded: tuple[str, ...] = ()
     for event in here.workspace.store.events(KIND, chosen.id):
@@ -163,7 +163,7 @@ def _judged(
     grades: str | None,
     before: tuple[str, ...],
 ) -> tuple[str, ...]:
-    """Show the good answer and the points; grades that were given, asked for or kept."""
+    """Show the good answer and the points, with grades from the command line, the student or the record."""
     console.blank()
     console.heading("A good answer")
     for paragraph in rubric.good_answer.strip().split("\n\n"):

@@ -1,4 +1,4 @@
-"""What the commands about an exercise answer."""
+"""The replies of the commands about an exercise."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ __all__ = [
 
 
 class CurveReply(msgspec.Struct, frozen=True):
-    """What a failed check compared along time, in at most 200 points: the student's curve and the right one.
+    """Two curves that a failed check compared over time, the student's and the right one; at most 200 points.
 
     Attributes:
         check: its id.
@@ -61,7 +61,7 @@ class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
     """The verdict on one exercise. ``ok`` is "every check passes", ``passed`` is "reaches the pass mark".
 
     Attributes:
-        printed: by the file while it was loaded; what a check made it print is in its ``stdout``.
+        printed: the file's output while it was loaded; output during a check is in that check's ``stdout``.
         curves: of failed checks that compared a motion along time, in the order of the tasks.
     """
 
@@ -78,7 +78,7 @@ class Check(Envelope, tag="course.check/1", frozen=True, kw_only=True):
     curves: tuple[CurveReply, ...] = ()
 
 
-#: What a check ended in. JSON tells the two apart by their fields, msgspec does not.
+#: The two outcomes of a check. JSON tells them apart by their fields, msgspec does not.
 CheckOrError = Annotated[
     Any,
     msgspec.Meta(extra_json_schema={"anyOf": [{"$ref": "#/$defs/Check"}, {"$ref": "#/$defs/ErrorReply"}]}),
@@ -113,7 +113,7 @@ class Watch(Envelope, tag="course.watch/1", frozen=True, kw_only=True):
 
 
 class ReflectPoint(msgspec.Struct, frozen=True):
-    """Something to grade an answer by. ``grade`` is "yes", "partly", "no" or None."""
+    """A point to grade an answer by. ``grade`` is "yes", "partly", "no" or None."""
 
     text: str
     grade: str | None
@@ -162,7 +162,7 @@ class Diff(Envelope, tag="course.diff/1", frozen=True, kw_only=True):
 
 
 class Solution(Envelope, tag="course.solution/1", frozen=True, kw_only=True):
-    """``source`` is where it was found; ``files`` maps file names to their text."""
+    """``source`` is the place of the solution; ``files`` maps file names to their text."""
 
     exercise: str
     source: str
@@ -177,7 +177,7 @@ class Reset(Envelope, tag="course.reset/1", frozen=True, kw_only=True):
 
 
 class Change(msgspec.Struct, frozen=True):
-    """What ``update`` does about one file.
+    """The action of ``update`` on one file.
 
     ``action`` is "replace" (it was never edited), "beside" (it was: the new one is at ``new``), "current"
     (already so) or "missing" (removed by the student, and left so).
@@ -217,7 +217,7 @@ class Submit(Envelope, tag="course.submit/1", frozen=True, kw_only=True):
 
 
 class SectionReply(msgspec.Struct, frozen=True, kw_only=True):
-    """One part of a report. ``figure`` is the file drawn for it, ``description`` what is seen there."""
+    """One part of a report. ``figure`` is its file, ``description`` the figure in words."""
 
     title: str
     text: str

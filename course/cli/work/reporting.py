@@ -1,4 +1,4 @@
-"""``course report``: what a student's own code does on public data, in words, tables and figures."""
+"""``course report``: the student's own code on public data, in words, tables and figures."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _slug(title: str) -> str:
 
 
 def _shown(console: Console, section: Section, path: Path) -> SectionReply:
-    """Print one section, draw its figure, and say it again for scripts."""
+    """Print one section, draw its figure, and give both for scripts."""
     console.blank()
     console.line((section.title, "bold"))
     for paragraph in section.text.split("\n\n"):
@@ -125,7 +125,7 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
     console.figure(lambda: draw(plot))
     if plot.description:
         console.line(("Figure: " + plot.description, "dim"))
-    # A figure that says the same as before is not a new one to keep a copy of.
+    # An unchanged figure needs no copy of the old one.
     path.unlink(missing_ok=True)
     file = files.write(path, picture, why="report")
     console.line(f"Wrote {file.path}")
@@ -133,7 +133,7 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
 
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:
-    """Write the streams as a bag, read it back, and say what is in it."""
+    """Write the streams as a bag, read it back, and list its content."""
     if not made.streams:
         raise UsageError(
             "This report has no sensor streams to write.",
@@ -146,7 +146,7 @@ def _write_bag(console: Console, made: Report, bag: Path) -> str:
     path = cwd() / bag.expanduser()
     write_bag(path, streams_from(made.streams))
     kinds = {kind: name for name, kind in KINDS.items()}
-    # Read back: what a bag holds is what a reader finds in it.
+    # Read back: the content is what a reader finds.
     counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in read_bag(path)]
     console.blank()
     console.line(f"Wrote {path}: messages {', '.join(counts)}.")

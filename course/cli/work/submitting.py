@@ -1,4 +1,4 @@
-"""``course submit``: one zip with what the student wrote, the same bytes for the same files."""
+"""``course submit``: one zip with the student's work; the same files give the same bytes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ __all__ = ["FORMAT_VERSION", "archive", "submit"]
 
 FORMAT_VERSION = 1
 MANIFEST = "submission.json"
-#: What a grading run unpacks at most. In bytes.
+#: The most that a grading run unpacks, in bytes.
 MAX_TOTAL_BYTES = 5_000_000
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 
@@ -166,7 +166,7 @@ def _describe(here: Here, work: StudentWork) -> SubmitFile:
 
 
 def _quiz_records(here: Here) -> list[dict[str, object]]:
-    """The attempts at the quiz; none where the record of progress cannot be read, which is said."""
+    """The attempts at the quiz; none, with a warning, where the record of progress cannot be read."""
     try:
         return records(quiz_history(here.workspace.store.events()))
     except CourseError as error:
@@ -226,7 +226,7 @@ def _syntax_note(work: StudentWork) -> str:
 
 
 def _keep_old(here: Here, target: Path, data: bytes) -> str | None:
-    """Copy what is about to be replaced, unless it is the same."""
+    """Copy the file that will be replaced, unless the new one is equal."""
     if not target.exists() or target.read_bytes() == data:
         return None
     return str(here.workspace.backup(target, "submit"))

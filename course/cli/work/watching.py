@@ -1,7 +1,7 @@
 """``course watch``: a verdict after every save.
 
-The grading session stays warm between saves, so what a save costs is the checks themselves. The file is
-looked at twenty times a second: one question to the file system, which works on every drive and system.
+The grading session stays warm between saves, so a save costs only the checks themselves. The file is looked
+at twenty times a second: one question to the file system, which works on every drive and system.
 """
 
 from __future__ import annotations
@@ -44,11 +44,11 @@ if TYPE_CHECKING:
 __all__ = ["Watcher", "saves", "watch"]
 
 INTERRUPTED = 130
-#: A file must stay as it is this long before a save counts as done. In ms.
+#: A save counts as done once the file has not changed for this long, in ms.
 QUIET_MS = 20
-#: A save that never ends is looked at after this long anyway. In ms.
+#: A save that never ends is checked after this long anyway, in ms.
 PATIENCE_MS = 200
-#: Some programs empty a file and then write it; an empty one is looked at once more after this. In s.
+#: Some programs empty a file and then write it, so an empty file is looked at again after this, in s.
 SECOND_LOOK = 0.05
 #: How often a newer save is looked for, in s.
 _GLANCE = 0.05
@@ -65,13 +65,13 @@ def watch(
 ) -> int:
     """Check again on every save.
 
-    On a terminal keys give the next hint, the next failing function, details, another run; q or Ctrl-C ends
-    it. With --json the one object is printed then.
+    On a terminal, keys give the next hint, the next failing function, details or another run; q or Ctrl-C
+    ends it. With --json the one object is printed at the end.
     """
     from course.cli.work.checking import open_session
 
     console, here = current(), Here.load()
-    # Nothing to watch is an error now, and only something to wait for later.
+    # A missing file is an error at the start; later it is something to wait for.
     work = chosen_work(here, *asked_for(here, exercise))
     chosen = work.exercise
     path = here.workspace.path(chosen.place, work.name)
@@ -117,7 +117,7 @@ def _keys(console: Console, wake: threading.Event) -> Iterator[Keys | None]:
 
 @contextlib.contextmanager
 def _ended_like_ctrl_c() -> Iterator[None]:
-    """A closed window or a plain kill ends the watch as Ctrl-C does, so that the sandbox is cleared away."""
+    """A closed window or a plain kill ends the watch as Ctrl-C does, so that the sandbox is cleaned up."""
 
     def stop(_number: int, _frame: object) -> None:
         raise KeyboardInterrupt
@@ -152,7 +152,7 @@ def saves(path: Path, wake: threading.Event | None = None) -> Iterator[None]:
 
 
 def _settled(path: Path, now: Signature) -> Signature:
-    """What there is once a save is over: some programs write a file in several steps."""
+    """The file's state once a save is over: some programs write in several steps."""
     for _ in range(PATIENCE_MS // QUIET_MS):
         time.sleep(QUIET_MS / 1000)
         before, now = now, _signature(path)
@@ -204,7 +204,7 @@ class Watcher:
         return True
 
     def press(self, key: str, session: GradingSession) -> bool:
-        """Do what a key asks for; True if that was anything."""
+        """Do what a key asks for; True if it does something."""
         if key == "h":
             give_hint(self.console, self.here, self.exercise, self._focus or None)
         elif key == "r":
@@ -223,7 +223,7 @@ class Watcher:
 
     @property
     def keys(self) -> str:
-        """What can be pressed now: a hint once one is due, another function if another one fails."""
+        """The keys that do something now: a hint once one is due, another function if another one fails."""
         due = hint_is_due(self.here, self.exercise)
         hint = "h next hint, " if due else ""
         following = "n next failing function, " if len(self._failing()) > 1 else ""
@@ -240,7 +240,7 @@ class Watcher:
         )
 
     def _grade(self, session: GradingSession, noticed: float) -> bool:
-        """Grade and show what is there; True if that was dropped, for a newer save is there."""
+        """Grade and show the file; True if that was dropped because of a newer save."""
         self._announce()
         try:
             work = chosen_work(self.here, self.exercise, self.name or self.exercise.module)
@@ -295,7 +295,7 @@ class Watcher:
         return found
 
     def _say_changes(self, verdict: Verdict) -> None:
-        """First of all what broke since the last run, and what turned green."""
+        """First the checks that broke since the last run, and those that turned green."""
         if self._verdict is None:
             return
         before = {check.id: check.status for check in self._verdict.checks}
@@ -309,7 +309,7 @@ class Watcher:
 
     @contextlib.contextmanager
     def _at_work(self, session: GradingSession) -> Iterator[threading.Event]:
-        """While a run goes on: say what runs once it takes a while, and drop it when a newer save arrives."""
+        """During a run: say what runs once it takes a while, and drop it when a newer save arrives."""
         superseded, done = threading.Event(), threading.Event()
         path = self.here.workspace.path(self.exercise.place, self.name or self.exercise.module)
         status = self.console.rich().status("", spinner="line") if self.console.motion else None
@@ -374,7 +374,7 @@ def _following(names: list[str], now: str) -> str:
 
 
 def _signature(path: Path) -> Signature:
-    """What changes when a file is saved; None if there is no file."""
+    """A file's stamp, which changes when it is saved; None if there is no file."""
     try:
         status = path.stat()
     except OSError:

@@ -1,1 +1,1 @@
-"""The screen: what is printed and paged, pictures, meters, and a reader that goes away."""
+"""The screen: printing and paging, pictures, progress bars, and a pipe whose reader goes away."""

@@ -1,4 +1,4 @@
-"""Code in a terminal: highlighted, and a line that is longer than the window goes on further in."""
+"""Code in a terminal: highlighted; a line longer than the window continues with a deeper indent."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _rows(line: Text, width: int) -> Iterator[Text]:
 
 
 def _fitting(plain: str, start: int, room: int, words_from: int) -> int:
-    """Where a row that begins at ``start`` and has so much room ends."""
+    """The end of a row that begins at ``start`` and has this much room."""
     end = min(len(plain), start + max(1, room))
     while cell_len(plain[start:end]) > room and end > start + 1:  # some letters take two columns
         end -= 1

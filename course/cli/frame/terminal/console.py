@@ -70,7 +70,7 @@ class Settings:
 
 
 class Console:
-    """Says things in the shape this run asks for.
+    """Prints in the shape that this run asks for.
 
     Args:
         settings: the global options.
@@ -144,12 +144,12 @@ class Console:
 
     @property
     def terminal_width(self) -> int:
-        """Columns of the terminal, or what COLUMNS says."""
+        """Columns of the terminal, or the value of COLUMNS."""
         return shutil.get_terminal_size().columns
 
     @property
     def height(self) -> int:
-        """Lines of the terminal, or what LINES says."""
+        """Lines of the terminal, or the value of LINES."""
         return shutil.get_terminal_size().lines
 
     def _is_fancy(self) -> bool:
@@ -170,7 +170,7 @@ class Console:
                 emoji=False,
                 highlight=False,
             )
-        # A command that goes on for long sees its window become narrower.
+        # The window may change while a long command runs.
         self._rich.width = max(20, min(self.terminal_width, MAX_WIDTH))
         return self._rich
 
@@ -205,7 +205,7 @@ class Console:
         self._human.write("".join(f"{wrapper.fill(row)}\n" for row in rows))
 
     def blank(self) -> None:
-        """An empty line, where there is layout to speak of."""
+        """An empty line, if the output has a layout."""
         if not self.quiet:
             self._human.write("\n")
 
@@ -304,7 +304,7 @@ class Console:
             self.line(*pieces, indent=indent)
 
     def warn(self, text: str) -> None:
-        """Something the person should know that is no failure; on standard error."""
+        """A warning, which is not a failure; on standard error."""
         self._err.write(f"Note: {_harmless(text)}\n")
 
     def error(self, message: str, help: str = "") -> None:  # noqa: A002
@@ -377,7 +377,7 @@ class Console:
 
     @contextlib.contextmanager
     def paged(self) -> Iterator[None]:
-        """Stop at each screenful of what is said inside, where a person reads it; q leaves out the rest."""
+        """Stop after each screenful of the output inside, where a person reads it; q skips the rest."""
         if not (self.motion and self.interactive):
             yield
             return
@@ -412,7 +412,7 @@ class Console:
             status.stop()
 
     def flush(self) -> None:
-        """Hand everything over."""
+        """Flush everything."""
         self._out.flush()
         self._err.flush()
 
@@ -432,7 +432,7 @@ def _text(pieces: Sequence[Piece]) -> Text:
 
 
 def _harmless(text: str) -> str:
-    """Text that steers no terminal and no workflow: what a student's code raised is shown, not obeyed."""
+    """Text without control codes or workflow commands: a student's own text is shown, never obeyed."""
     return unheeded(steady(text.replace("\r\n", "\n")))
 
 

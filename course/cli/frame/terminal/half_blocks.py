@@ -1,4 +1,4 @@
-"""A picture in letters: two pixels a cell, the upper as ink and the lower as paper of the same half block."""
+"""A picture in half blocks: two pixels a cell, the upper as its ink and the lower as its paper."""
 
 from __future__ import annotations
 

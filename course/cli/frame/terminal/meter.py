@@ -1,4 +1,4 @@
-"""Shows how far a long piece of work is, and about how long it will still take."""
+"""Shows the progress of long work, and about how long the rest will take."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Pictures inside a terminal, where the terminal can: kitty's and iTerm2's protocols, sixels, or half blocks.
 
-Which terminal it is can only be told from its environment; asking it would mean reading its answer from the
-keyboard. When in doubt the picture is made of half blocks, which need colours and letters beyond ASCII only;
-a wrong guess of a protocol fills the screen with letters.
+The terminal's kind is known only from its environment: its answer to a question would arrive as if typed. In
+doubt the picture is made of half blocks, which need only colours and letters beyond ASCII; a wrong guess of
+the protocol would fill the screen with letters.
 
 Sources: kitty's "Terminal graphics protocol"; iTerm2's "Inline Images Protocol" (both read November 2026);
 for sixels, :mod:`course.figures.drawing.sixel`.
@@ -33,7 +33,7 @@ Protocol = Literal["kitty", "iterm2", "sixel"]
 #: Terminals that show sixels as they are installed. Others need a setting, which cannot be detected.
 _SIXEL_TERMS = ("foot", "mlterm", "contour")
 
-#: Pixels in a letter's width where the terminal does not say: those of the VT340, and of what imitates it.
+#: Pixels in a letter's width where the terminal does not say: those of the VT340 and its imitations.
 _LETTER = 10
 
 #: The kitty protocol takes at most this many bytes of base64 at a time.
@@ -65,9 +65,9 @@ class InlinePicture:
 
     Args:
         png: the file's bytes.
-        protocol: how to say it.
+        protocol: how to send it.
         columns: width on the screen; the height follows.
-        letter: pixels in the width of one of them, which only sixels ask for.
+        letter: pixels in a column's width, which only sixels need.
     """
 
     def __init__(self, png: bytes, protocol: Protocol, columns: int, letter: int = _LETTER) -> None:
@@ -82,7 +82,7 @@ class InlinePicture:
         yield Segment.line()
 
     def escape_codes(self) -> str:
-        """What the terminal is to be sent."""
+        """The characters to send to the terminal."""
         if self._protocol == "sixel":
             from course.figures.drawing.sixel import sixels
 
@@ -94,7 +94,7 @@ class InlinePicture:
         chunks = [data[start : start + _CHUNK] for start in range(0, len(data), _CHUNK)]
         codes = []
         for index, chunk in enumerate(chunks):
-            # q=2: no answer, which would arrive as if it had been typed.
+            # q=2: no reply, which would arrive as if it had been typed.
             head = f"a=T,f=100,q=2,c={self._columns}," if index == 0 else ""
             more = int(index < len(chunks) - 1)
             codes.append(f"\x1b_G{head}m={more};{chunk}\x1b\\")
@@ -119,7 +119,7 @@ def picture(
 
 
 def _letter_of(console: Console) -> int:
-    """Pixels in a letter's width, by the terminal's own word."""
+    """Pixels in a letter's width, as the terminal reports it."""
     try:
         import fcntl
         import termios
@@ -132,6 +132,6 @@ def _letter_of(console: Console) -> int:
 
 
 def _has_half_blocks(console: Console) -> bool:
-    """Whether there are colours enough, and a letter that is half a block."""
+    """Whether there are enough colours, and the half-block letter."""
     enough = console.is_terminal and not console.no_color and console.color_system in ("256", "truecolor")
     return enough and console.encoding.lower().replace("-", "").startswith("utf")

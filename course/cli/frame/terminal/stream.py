@@ -1,4 +1,4 @@
-"""What is written to, which may go away meanwhile."""
+"""An output stream whose reader may go away."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Stream:
         self._unless_gone(self._stream.flush)
 
     def _unless_gone(self, action: Callable[[], Any]) -> None:
-        """Do something with the stream; once its reader is gone, nothing more is done with it."""
+        """Do something with the stream, unless its reader is gone."""
         if not self._open:
             return
         try:

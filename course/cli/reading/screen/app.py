@@ -1,4 +1,4 @@
-"""The program behind the reader: what keys and the mouse do to a lesson that is on the screen."""
+"""The reader's program: the actions of keys and mouse on a lesson in the full-screen reader."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ class ReaderApp(TasksApp):
     # -- acting ------------------------------------------------------------------------------------------
 
     def action_act(self) -> None:
-        """What Enter does here."""
+        """Do what Enter does here."""
         item = self.page.item
         if item is None:
             self.action_forward()

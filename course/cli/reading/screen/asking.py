@@ -21,7 +21,7 @@ __all__ = ["ChoiceOverlay", "Edit", "Find", "Predict"]
 
 
 class Predict(Overlay[str]):
-    """The question, and a place for what the reader expects. Dismissed with it, or None."""
+    """The question, and a field for the prediction. Dismissed with it, or None."""
 
     def __init__(self, question: str) -> None:
         super().__init__()
@@ -166,7 +166,7 @@ class Edit(Overlay[tuple[str, bool]]):
             yield area
 
     def on_mount(self) -> None:
-        """Ready to type, with what is to be changed in sight."""
+        """Ready to type, with the line to change in sight."""
         area = self.query_one(TextArea)
         area.focus()
         area.move_cursor((self._line - 1, 0), center=True)

@@ -1,4 +1,4 @@
-"""What keys do with a lesson's cells: run, stop, change, copy, write; and where that shows on the page."""
+"""The keys for a lesson's cells: run, stop, change, copy, write; and their results on the page."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class CellsApp(LessonApp):
         self._end_cells()
 
     def open(self, lesson_id: str, place: Place | None = None) -> None:
-        """Open a lesson where its reader left it, or at a place; what runs in another is ended."""
+        """Open a lesson where its reader left it, or at a place; a cell that runs in another is ended."""
         if self._opened and lesson_id != self.progress.script.lesson.id:
             self._end_cells()
         super().open(lesson_id, place)
@@ -148,7 +148,7 @@ class CellsApp(LessonApp):
             self._say_round()
 
     def _bring_to_sight(self, block: int) -> None:
-        """Show the end of a block, where its output is; a reader who has moved on is not called back."""
+        """Show the end of a block, where its output is, unless the reader has moved on."""
         book = self.page.book
         span = book.layout.span(block) if book is not None else None
         top, end = self.page.top, self.page.end()

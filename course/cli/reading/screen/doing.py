@@ -1,4 +1,4 @@
-"""What keys do with a lesson's warm-ups and exercises: start, change, check, hint; a save is checked."""
+"""The keys for a lesson's warm-ups and exercises: start, change, check, hint. Each save is checked."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class TasksApp(CellsApp):
 
     def _tick(self) -> None:
         super()._tick()
-        # What is saved while something is checked is looked at once that is over.
+        # A file that is saved during a check is checked after it.
         if self._practice.possible and not self._practice.busy and len(self.screen_stack) == 1:
             for item in self.page.items():
-                # Saved in an editor of the student's.
+                # The student saved it in an editor.
                 if item.kind == "task" and self._practice.was_saved(item.target):
                     self._practice.check(item.target)
                     self._rebuild(item.block)
@@ -89,7 +89,7 @@ class TasksApp(CellsApp):
             self.say(_BUSY)
 
     def action_help(self) -> None:
-        """All keys; a layer above knows them."""
+        """All keys; the class above knows them."""
 
     def _do(self, item: Item) -> None:
         """Start a task, or check it."""
@@ -107,7 +107,7 @@ class TasksApp(CellsApp):
         self._show_task(item.target)
 
     def _edit(self, item: Item) -> None:
-        """Change the file of a task here; one that is not there is put there first."""
+        """Change the file of a task here; a missing one is written first."""
         practice = self._practice
         if not practice.of(item.target).file:
             self._do(item)

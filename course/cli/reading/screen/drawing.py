@@ -1,4 +1,4 @@
-"""Figures as half blocks of a terminal, drawn by a process of their own.
+"""Figures as half blocks of a terminal, drawn by a separate process.
 
 Drawing needs matplotlib, which is slow to load and large; the reader stays quick and small without it.
 """
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Drawer"]
 
-#: A figure is about this much lower than wide, in cells; its caption stands below it on the same screen.
+#: A figure's height, in cells, as a share of its width; its caption stands below it on the same screen.
 _LOW = 0.26
 _CAPTION = 5
 _LEAST = 8
@@ -46,7 +46,7 @@ class Drawer:
         self._number = 0
 
     def rows(self, figure: str, columns: int, room: int, drawn: Callable[[str], None]) -> list[Text]:
-        """A figure's lines; blank ones while it is being drawn, so that nothing moves when it comes.
+        """A figure's lines; blank ones while it is being drawn, so that nothing moves when it arrives.
 
         Args:
             columns: how wide.
@@ -89,7 +89,7 @@ class Drawer:
         return self._drawn.get(key, [Text()] * rows)
 
     def open(self, figure: str, say: Callable[[str], None]) -> None:
-        """Show a figure as it is on paper in the system's viewer, or say where it was put."""
+        """Show a figure as on paper in the system's viewer, or say where its file is."""
 
         def take(answer: dict[str, Any]) -> None:
             if "png" not in answer:

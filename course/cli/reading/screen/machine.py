@@ -1,4 +1,4 @@
-"""What the reader needs of the machine it runs on: a folder to write to."""
+"""Writing a file to the current folder."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["write_new"]
 
 
 def write_new(name: str, text: str) -> Path:
-    """Write a file into the current folder; one that is there already keeps its name and content.
+    """Write a file into the current folder; an existing one keeps its name and content.
 
     Raises:
         MissingCapabilityError: the folder cannot be written.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Book", "Page", "Words"]
 
-#: Lines round the text: a head, a position bar and a line of keys; below this height no head.
+#: Lines around the text: a head, a position bar and a line of keys; below this height no head.
 _LOW = 16
 _MARGIN = 2
 _BAR = Style(reverse=True)
@@ -32,7 +32,7 @@ _LINK_HERE = Style(reverse=True)
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """What stands round the text."""
+    """The words around the text."""
 
     head: str = ""
     keys: str = ""
@@ -65,7 +65,7 @@ class Book:
         return self._printer.column
 
     def build(self, height: int, first: int = -1, enough: int | None = None) -> None:
-        """Lay out what is not laid out yet, and cut it into screens.
+        """Lay out the missing blocks, and cut them into screens.
 
         Args:
             height: lines of text on a screen.
@@ -102,7 +102,7 @@ class Page(Widget):
     """Shows a screen of a book. ``top`` is its first row; the mouse and keys are the app's business.
 
     Attributes:
-        paged: what would be cut at the foot is left for the next screen.
+        paged: a block that would be cut at the foot is left for the next screen.
     """
 
     DEFAULT_CSS = "Page { width: 100%; height: 100%; }"
@@ -149,7 +149,7 @@ class Page(Widget):
         return layout.end_of(self.top) if self.paged else min(len(layout), self.top + self.room)
 
     def go(self, top: int, *, paged: bool = True) -> None:
-        """Show the screen that begins with a row; ``paged`` leaves what would be cut for the next one."""
+        """Show the screen that begins with a row; ``paged`` leaves a block that would be cut for later."""
         if self.book is None:
             return
         self.top = max(0, min(top, len(self.book.layout) - 1))
@@ -161,7 +161,7 @@ class Page(Widget):
         return self.book.layout.place(self.top) if self.book is not None and len(self.book.layout) else None
 
     def item_at(self, x: int, y: int) -> Item | None:
-        """What can be acted on at a cell of the screen: a link by its letters, the rest by its rows."""
+        """The item at a cell of the screen: a link by its letters, the rest by its rows."""
         row = self.top + y - self._lead
         if self.book is None or not 0 <= y - self._lead < self.end() - self.top:
             return None
@@ -184,7 +184,7 @@ class Page(Widget):
         return next((i for i in self.book.items if i.kind != "link" and i.block == block), None)
 
     def items(self) -> list[Item]:
-        """What can be acted on here, from top to bottom."""
+        """The items on this screen, from top to bottom."""
         if self.book is None:
             return []
         end, spans = self.end(), self.book.layout.span

@@ -1,7 +1,7 @@
-"""Warm-ups and exercises done while their lesson is read: their files, and what their checks say.
+"""Warm-ups and exercises done while their lesson is read: their files, and the results of their checks.
 
-A task is checked and hinted at by the command itself, in a process of its own: the reader stays small, the
-file is the one that an editor has open, and the record is written by the one who writes it everywhere.
+``course check`` and ``course hint`` run in a separate process: the reader stays small, the file is the one
+that an editor has open, and the same code as everywhere writes the record.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Standing:
     Attributes:
         file: where it lies, relative to the workspace; empty before it was started.
         done: all its checks passed once.
-        busy: what goes on now; empty if nothing does.
+        busy: what is going on; empty if nothing is.
         reply: the last answer of ``course check --json``, as plain values.
         hint: what ``course hint`` said last.
     """
@@ -188,7 +188,7 @@ class Practice:
         return reply
 
     def _recorded(self, name: str) -> Standing:
-        """What the workspace knows of a task."""
+        """The workspace's record of a task."""
         if self._workspace is None:
             return Standing()
         exercise = self._catalog.exercise(name)

@@ -1,7 +1,7 @@
-"""A lesson's blocks as rows of a given width, with what can be acted on in them.
+"""A lesson's blocks as rows of a given width, with the items that keys act on.
 
-The look is the printed lesson's; what differs is that predictions close what follows them, cells show what
-they gave here, and links can be followed.
+It looks like the printed lesson, except that predictions hide what follows them, cells show their results
+here, and links can be followed.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class BlockRows:
-    """A block laid out: its lines, what is known of each, and what can be acted on."""
+    """A block laid out: its lines, facts about each, and the items in them."""
 
     lines: tuple[tuple[Segment, ...], ...]
     rows: tuple[Row, ...]
@@ -79,7 +79,7 @@ class ScreenPrinter(FancyPrinter):
 
     Args:
         progress: the lesson, with what its reader did.
-        width: columns there are.
+        width: of the screen, in columns.
         busy: the key of the cell that runs, with what to say of it; empty if none does.
         picture: a figure's lines for a width: blank while it is being drawn, none if it stays described.
         practice: how far the student is with warm-ups and exercises; None where there is nothing to work in.
@@ -148,7 +148,7 @@ class ScreenPrinter(FancyPrinter):
         return self._laid_out(shown, index)
 
     def tail_rows(self, shown: RenderableType, links: list[tuple[str, str]], index: int) -> BlockRows:
-        """What stands after the last block: some words, and a line for each (target, words)."""
+        """The rows after the last block: some words, and a line for each (target, words)."""
         self._links = 0
         lines = [shown, *(self._link(target, (b.Text(words),)) for target, words in links)]
         made = self._laid_out(Group(*lines), -1)
@@ -279,7 +279,7 @@ class ScreenPrinter(FancyPrinter):
         return Group(shown, Text(""), line)
 
     def _compared(self, question: Question) -> RenderableType:
-        """What was said, what the run gave, and how the reader says it did."""
+        """The prediction, the run's result, and the reader's own judgement."""
         said = self._progress.prediction(question)
         assert said is not None
         facts = [("You said", said.text)]
@@ -320,7 +320,7 @@ class ScreenPrinter(FancyPrinter):
         return Group(*shown, self._rule(""))
 
     def _outputs(self, cell: Cell) -> list[RenderableType]:
-        """The recorded output, and what the cell gave here."""
+        """The recorded output, and the cell's result here."""
         state = self._progress.cell(cell)
         recorded = cell.output or ""
         if state.ran is None:
@@ -353,7 +353,7 @@ class ScreenPrinter(FancyPrinter):
         if not picture:
             return Group(caption, seen)
         if not any(picture):
-            # Its place, with what will be seen there.
+            # Its place, with the description until it is drawn.
             words = seen.wrap(self._console, self._prose)[: len(picture)]
             picture = [*words, *picture[len(words) :]]
         return Group(*picture, caption)
@@ -367,6 +367,6 @@ class ScreenPrinter(FancyPrinter):
 
 
 def _end_of(text: str) -> str:
-    """What a cell printed, or its last lines where there are many: any of them may be what was asked for."""
+    """A cell's output, or its last lines where there are many: any of them may hold the answer."""
     lines = text.splitlines()
     return "\n".join(lines if len(lines) <= _MOST else ["…", *lines[1 - _MOST :]])

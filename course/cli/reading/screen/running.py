@@ -1,4 +1,4 @@
-"""Cells that run while their reader reads on: one at a time, in a thread that waits for their process."""
+"""Cells that run while their reader reads on: one at a time; a thread waits for their process."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Bench:
 
     Args:
         progress: the lesson.
-        done: called in the cells' thread with the cell, the code that ran and what it gave.
+        done: called in the cells' thread with the cell, the code that ran and its result.
         clock: real time, in s.
     """
 
@@ -68,7 +68,7 @@ class Bench:
         return self.cell.key, f"runs, {self._clock() - self._since:.0f} s; Ctrl-C stops it"
 
     def close(self) -> None:
-        """Stop what runs and end its process."""
+        """Stop the cell that runs, and end its process."""
         self.interrupt()
         if self._pool is not None:
             # In their own thread: the cells' process dies with the thread that started it.
@@ -112,7 +112,7 @@ class Bench:
         try:
             runner = self._made()
             runner.prepare()
-            # If the user stops a cell while its process is still starting, the cell is meant.
+            # A stop while the process is still starting is meant for the cell.
             gave = CellOutput("", STOPPED, 0.0) if self._stopped else runner.run(cell)
         except IsolationError as error:
             gave = CellOutput("", f"The cell could not be run: {error}.", 0.0)

@@ -1,4 +1,4 @@
-"""A lesson on the whole screen, to page through: opened where its reader left it, laid out, shown, kept."""
+"""A lesson in the full-screen reader: opened where its reader left it, laid out and shown page by page."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 __all__ = ["LessonApp"]
 
-#: A place is written down once the reader stays there this long, in s.
+#: A place is recorded once the reader has stayed there this long, in s.
 _SETTLED = 1.0
-#: How often the last line and what runs are looked at anew, in s.
+#: How often the last line and running work are looked at, in s.
 _TICK = 0.25
 _WHEEL = 3
 _SAID = 2  # rows of what stands below a lesson: a rule, and that it was read
@@ -60,7 +60,7 @@ class LessonApp(FullScreenApp):
 
     Attributes:
         progress: the lesson that is open.
-        page: what of it is on the screen, and what there keys act on.
+        page: the part of it on the screen, and the items that keys act on.
     """
 
     # Letters of the page beside a box would be read with it.
@@ -211,7 +211,7 @@ class LessonApp(FullScreenApp):
                 self._picture(block.id, book.column)
 
     def _rebuild(self, *indices: int) -> None:
-        """These blocks anew; the line at the top stays."""
+        """Lay out these blocks again; the line at the top stays."""
         book = self.page.book
         if book is None:
             return
@@ -264,7 +264,7 @@ class LessonApp(FullScreenApp):
         self._settle()
 
     def _settle(self, *, choose: bool = True) -> None:
-        """After every move: what keys act on, the words round the page, the place, the end."""
+        """After every move: the item that keys act on, the words around the page, the place, the end."""
         items = self.page.items()
         if choose and (self.page.item is None or self.page.item not in items):
             self.page.item = next((item for item in items if self._is_offered(item)), None)
@@ -282,7 +282,7 @@ class LessonApp(FullScreenApp):
         return len(book.layout) if tail is None else min(len(book.layout), tail[0] + _SAID)
 
     def _is_offered(self, item: Item) -> bool:
-        """Whether keys act on it unasked."""
+        """Whether keys act on it by default."""
         del item
         return False
 

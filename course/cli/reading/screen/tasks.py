@@ -1,4 +1,4 @@
-"""How far the student is with a warm-up or an exercise, in lines below its text."""
+"""A student's progress with a warm-up or an exercise, in lines below its text."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PRINTED = 4
 
 
 def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text]:
-    """What to do next, or what the last check said: the first thing that is wrong, and how many are.
+    """The next step, or the last check's result: the first fault, and how many there are.
 
     Args:
         name: its id.

@@ -1,4 +1,4 @@
-"""What the reader shows beside the lesson: the keys, contents, the place, what is next."""
+"""The words around the lesson: keys, contents, the place, the next step."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def position(script: Script, layout: Layout, top: int, end: int) -> str:
 
 
 def tail(printer: ScreenPrinter, catalog: Catalog, progress: InProgress, practice: Practice) -> BlockRows:
-    """After the last line: that it is read, and what is next."""
+    """The rows after the last line: the lesson is read, and the next step."""
     script = progress.script
     lesson, ids = script.lesson, catalog.lesson_ids()
     following = ids[ids.index(lesson.id) + 1 :][:1] if lesson.id in ids else ()

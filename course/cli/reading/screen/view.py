@@ -1,4 +1,4 @@
-"""Opening the reader, and what it needs of the machine it runs on."""
+"""Opening the full-screen reader."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def is_possible() -> bool:
 def read(
     catalog: Catalog, first: str, workspace: Workspace | None, section: str = ""
 ) -> tuple[InProgress, str]:
-    """Read until the reader leaves. The terminal is left as it was, whatever happens.
+    """Read until the reader leaves. The terminal is restored, whatever happens.
 
     Args:
         catalog: the course.

@@ -1,1 +1,1 @@
-"""A verdict shown: on the screen, with what was printed, and as lines for other programs."""
+"""Showing a verdict: on the screen, with printed output, and as lines for other programs."""

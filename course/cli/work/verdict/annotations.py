@@ -41,7 +41,7 @@ def known_format(name: str) -> str:
 
 
 def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, form: str) -> None:
-    """One line for each thing that keeps a check from passing; what is true of several is said once."""
+    """One line for each cause of a failed check; a cause of several is said once."""
     said = set()
     for check in verdict.checks:
         if check.status in {"pass", "skip"}:
@@ -56,7 +56,7 @@ def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, 
 
 
 def annotate_error(console: Console, here: Here, work: StudentWork, error: CourseError, form: str) -> None:
-    """One line for what keeps the whole file from being checked."""
+    """One line for the error that keeps the whole file from being checked."""
     text = f"{error.message}\n{error.help}".strip()
     line = unread_line(work.source) if work.notebook is None else 1
     title = f"{work.exercise.title} [{error.code}]"
@@ -67,7 +67,7 @@ def github(level: str, file: str, line: int, title: str, message: str) -> str:
     """A workflow command of GitHub's, which puts a message beside a line of a file.
 
     ``::error file={name},line={line},title={title}::{message}``, as "Workflow commands for GitHub Actions"
-    in GitHub's documentation has it. What must be escaped is what the runner un-escapes
+    in GitHub's documentation has it. The escaped characters are those that the runner un-escapes
     (``_escapeDataMappings`` and ``_escapePropertyMappings`` in ``actions/runner``,
     src/Runner.Common/ActionCommand.cs): a percent sign and line ends everywhere, colon and comma in
     properties, which they would end.
@@ -76,7 +76,7 @@ def github(level: str, file: str, line: int, title: str, message: str) -> str:
 
 
 def _shown(form: str, level: str, file: str, line: int, title: str, message: str) -> str:
-    # What a student's code raised must not steer a terminal that shows the log.
+    # Text from a student's exception must not control a terminal that shows the log.
     title, message = steady(title), steady(message)
     if form == "github":
         return github(level, file, line, title, message)
@@ -99,7 +99,7 @@ def _words(check: CheckResult) -> Iterator[str]:
 
 
 def unread_line(source: bytes | str) -> int:
-    """Where Python stops reading a file; 1 where it reads it to its end."""
+    """The line where Python stops parsing a file; 1 if it parses all of it."""
     try:
         compile(source, "", "exec", dont_inherit=True)
     except (SyntaxError, ValueError) as problem:
@@ -113,7 +113,7 @@ def _line_of(work: StudentWork, check: CheckResult) -> int:
 
 
 def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:
-    """Where the student's code raised; else where the function begins, be it in a notebook's JSON.
+    """The line where the student's code raised; else where the function begins, even in a notebook's JSON.
 
     Args:
         text: the file.
@@ -128,7 +128,7 @@ def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:
 
 
 def _path(here: Here, work: StudentWork, form: str) -> str:
-    """From the folder that the reader of the lines starts at, with slashes on every system."""
+    """A path relative to the folder of the lines' reader, with slashes on every system."""
     path = here.workspace.path(work.exercise.place, work.name)
     top = os.environ.get("GITHUB_WORKSPACE") if form == "github" else None
     try:

@@ -1,4 +1,4 @@
-"""What a student's code prints, which is how many look for a mistake: shown in full only when asked for."""
+"""The student's printed output, which many use to find a mistake; shown in full only on request."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
 
 __all__ = ["show_lines", "show_loading", "show_unshown"]
 
-#: Lines that are shown unless all were asked for: as many as leave room for the finding on 24 lines.
+#: Lines that are shown by default: as many as leave room for the finding on 24 lines.
 _MOST = 6
 _INDENT = 2
 
 
 def show_lines(console: Console, heading: str, text: str, *, whole: bool, indent: int = 0) -> None:
-    """Some lines of what was printed, the first ones, and how many there are more."""
+    """The first printed lines, and how many more there are."""
     lines = text.rstrip().splitlines()
     if not lines:
         return
@@ -30,7 +30,7 @@ def show_lines(console: Console, heading: str, text: str, *, whole: bool, indent
 
 
 def show_loading(console: Console, printed: str, *, whole: bool) -> None:
-    """What a file printed while it was loaded; nothing if that is nothing."""
+    """Show a file's output while it was loaded, if any."""
     if printed and not console.quiet:
         show_lines(console, "Loading your file printed:", printed, whole=whole)
         if console.fancy:
@@ -38,7 +38,7 @@ def show_loading(console: Console, printed: str, *, whole: bool) -> None:
 
 
 def show_unshown(console: Console, verdict: Verdict) -> None:
-    """That checks which pass printed something."""
+    """Say that passing checks printed something."""
     count = sum(1 for check in verdict.checks if check.status == "pass" and check.stdout)
     if count:
         what = "a check that passes" if count == 1 else f"{count} checks that pass"

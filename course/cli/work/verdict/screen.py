@@ -1,7 +1,7 @@
 """A verdict on the screen: grouped by task; the message first, then advice, then numbers.
 
-What a student needs to act on comes before what they need to argue with. What failed comes after what passed
-and what is not begun, and the summary comes last, where the eye is when a terminal has finished scrolling.
+What a student can act on comes before the numbers behind it. Failed checks come after passed and unwritten
+ones, and the summary is last, where the eye is when a terminal has finished scrolling.
 """
 
 from __future__ import annotations
@@ -50,9 +50,9 @@ def show_verdict(
 
     Args:
         verbose: show tracebacks (the student's own lines) and what the student's code printed.
-        whole: all public checks were run, so that there is something to sum up.
-        brief: show the first failure of one function in detail, the first that fails, as the last thing of
-            all, and a line for whatever else there is; people work on one at a time.
+        whole: all public checks were run, so there is a summary.
+        brief: show one failure in detail, the first one of the first function that fails, at the very end,
+            and one line for everything else; students work on one at a time.
         focus: with ``brief``, the function to show instead.
     """
     if not console.quiet:
@@ -81,7 +81,7 @@ def show_everything(console: Console, exercise: Exercise, checks: Sequence[Check
 
 
 def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
-    """What it comes to, in one or two sentences."""
+    """The result in one or two sentences."""
     total = len(verdict.checks)
     passing = sum(check.status == "pass" for check in verdict.checks)
     if exercise.is_warm_up:
@@ -110,7 +110,7 @@ def _part(verdict: Verdict) -> list[str]:
 
 
 class _Page:
-    """One verdict being shown; remembers what it has said, so as not to say it seven times."""
+    """Shows one verdict; remembers what it has said, so as not to say it seven times."""
 
     def __init__(
         self,
@@ -135,7 +135,7 @@ class _Page:
         self._unscored = False
 
     def tasks(self, tasks: Tasks) -> None:
-        """What passed, what is not written yet, and last what fails."""
+        """The functions that pass, the unwritten ones, and last those that fail."""
         done: list[tuple[Task, Sequence[CheckResult]]] = []
         unwritten, failing = done.copy(), done.copy()
         for task, checks in tasks:
@@ -155,7 +155,7 @@ class _Page:
             self.task(task.title, checks)
 
     def _but_one(self, done: Tasks, unwritten: Tasks, failing: Tasks) -> tuple[Task, Sequence[CheckResult]]:
-        """A line for each function but the one in detail, which is given back."""
+        """A line for each function except the one to show in detail, which is returned."""
         for task, checks in done:
             self._label("pass", task.title, f"  {_number_of(checks)}")
         if unwritten:
@@ -197,7 +197,7 @@ class _Page:
             self.check(check)
 
     def unwritten(self, tasks: Tasks) -> None:
-        """The functions that still are as the stub has them: what is true of all is said once."""
+        """The functions that are still the stub's, with their common advice once."""
         every = [check for _, checks in tasks for check in checks]
         self._console.heading("Not written yet", self._worth(every))
         for task, _ in tasks:

@@ -1,7 +1,7 @@
 """Opening a page or a picture in a window of its own, where there is a display for one.
 
-Over ssh, in a container or in a terminal without a display nothing is tried: what would have been opened is
-named instead, and how to get there.
+Over ssh, in a container or in a terminal without a display nothing is tried: the course names the page or the
+picture instead, and says how to get there.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _closed = False
 
 
 def keep_closed() -> None:
-    """Open nothing in this run, whatever there is."""
+    """Open nothing in this run."""
     global _closed  # noqa: PLW0603 - a wish about the whole process, as NO_COLOR is
     _closed = True
 
@@ -38,7 +38,7 @@ def can_open() -> bool:
         return False
     if any(os.environ.get(name) for name in _DISPLAYS):
         return True
-    # A Mac or a PC has a screen; who is logged in over ssh does not sit before it.
+    # A Mac or a PC has a screen, but a user who is logged in over ssh does not sit in front of it.
     return sys.platform in {"darwin", "win32"} and not over_ssh()
 
 

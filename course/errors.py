@@ -33,7 +33,7 @@ class CourseError(Exception):
     """Base of every deliberate error.
 
     Args:
-        message: one sentence that says what is the case.
+        message: one sentence that says what is wrong.
         help: one sentence that says what to do; empty when there is nothing to do.
         code: a stable name for scripts (``error.code`` in ``--json``).
     """

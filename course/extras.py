@@ -1,4 +1,4 @@
-"""Optional parts of the course: what each is for, what it needs, and the one sentence where that is missing.
+"""Optional parts of the course: what each is for, its packages, and the one message where these are missing.
 
 The core imports none of these parts: a caller gets one by its name here, after a look whether what it needs
 is installed. A command that installs something lists the requirements themselves, read from the course's own
@@ -66,7 +66,7 @@ PARTS: dict[str, Part] = {
 }
 
 
-#: What grading alone takes, of the base install: all that Gradescope's container has, and no extra.
+#: The packages of the base install that grading needs; Gradescope's container has these, and no extra.
 CONTAINER = Part(
     "Grading in Gradescope's container",
     ("msgspec", "numpy", "pymunk", "pytest"),
@@ -80,7 +80,7 @@ class Requirement:
 
     Attributes:
         name: of the distribution.
-        versions: those that serve, as pip takes them: ">=8.4,<10"; empty for any.
+        versions: in pip's form, such as ">=8.4,<10"; empty for any.
         group: the extra that brings it; empty for the base install.
         applies: False if this Python or machine is not served.
         served: the marker that says which are, as the metadata has it; empty for all.
@@ -107,7 +107,7 @@ class Requirement:
 
     @property
     def command(self) -> str:
-        """What installs it."""
+        """The command that installs it."""
         return f"pip install '{self.text}'"
 
 
@@ -127,7 +127,7 @@ def load(part: str) -> Any:
 
 
 def require(part: str, *packages: str, what: str = "") -> None:
-    """Make sure that there is what a part needs.
+    """Make sure that a part's packages are installed.
 
     Args:
         packages: of the part, those that are needed now; all if none is named.
@@ -172,7 +172,7 @@ def requirements() -> list[Requirement]:
 
 
 def _where(marker: str) -> str:
-    """A marker without the extra, which is no fact about a machine."""
+    """A marker without the extra, which says nothing about the machine."""
     kept = _EXTRA.sub("", marker)
     return re.sub(r"^[\s()]*(?:and\s)?|\s+and[\s()]*$|[()]", "", kept).strip().replace('"', "'")
 

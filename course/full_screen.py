@@ -1,4 +1,4 @@
-"""What every program of the course that has the whole terminal to itself does alike: start, leave, tell."""
+"""Shared by the course's full-screen programs: start, leave, show a message."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class FullScreenApp(App[None]):
 
     @property
     def message(self) -> str:
-        """What the last line says just now; empty once it was there long enough."""
+        """The message in the last line; empty once it has been there long enough."""
         words, since = self._message
         return words if self._clock() - since < _MESSAGE else ""
 
@@ -135,7 +135,7 @@ class Overlay(ModalScreen[Answer | None]):
             self.dismiss(answer)
 
     def action_leave(self) -> None:
-        """Back to what is below."""
+        """Close the box."""
         self.close(None)
 
 

@@ -32,7 +32,7 @@ def printable(text: str, limit: int | None = None) -> str:
 
 
 def steady(text: str) -> str:
-    """Any text, our own too: only what would steer or turn what is around it is spelled out."""
+    """Any text, our own too: only characters that control or reverse the text around them are spelled out."""
     return _STEERING.sub(_escaped, text)
 
 

@@ -1,1 +1,1 @@
-"""The course checks itself: what ``course author check`` proves, and what writes the blanks of a new part."""
+"""The course checks itself: the proofs of ``course author check``, and the templates of new content."""

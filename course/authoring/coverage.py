@@ -42,7 +42,7 @@ __all__ = [
 
 _LINES = re.compile(r"([1-9]\d*)(?:-([1-9]\d*))?")
 _KINDS = ("heading", "objective", "example", "exercise", "question")
-#: What the course made of a part of the chapter, in one word.
+#: How the course treats a part of the chapter, in one word.
 WORDS = {
     "kept": "the same content, in other words",
     "deeper": "the course says more, or lets you do it yourself",
@@ -59,7 +59,7 @@ class Part(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=T
     Attributes:
         lines: its lines in the chapter, "12" or "12-15", or several of these with commas.
         what: a name for it that is not the chapter's own sentence.
-        word: what the course made of it, one of ``WORDS``.
+        word: how the course treats it, one of ``WORDS``.
         where: the places of the course that have it; see ``docs/coverage.toml``.
     """
 
@@ -126,7 +126,7 @@ def written_to(catalog: Catalog) -> Path:
 def check_coverage(
     document: Document[Coverage], catalog: Catalog, is_command: IsCommand
 ) -> tuple[AuditProblem, ...]:
-    """What is wrong with the table: lines without a part, parts without a place, places that are missing."""
+    """The table's faults: lines without a part, parts without a place, places that do not exist."""
     coverage, findings = document.value, Findings(catalog.content.root)
     places = _Places(catalog, is_command)
     seen: dict[int, str] = {}
@@ -154,7 +154,7 @@ def check_coverage(
 
 
 def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:
-    """What is wrong with a part by itself, and the fix."""
+    """A fault of a single part, and the fix."""
     if not part.span:
         yield f"{part.lines!r} are not lines.", 'Write "12", "12-15" or "12-15, 20".'
     if part.word not in WORDS:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LEAST_VARIANTS", "audit_quiz"]
 
-#: With fewer, a retake is likely to ask what was just explained.
+#: With fewer, a retake is likely to repeat a question that was just explained.
 LEAST_VARIANTS = 4
 
 #: The id under which a gradebook keeps the quiz.
@@ -29,7 +29,7 @@ _YEAR = re.compile(r"\b(?:19|20)\d\d\b")
 
 
 def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) -> tuple[str, ...]:
-    """Check the questions; gives the ids that were looked at.
+    """Check the questions; returns their ids.
 
     Args:
         only: id of one question; None for all.

@@ -1,4 +1,4 @@
-"""The result of an audit: problems with file, line and fix, and what was checked."""
+"""The result of an audit: problems with file, line and fix, and the numbers of checked parts."""
 
 from __future__ import annotations
 

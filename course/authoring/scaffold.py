@@ -34,7 +34,7 @@ class Function:
 
     Attributes:
         signature: as it stands in the stub: "swing_period(length, gravity=9.81)".
-        gives: what it returns, as a sentence without a subject: "gives the period of small swings, s."
+        gives: its result, as a sentence without a subject: "gives the period of small swings, s."
     """
 
     signature: str
@@ -45,7 +45,7 @@ class Function:
         """A function as its author writes it.
 
         Raises:
-            UsageError: it is no signature.
+            UsageError: it is not a signature.
         """
         try:
             (node,) = ast.parse(f"def {text.strip()}: ...").body
@@ -147,7 +147,7 @@ def new_exercise(
         The files, in the order an author fills them.
 
     Raises:
-        UsageError: the id is no id, cannot be a module, two functions have one name, or a file exists.
+        UsageError: the id is not valid or cannot be a module, two functions share a name, or a file exists.
         NotFoundError: there is no such lesson.
         MissingCapabilityError: this installation has no place for solutions and graders.
     """
@@ -185,7 +185,7 @@ def _words_of(
     summary: str,
     lesson: str,
 ) -> dict[str, Any]:
-    """What the templates of an exercise or a warm-up are filled with; its place in a list is not among it."""
+    """The values for the templates of an exercise or a warm-up, except its place in the list."""
     name = ExerciseId(exercise_id)
     if name in (*catalog.exercise_ids(), *catalog.warm_up_ids()):
         raise UsageError(
@@ -242,7 +242,7 @@ def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
 
 
 def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
-    """Write the file of a new sandbox scene, last in the list; it runs as it is.
+    """Write the file of a new sandbox scene, last in the list; it can run at once.
 
     Raises:
         UsageError: the id is no id, or the file exists.

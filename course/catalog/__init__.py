@@ -1,4 +1,4 @@
-"""What the course consists of: files in, frozen models out, a fault with its file, line and fix.
+"""The course's content: files in, frozen models out; a fault comes with its file, line and fix.
 
 locate, load       where the content of the course lies; lessons, exercises and the syllabus as models
 reading, rules     TOML into types, and what a type cannot say (toml_lines knows where in the file)

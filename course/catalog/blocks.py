@@ -1,4 +1,4 @@
-"""What a lesson consists of, as frozen types: inline pieces inside blocks.
+"""The parts of a lesson as frozen types: inline pieces inside blocks.
 
 Every reader of a lesson (terminal, notebook, audit) works from these and never from Markdown. A block knows
 the line it starts on, so that a fault in it can be reported with its line.
@@ -109,7 +109,7 @@ class Value:
 
 @dataclass(frozen=True, slots=True)
 class LineBreak:
-    """A line break the author asked for."""
+    """A line break set by the author."""
 
 
 Inline = Text | Span | Formula | Link | Value | LineBreak
@@ -156,7 +156,7 @@ class CodeCell:
 
     Attributes:
         source: the code, without a final newline.
-        output: what it printed when it was last recorded; None when nothing is recorded.
+        output: its recorded output; None if there is none.
         hidden: run for the numbers it makes and not shown.
         output_line: line of the recorded output's fence; None when nothing is recorded.
     """
@@ -269,8 +269,8 @@ class Task:
     """A warm-up or an exercise that stands in a lesson while it is read.
 
     Attributes:
-        what: what it is called, such as "exercise".
-        blocks: its own text, which is no lesson's.
+        what: its kind in words, such as "exercise".
+        blocks: its own text, which is not part of the lesson.
     """
 
     line: int

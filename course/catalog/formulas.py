@@ -79,7 +79,7 @@ class Formula:
 
 
 def _names(node: ast.expr) -> set[str]:
-    """Every name in a formula, after each of its parts was found to be allowed."""
+    """Every name in a formula, after a check that each of its parts is allowed."""
     match node:
         case ast.Constant(value=bool() | complex() | str() | bytes() | None):
             pass

@@ -1,4 +1,4 @@
-"""The catalogue: lessons, exercises, hints and mutants of one course, read when first asked for.
+"""The catalogue: lessons, exercises, hints and mutants of one course, each read when it is first needed.
 
 Listing ids costs one small file or one folder listing, so that shell completion is instant; everything else
 is read once and kept. Facts that a type cannot express are checked in ``course.catalog.rules``.
@@ -160,7 +160,7 @@ class Catalog:
         return tuple(sorted(chosen, key=lambda one: (lessons.get(one.lesson, len(lessons)), one.order)))
 
     def tasks(self, lesson_id: str) -> tuple[Exercise, ...]:
-        """What is done in a lesson: its warm-ups, and the exercises that it leads to."""
+        """The tasks of a lesson: its warm-ups, and the exercises that it leads to."""
         led = (self.exercise(name) for name in self.lesson(lesson_id).exercises)
         return (*self.warm_ups(lesson_id), *(one for one in led if one.lesson == lesson_id))
 

@@ -66,7 +66,7 @@ class Content:
         return inside if (self.exercises / inside).is_dir() else Path(exercise_id)
 
     def exercise_folder(self, exercise_id: str) -> Path:
-        """What a student gets of an exercise or a warm-up."""
+        """The files that a student gets of an exercise or a warm-up."""
         return self.exercises / self.place_of(exercise_id)
 
     def solution_folder(self, exercise_id: str) -> Path | None:

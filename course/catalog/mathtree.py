@@ -1,7 +1,7 @@
 """LaTeX formulae, read into a tree: the part of LaTeX that lessons use, and not one command more.
 
-A command, an environment or a character that is not in the tables below raises MathError. That is the point:
-a formula is never shown to a reader half understood. Its author rewrites it or gives the words by hand.
+A command, an environment or a character that is not in the tables below raises MathError, so no reader gets a
+formula that was only half understood. Its author rewrites it or gives the words by hand.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ class Atom:
 
     Attributes:
         kind: "letter", "number", "words", "function", "binary", "relation", "punctuation" or "space".
-        text: as it is shown.
-        spoken: as it is said; empty when it is not said.
+        text: for the screen.
+        spoken: for the ear; empty if it is not spoken.
     """
 
     kind: str

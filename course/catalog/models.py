@@ -1,4 +1,4 @@
-"""What a course consists of, as frozen types.
+"""The parts of a course as frozen types.
 
 These are the shapes of the files under ``exercises/`` and ``course/lessons/``; ``course.catalog.load`` reads
 the files into them and says which file and line is wrong when one does not fit.
@@ -65,7 +65,7 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 #: At home a check may take so many times what it takes at most of a right solution, and so many once another
 #: check of its function ran out of time: what hangs has been told by then.
 _PATIENCE, _LESS = 20.0, 5.0
-#: What a check takes at most if it is not in ``slow``, in s. A file's own run takes at most 6 ms of CPU time:
+#: The longest time of a check that is not in ``slow``, in s. A file's own run takes at most 6 ms of CPU time:
 #: measured of every model solution, accepted variant and stub at every protection level.
 QUICK = 0.1
 
@@ -133,12 +133,12 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def comes_with_faults(self) -> bool:
-        """Whether it hands out a program to mend, not functions to write."""
+        """Whether the student gets a program to mend, not functions to write."""
         return self.is_warm_up and "NotImplementedError" not in self.stub_path.read_text(encoding="utf-8")
 
     @property
     def given(self) -> tuple[Path, ...]:
-        """The files that a student gets: the README, what else it speaks of, the stub."""
+        """The files that a student gets: the README, other files it mentions, the stub."""
         found = (Path(self.folder) / name for name in ("README.md", "boxes.py"))
         return (*(path for path in found if path.is_file()), self.stub_path)
 
@@ -177,7 +177,7 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return (_LESS if hung else _PATIENCE) * self.slow.get(check, QUICK)
 
     def where_to_read(self, task_id: str) -> str:
-        """What explains a task, as "lesson#section", or a lesson alone."""
+        """The section that explains a task, as "lesson#section", or a lesson alone."""
         read = next((task.read for task in self.task if task.id == task_id), "")
         return read or (f"{self.lesson}#{self.after}" if self.after else self.lesson)
 
@@ -249,9 +249,9 @@ class Rubric(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """``rubric.toml`` of an exercise: a question for prose, which its author grades.
 
     Attributes:
-        question: what is asked once the checks pass.
+        question: asked once the checks pass.
         least_words: an answer of fewer is not one.
-        points: what to grade an answer by, a sentence each.
+        points: criteria for grading an answer, a sentence each.
         good_answer: shown after one was written; paragraphs with an empty line between them.
     """
 
@@ -269,7 +269,7 @@ class Mutant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         file: its file under ``solutions/<id>/mutants``; it holds only what it gets wrong and is appended
             to the model solution.
         task: the task whose points it loses, and the only one.
-        misconception: what the author of such code believes.
+        misconception: the belief behind such code.
         check: id of the check that must catch it.
         diagnosis: the code that check's finding must carry.
     """
@@ -289,7 +289,7 @@ class MutantList(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Objective(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a student can do in the end, and where the evidence for it comes from.
+    """A learning objective, and where the evidence for it comes from.
 
     Attributes:
         title: after "You can …".

@@ -1,4 +1,4 @@
-"""Solution packs: what an instructor hands out after the deadline and ``course solution`` opens.
+"""Solution packs, which an instructor hands out after the deadline and ``course solution`` opens.
 
 A pack is a zip, ``NAME.coursepack``::
 
@@ -41,7 +41,7 @@ MAX_TOTAL_BYTES = 5_000_000
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 _ENTRY = re.compile(r"solutions/(?P<exercise>[^/]+)/(?P<name>[A-Za-z0-9_][A-Za-z0-9_.-]{0,99})")
-#: What zipfile raises over bytes that are no zip, or no longer the zip they were.
+#: The exceptions of zipfile for bytes that are not a zip, or are a damaged one.
 _NOT_A_ZIP = (
     zipfile.BadZipFile,
     zlib.error,

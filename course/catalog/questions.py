@@ -91,8 +91,8 @@ class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Attributes:
         order: position in the quiz, 1 first.
         title: what it is about, in a few words.
-        misconceptions: what people wrongly believe here, in their words, by name.
-        lesson: what to read again, "lesson#section" or a lesson; empty if nothing.
+        misconceptions: common wrong beliefs, in students' words, by name.
+        lesson: the place to read again, "lesson#section" or a lesson; may be empty.
     """
 
     format_version: int

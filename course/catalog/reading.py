@@ -1,7 +1,7 @@
 """Course files into typed values, with errors that say which line is wrong and how to mend it.
 
-Every file of the course is UTF-8 and declares a ``format_version``. What it says beyond that is the business
-of the type it is read into; what msgspec finds wrong there is put into plain words here.
+Every file of the course is UTF-8 and declares a ``format_version``. The type that a file is read into defines
+the rest; msgspec's errors are put into plain words here.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ def _check_version(path: Path, data: dict[str, Any], lines: LineMap) -> None:
 
 
 def _raise_in_words(path: Path, lines: LineMap, text: str, kind: type, reserved: tuple[str, ...]) -> NoReturn:
-    """What msgspec said, as a ContentError a person can act on."""
+    """An error of msgspec's as a ContentError that a person can act on."""
     at = _AT.search(text)
     where = at["path"] if at else "$"
     steps = parse_path(where)

@@ -1,4 +1,4 @@
-"""What a course file must satisfy beyond having the right keys and types.
+"""Rules for a course file beyond the right keys and types.
 
 Each rule raises the ContentError that points at the line. Rules about one file live here; what takes two
 files to see (links, points, signatures) is the audit's.
@@ -111,7 +111,7 @@ def check_exercise(document: Document[Exercise]) -> None:
 
 
 def _check_kind(document: Document[Exercise]) -> None:
-    """What is a warm-up lies with the warm-ups, and what lies there is one."""
+    """A warm-up lies with the warm-ups, and everything there is one."""
     exercise = document.value
     lies_there = document.path.parent.parent.name == WARM_UPS
     if exercise.is_warm_up is not lies_there:

@@ -51,13 +51,13 @@ DEADLINE_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What to compare.
+    """The scope of a comparison.
 
     Attributes:
         engines, scenarios: ids; none means all.
         steps: dt in s; none means 1/240, and a ladder of steps where the integrator alone decides.
         repeat: how often each measurement is made.
-        quick: fewer steps, starts and repetitions; the values of what is measured may differ a little.
+        quick: fewer steps, starts and repetitions; the measured values may differ a little.
         fresh: measure again even if the result is stored.
         deadline: s for one measurement.
     """
@@ -125,7 +125,7 @@ class _Run:
 
 
 def state_of(info: EngineInfo, *, probe: bool = False) -> EngineState:
-    """What this machine has of an engine.
+    """The state of an engine on this machine.
 
     Args:
         probe: start it, in a process of its own, to see whether it can.
@@ -154,7 +154,7 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
     """Measure, store, and fill in from the reference.
 
     Args:
-        progress: called with measurements done, in all, and what was measured last.
+        progress: called with measurements done, their total, and the last one's name.
 
     Raises:
         NotFoundError: no such engine or scenario.
@@ -246,7 +246,7 @@ def _one_engine(run: _Run, jobs: list[_Job]) -> None:
 
 
 def _untuned(run: _Run, process: EngineProcess, job: _Job) -> Row | None:
-    """The row of the engine as it comes, where nothing is to be set: it would only be measured twice."""
+    """The default row again, where the engine has nothing to set: a second measurement would be the same."""
     if job.setting != TUNED:
         return None
     twin = run.rows.get(dataclasses.replace(job, setting=DEFAULT))

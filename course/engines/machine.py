@@ -12,7 +12,7 @@ __all__ = ["Machine", "this_machine"]
 
 
 class Machine(msgspec.Struct, frozen=True):
-    """What a measurement depends on.
+    """The machine and the versions that a measurement depends on.
 
     Attributes:
         cpu: the processor's model.

@@ -33,7 +33,7 @@ class EngineProcess:
 
     Args:
         engine: its id.
-        command: what to run instead of the worker, for tests.
+        command: run in place of the worker, for tests.
     """
 
     def __init__(self, engine: str, command: list[str] | None = None) -> None:
@@ -53,7 +53,7 @@ class EngineProcess:
 
     @property
     def pid(self) -> int | None:
-        """Of the process, if there is one."""
+        """The process's id, if there is one."""
         return self._process.pid if self._process else None
 
     def ask(self, job: Mapping[str, Any], seconds: float) -> dict[str, Any]:

@@ -20,13 +20,13 @@ class EngineInfo:
     """One engine.
 
     Attributes:
-        id: what ``--engine`` takes; the adapter is the module of this name in ``course.engines.adapters``.
+        id: for ``--engine``; the adapter is the module of this name in ``course.engines.adapters``.
         name: on the screen.
         package: the package to install for it.
         extra: the course's extra that brings it; empty for what the course needs anyway.
         licence: of the engine itself, an SPDX expression.
-        about: what kind of engine it is, in half a line.
-        planar: it knows two dimensions only.
+        about: the kind of engine, in half a line.
+        planar: it has two dimensions only.
         single: it computes in single precision, so its errors stop shrinking at about 1e-6.
     """
 
@@ -102,7 +102,7 @@ class Availability:
     Attributes:
         version: of the package; None if it is not installed.
         missing: why it is not installed; empty if it is.
-        command: what installs it; empty where nothing does, or nothing is missing.
+        command: installs it; empty where none does, or nothing is missing.
     """
 
     version: str | None

@@ -28,11 +28,11 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
         dt: step, s.
         status: ``ok``, or why there is no value.
         value: in the scenario's unit; None without one.
-        message: what happened, where ``status`` is not ``ok``.
+        message: the reason, where ``status`` is not ``ok``.
         origin: ``measured`` now, ``cached`` from an earlier run on this machine, or from the ``reference``.
         measured: the day, YYYY-MM-DD.
         version: of the engine's package.
-        options, why: what was set, and a reason for each.
+        options, why: the settings, and a reason for each.
         samples: the values of which ``value`` is the mean or the median, one for each phase of the step or
             each start; empty for a single run.
         repeats: how often it was measured; ``spread`` is the largest value less the smallest.

@@ -68,10 +68,10 @@ class Option(msgspec.Struct, frozen=True, kw_only=True):
     """One option that may be set.
 
     Attributes:
-        key: what the adapter's ``build`` takes.
-        name: what the engine calls it.
+        key: its name in the adapter's ``build``.
+        name: its name in the engine.
         default: its value in the package, in words.
-        does: what it does.
+        does: its effect.
         source: where that was read; empty for the engine's ``documented``.
         values: those tried, by topic (``try`` in the file).
     """
@@ -93,7 +93,7 @@ class UnusedOption(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Options(msgspec.Struct, frozen=True, kw_only=True):
-    """What one engine lets a user set."""
+    """The options of one engine."""
 
     documented: str
     option: tuple[Option, ...] = ()
@@ -101,7 +101,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):
-    """What was chosen for one engine in one scenario, from how many combinations."""
+    """The settings chosen for one engine in one scenario, and the number of combinations tried."""
 
     options: dict[str, Any]
     tried: int
@@ -116,7 +116,7 @@ def options_of(engine: str) -> Options:
 
 @functools.cache
 def choices() -> dict[str, dict[str, Choice]]:
-    """What was chosen, by engine and scenario."""
+    """The chosen settings, by engine and scenario."""
     path = files("course").joinpath("engines", "well_set.json")
     return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, Choice]])
 

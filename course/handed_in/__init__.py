@@ -1,4 +1,4 @@
-"""What a student hands in, as what can be graded.
+"""Turns a student's submission into a module that can be graded.
 
 cells      code cells of a notebook as plain Python
 notebook   the module that those cells stand for, and how its lines are told as cells

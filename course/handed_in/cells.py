@@ -25,7 +25,7 @@ __all__ = ["MAX_CELLS", "MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "r
 
 #: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
 MAX_NOTEBOOK = 32 << 20
-#: Of all code cells together: what a module may be large. In characters.
+#: The most code in all cells together, in characters: the limit of a module.
 MAX_CODE = 1 << 20
 #: Code cells; the longest notebooks that people write have some hundreds.
 MAX_CELLS = 2000
@@ -91,10 +91,10 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
 
     Args:
         data: the file.
-        name: what to call it in messages.
+        name: for messages.
 
     Raises:
-        UngradableError: it is no notebook, or one of another language.
+        UngradableError: it is not a notebook, or one of another language.
     """
     if len(data) > MAX_NOTEBOOK:
         raise UngradableError(
@@ -117,7 +117,7 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
 
 
 def typed_cell(number: int, text: str) -> CodeCell:
-    """A cell of which only the text is known: what was typed into a running notebook."""
+    """A cell of which only the text is known, because it was typed into a running notebook."""
     return _code_cell(number, _Cell("code", text))
 
 

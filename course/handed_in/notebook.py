@@ -1,4 +1,4 @@
-"""What of a notebook is graded: the module that its cells stand for.
+"""The graded part of a notebook: the module that its cells make up.
 
 Cells that the course generated for an exercise say so in their metadata; where that was lost, a cell that
 defines one of the exercise's functions is one of them. These count whole and in order, as if they had been
@@ -39,7 +39,7 @@ MAX_NOTES = 20
 
 
 class _Record(msgspec.Struct, frozen=True):
-    """What is stored of a notebook beside its module."""
+    """Facts about a notebook that are stored beside its module."""
 
     notes: tuple[str, ...]
     starts: tuple[tuple[int, int], ...]
@@ -51,9 +51,9 @@ class NotebookSource(Places):
 
     Attributes:
         source: the module's text, UTF-8.
-        notes: what was left out or taken for granted, a sentence each.
+        notes: parts left out, and assumptions, a sentence each.
         starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
-        called: what a cell of some number is called.
+        called: the name of a cell, by its number.
     """
 
     source: bytes
@@ -62,7 +62,7 @@ class NotebookSource(Places):
     called: str = "cell {}"
 
     def record(self) -> bytes:
-        """Notes and places as bytes, to be kept beside the module."""
+        """Notes and places as bytes, to store beside the module."""
         return msgspec.json.encode({"notes": self.notes, "starts": self.starts})
 
     @classmethod
@@ -231,7 +231,7 @@ def _loaded(node: ast.AST) -> Iterator[str]:
     yield from _augmented(node)
     try:
         table = symtable.symtable(ast.unparse(node), "cell", "exec")
-    except SyntaxError:  # such as a return outside of a function: what it would read cannot be told
+    except SyntaxError:  # such as a return outside of a function: the names it reads are unknown
         yield from (child.id for child in ast.walk(node) if isinstance(child, ast.Name))
     else:
         yield from _global(table)

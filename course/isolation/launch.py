@@ -1,4 +1,4 @@
-"""What all ways of starting a worker share: its files, its command, cleaning up after it."""
+"""Shared by all ways of starting a worker: its files, its command, cleaning up after it."""
 
 from __future__ import annotations
 

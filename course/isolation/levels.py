@@ -1,6 +1,6 @@
-"""Protection levels, what a worker may use, and what every way of starting one provides.
+"""Protection levels, a worker's limits, and the interface of every way of starting one.
 
-What a level promises is what a canary tried (``course.isolation.probe``) and what docs/grading.md says of it:
+A canary tries each promise of a level (``course.isolation.probe``); docs/grading.md describes them:
 
     L3  files, network, processes and other workers are out of reach; what one uses is limited
     L2  the same without namespaces: names and sizes of files can be asked for, two workers can tell each
@@ -54,7 +54,7 @@ class Level(StrEnum):
 
 @dataclass(frozen=True)
 class Limits:
-    """What one worker may use.
+    """The limits of one worker.
 
     Attributes:
         cpu_s: seconds of CPU; the deadline ends a check long before.
@@ -112,7 +112,7 @@ class Handle(Protocol):
         """To the worker and back."""
 
     def output(self) -> str:
-        """What it printed so far, at most ``MAX_OUTPUT``; "" after ``finish``, unless it is still there."""
+        """Its output so far, at most ``MAX_OUTPUT``; "" after ``finish``, unless it is still there."""
 
     def cpu_s(self) -> float:
         """Seconds of CPU time it has used so far; by the wall clock where the system does not tell."""

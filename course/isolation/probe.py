@@ -44,12 +44,12 @@ _DEADLINE_S = 20.0
 
 @dataclass(frozen=True)
 class Protection:
-    """What this machine can enforce.
+    """The protection that this machine can enforce.
 
     Attributes:
         level: the strongest level that proved itself.
         causes: why the stronger ones failed, one sentence each.
-        advice: what would raise the level, one sentence each; never to switch a protection off.
+        advice: ways to raise the level, one sentence each; never to switch a protection off.
     """
 
     level: Level
@@ -76,7 +76,7 @@ def open_spawner(
 
 
 def probe(imports: tuple[str, ...] = ("numpy",)) -> Protection:
-    """Try every level from the strongest down and say what was found."""
+    """Try every level from the strongest down, and report the result."""
     causes = []
     for level in (Level.L3, Level.L2):
         try:

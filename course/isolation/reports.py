@@ -1,4 +1,4 @@
-"""What a worker reports about an exception, read as an untrusted claim."""
+"""A worker's report about an exception, read as an untrusted claim."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _MAX_FRAMES = 12  # of a traceback
 
 
 def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | None:
-    """The exception that a report is about; None if it is no report at all.
+    """The exception that a report is about; None if it is not a report.
 
     Args:
-        value: what came over the wire; nothing about it is taken for granted.
+        value: received over the wire, and not trusted.
         main: name of the submission's file.
         source: its lines, which alone are quoted.
     """
@@ -58,7 +58,7 @@ def claimed_text(value: Any, limit: int = 2000) -> str:
 
 
 def _items(value: Any) -> list[Any]:
-    """The last of what a list holds, nothing if it is no list."""
+    """The last items of a list; none if it is not a list."""
     return value[-_MAX_FRAMES:] if isinstance(value, list) else []
 
 

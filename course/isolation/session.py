@@ -161,7 +161,7 @@ class Connection:
     # -- calls ----------------------------------------------------------------------------------------
 
     def call(self, function: str | RemoteFunction, *args: Any, **kwargs: Any) -> Any:
-        """What ``function`` returns, as plain values (tuples as lists).
+        """The result of ``function``, as plain values (tuples as lists).
 
         Raises:
             StudentFailure: it raised, ran out of time, died, or returned what cannot cross.
@@ -185,7 +185,7 @@ class Connection:
         return self._batch(self._ask(Kind.MARCH, [step, marches], step), len(marches))
 
     def each(self, function: str, calls: list[list[Any]]) -> list[Any]:
-        """What ``function`` returns for each list of arguments; the loop runs in the student's process."""
+        """The results of ``function`` for each list of arguments; the loop runs in the student's process."""
         return self._batch(self._ask(Kind.EACH, [function, calls], function), len(calls))
 
     def fold(
@@ -203,7 +203,7 @@ class Connection:
         raise self._breach("a batch of another length")
 
     def output(self) -> str:
-        """What the submission printed so far."""
+        """The submission's output so far."""
         return printable(self._handle.output()) if self.alive else self._printed
 
     def close(self) -> None:

@@ -32,7 +32,7 @@ def _forked(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:
     return ZygoteSpawner(level, view_for(imports), imports, limits)
 
 
-#: What makes the spawner of each level, from the level, the packages to be imported and the limits.
+#: A function that makes the spawner of each level, from the level, the packages to import and the limits.
 MAKERS: dict[Level, Callable[[Level, tuple[str, ...], Limits], Spawner]] = {
     Level.L1: _plain,
     Level.L2: _forked,

@@ -1,4 +1,4 @@
-"""What a student's code may read: the interpreter, the system's libraries and declared packages.
+"""The files that a student's code may read: the interpreter, the system's libraries and declared packages.
 
 One description serves both mechanisms: bubblewrap binds ``readable`` into an otherwise empty root and covers
 ``masked`` with empty folders; Landlock, which cannot subtract, gets the list from ``expanded``.

@@ -1,1 +1,1 @@
-"""One student's state: the workspace folder, and what was done in it."""
+"""One student's state: the workspace folder, and the record of work in it."""

@@ -1,6 +1,6 @@
-"""What the events of one exercise add up to.
+"""The history of one exercise, from its events.
 
-The record only knows what happened; this module answers the questions commands ask of it: which checks fail
+The record only lists events; this module answers the commands' questions about them: which checks fail
 now, is another hint due, was it ever passed.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from course.progress.store import Event
 
     class _Check(Finding, Protocol):
-        """What is kept of one check."""
+        """The record of one check."""
 
         @property
         def id(self) -> str: ...
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
         def diagnosis(self) -> str | None: ...
 
     class _Verdict(Protocol):
-        """What is kept of a verdict."""
+        """The record of a verdict."""
 
         @property
         def state(self) -> str: ...
@@ -63,7 +63,7 @@ class CheckRun:
         id: of its event.
         at: when, in UTC.
         state: "graded" or "ungradable".
-        only: the check or function that was asked for alone; empty for a run of all public checks.
+        only: the one requested check or function; empty for a run of all public checks.
         score, max_score: points.
         passed: the pass mark was reached.
         all_pass: every check passed.
@@ -168,7 +168,7 @@ class History:
         return tuple(dict.fromkeys(hint.index for hint in self.hints if hint.task == task))
 
     def diagnosed(self, task: str) -> tuple[tuple[str, Mapping[str, str]], ...]:
-        """What the newest run that had a check of this task found wrong with it.
+        """The findings about a task in the newest run that had one of its checks.
 
         Returns:
             diagnosis, "" for none, and numbers of each check of the task that did not pass, in their order.
@@ -185,7 +185,7 @@ class History:
     def hint_is_due(self, stub: str) -> bool:
         """True if a check failed on a file that changed since the last hint (since the stub, for the first).
 
-        A function that is not begun fails, too, and is no attempt.
+        A function that is not begun fails, too, and does not count as an attempt.
 
         Args:
             stub: fingerprint of the file as it was handed out.
@@ -230,14 +230,14 @@ def check_data(
     only: str = "",
     one_of_many: bool = False,
 ) -> dict[str, object]:
-    """What an event of kind "check" holds: the attempt as ``history_of`` reads it again.
+    """The data of an event of kind "check": the attempt, in the form that ``history_of`` reads.
 
     Args:
         source: the module that was checked.
         seconds: how long it took.
         version: of the course's content.
-        only: the check or function that was asked for alone.
-        one_of_many: every exercise was checked, so that this one is not what the student turned to.
+        only: the one requested check or function.
+        one_of_many: every exercise was checked, so the student did not choose this one.
     """
     return {
         "state": verdict.state,
@@ -262,7 +262,7 @@ def _kept(check: _Check) -> dict[str, object]:
 
 
 def fingerprint(source: bytes) -> str:
-    """What makes a file a different attempt: its statements, without comments and layout.
+    """A digest of a file's statements, without comments and layout; another one is another attempt.
 
     The same code in a notebook is the same attempt. There a module's docstring is a text cell, a ``pass``
     replaces each magic, and cells run in the order in which the student ran them; so neither of these counts.

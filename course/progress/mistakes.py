@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Mistake", "mistakes_of"]
 
-#: What is no mistake of its own: work that is still to be done, and what follows from another mistake.
+#: Diagnoses that are not mistakes of their own: unwritten work, and consequences of another mistake.
 _NO_MISTAKE = frozenset({"NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION"})
 
 

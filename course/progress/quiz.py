@@ -1,8 +1,8 @@
-"""What the record says about the quiz.
+"""The quiz, by the record of progress.
 
 Four kinds of events: ``quiz-start`` opens an attempt, each ``quiz-answer`` is one answer (so that an attempt
 that is interrupted goes on where it was), ``quiz-done`` closes it with its score, and ``quiz-review`` is one
-question answered in a review. Events hold ids and seeds only; what was asked follows from the seed.
+question answered in a review. Events hold ids and seeds only; the questions follow from the seed.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class Attempt:
     """One attempt.
 
     Attributes:
-        id: what its events are joined by.
-        seed, questions: what was asked, and in which order.
+        id: joins its events.
+        seed, questions: the questions, in order.
         version: of the course it was asked from.
-        answers: option id by question id, as far as it was answered.
+        answers: option id by question id; unanswered questions are missing.
         finished: when it was scored; None while it is open or was left.
         score: right answers, as scored then.
     """
@@ -130,22 +130,22 @@ class QuizHistory:
 
 
 def start_data(attempt: str, seed: int, version: str, questions: Sequence[str]) -> dict[str, object]:
-    """What ``quiz-start`` holds."""
+    """The data of ``quiz-start``."""
     return {"attempt": attempt, "seed": seed, "version": version, "questions": list(questions)}
 
 
 def answer_data(attempt: str, option: str) -> dict[str, object]:
-    """What ``quiz-answer`` holds; its subject is the question."""
+    """The data of ``quiz-answer``; its subject is the question."""
     return {"attempt": attempt, "option": option}
 
 
 def done_data(attempt: str, right: Mapping[str, bool], *, passed: bool) -> dict[str, object]:
-    """What ``quiz-done`` holds."""
+    """The data of ``quiz-done``."""
     return {"attempt": attempt, "right": dict(right), "score": sum(right.values()), "passed": passed}
 
 
 def review_data(seed: int, option: str, *, right: bool) -> dict[str, object]:
-    """What ``quiz-review`` holds; its subject is the question."""
+    """The data of ``quiz-review``; its subject is the question."""
     return {"seed": seed, "option": option, "right": right}
 
 

@@ -1,4 +1,4 @@
-"""What a student did, as events that are only ever added.
+"""The record of a student's work, as events that are only ever added.
 
 SQLite with its rollback journal: home folders are often on network file systems, where the write-ahead log
 does not work. Each event is one short transaction on a connection of its own, so a ``watch`` and a
@@ -56,7 +56,7 @@ class Event:
         kind: "start", "check", "hint", "lesson", "place", "solution", "reset", "update" or "submit"; from the
             reader also "bookmark", "prediction" and "cell".
         subject: the exercise or lesson it is about; empty if none.
-        data: what is worth remembering about it, as plain values.
+        data: facts about it, as plain values.
     """
 
     id: int
@@ -68,7 +68,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """What became of a damaged record: where it was kept, and how many events were carried over."""
+    """The repair of a damaged record: where the old one was put, and how many events were recovered."""
 
     kept: Path
     carried: int
@@ -91,7 +91,7 @@ class Store:
             IntegrityError: the file is damaged.
             MissingCapabilityError: it cannot be written here, is locked, or is from a newer course.
         """
-        # Half a surrogate, as a page or a terminal can send one, is no text that a file can hold.
+        # A page or a terminal can send half a surrogate, which no file can hold.
         text = json.dumps(data or {}, ensure_ascii=False).encode("utf-8", "replace").decode()
         row = (_now(), kind, subject, text)
         with self._connection(create=True) as database:

@@ -197,7 +197,7 @@ def same_text(one: bytes, other: bytes) -> bool:
 
 
 def write_atomically(path: Path, data: bytes) -> None:
-    """Write a file so that it is either the old one or the new one, whenever the process dies.
+    """Write a file in one step: whenever the process dies, it is either the old one or the new one.
 
     A symbolic link keeps pointing where it points; what it points at is replaced.
 

@@ -1,1 +1,1 @@
-"""The quiz: questions posed from a seed, attempts scored, what was missed brought back."""
+"""The quiz: questions posed from a seed, attempts scored, missed questions asked again."""

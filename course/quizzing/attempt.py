@@ -30,7 +30,7 @@ __all__ = [
 #: The share of the questions that passes. A fraction: 0.7 as a float is a little less than 7/10.
 PASS_SHARE = Fraction(7, 10)
 
-#: Seeds tried for one that asks everything otherwise: with four variants each, about one in four does.
+#: How many seeds to try for one that changes every question: with four variants each, about one in four does.
 _TRIES = 200
 #: Times as many tries as all first variants take on average: they are missed once in 20,000 attempts.
 _PATIENCE = 10
@@ -38,7 +38,7 @@ _PATIENCE = 10
 
 @dataclass(frozen=True, slots=True)
 class MarkedQuestion:
-    """A question, and what was answered."""
+    """A question and its answer."""
 
     posed: PosedQuestion
     chosen: Choice
@@ -125,7 +125,7 @@ def fresh_seed(
     first = {document.value.id: document.value.variant[0].id for document in bank.documents}
 
     def misses(seed: int, least: int) -> int:
-        """For how many questions a seed is not what is wanted; stops counting at ``least``."""
+        """The number of questions for which a seed is unsuitable; stops counting at ``least``."""
         count = 0
         for name in bank.ids:
             variant = bank.variant(name, seed)

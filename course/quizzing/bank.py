@@ -47,7 +47,7 @@ class Choice:
 
     Attributes:
         letter: its place, "a" first.
-        misconception: of a wrong one, the name of what is behind it; empty for the right one.
+        misconception: of a wrong one, the name of the belief behind it; empty for the right one.
         belief: that misconception in the words of who holds it.
     """
 

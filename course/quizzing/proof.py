@@ -1,4 +1,4 @@
-"""Every case of a question, gone through: what reading its file cannot show.
+"""Goes through every case of a question, for faults that reading its file cannot show.
 
 A variant draws its numbers from finite lists, so "no seed ever shows two options that are the same" is not
 a matter of sampling: each case is posed once.

@@ -1,7 +1,7 @@
-"""Running the cells of one lesson in a process of their own, at the best protection this machine has.
+"""Runs the cells of one lesson in a separate process, at the best protection this machine has.
 
-A cell finds what the cells before it define: those that have not run as they now stand are run first. After a
-cell was interrupted, or its process died, the next run starts a new process and does the same there.
+A cell needs the names from the cells before it: those that have not run in their present form run first.
+After a cell was interrupted, or its process died, the next run starts a new process and does the same there.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ __all__ = ["DEADLINE_S", "STOPPED", "CellOutput", "CellRunner"]
 #: A lesson's own cell takes under two seconds; one that was changed may take this long before it is stopped.
 DEADLINE_S = 60.0
 _MAIN = "lesson.py"
-#: What a cell that was interrupted gave.
+#: The error of an interrupted cell.
 STOPPED = "Stopped."
 
-#: What runs beside the cells. It prints what they print as it comes, so that a stopped cell shows how far it
-#: got, and gives back the traceback of the cell's own lines.
+#: The program around the cells. It prints their output at once, so that a stopped cell shows how far it got,
+#: and returns the traceback of the cell's own lines.
 _BESIDE = '''\
 import importlib.machinery, io, linecache, os, sys, traceback
 
@@ -89,7 +89,7 @@ def run(source, name):
 
 @dataclass(frozen=True, slots=True)
 class CellOutput:
-    """What a run of a cell gave.
+    """The result of running a cell.
 
     Attributes:
         printed: everything it printed, without the last line's end.
@@ -109,7 +109,7 @@ class CellRunner:
 
     Args:
         cells: all cells of the lesson, hidden ones included.
-        source: what a cell's code is now.
+        source: gives a cell's present code.
     """
 
     def __init__(self, cells: Sequence[Cell], source: Callable[[Cell], str]) -> None:
@@ -183,7 +183,7 @@ class CellRunner:
             connection.deadline.end()
 
     def forget(self) -> None:
-        """Begin anew with the next run, as after changes to the modules a cell imports."""
+        """Restart the process at the next run, for example after changes to modules that a cell imports."""
         if self._connection is not None:
             self._connection.close()
             self._connection = None

@@ -31,7 +31,7 @@ class Hit:
 def find(progress: InProgress, wanted: str) -> Iterator[Hit]:
     """Where words occur in a lesson, a block at most once; capitals do not matter.
 
-    What may answer a prediction that is still open is not looked into.
+    Text that may answer an open prediction is not searched.
     """
     script = progress.script
     needle = " ".join(wanted.split()).casefold()

@@ -22,7 +22,7 @@ _FILLED, _LEAST = 0.5, 0.2
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What is known of one line.
+    """Facts about one line.
 
     Attributes:
         block: index of the block it belongs to; -1 for the head of the lesson.

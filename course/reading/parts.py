@@ -46,8 +46,8 @@ class Question:
         index: of its block.
         answer: index of the passage that answers it; None if there is none.
         end: index of the first block after it that is open again.
-        key: what its answer is kept under.
-        words: what is asked.
+        key: of its answer in the record.
+        words: the question.
     """
 
     number: int
@@ -66,9 +66,9 @@ class Cell:
         number: 1 for the first shown cell; 0 for a hidden one.
         order: its place among all cells, hidden ones included, 0 first.
         index: of its block; for a cell inside another block, of that.
-        key: what happened to it is kept under.
+        key: of its events in the record.
         source: as the lesson has it.
-        output: what the lesson records; None if nothing.
+        output: recorded in the lesson; None if there is none.
     """
 
     number: int

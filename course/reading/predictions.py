@@ -1,4 +1,4 @@
-"""What a student predicted, over all lessons, and how well: read from the record of the reader."""
+"""A student's predictions in all lessons, and how good they were: read from the reader's record."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class RecordedPrediction:
         lesson: where it was asked.
         key: of the question, as ``Question.key``.
         number: of the question when it was answered, 1 for the first of the lesson.
-        text: what was said; empty if it was skipped.
+        text: the prediction; empty if it was skipped.
         at: when, in UTC.
         judged: how it did, by its author's word once the answer was open; None if that was not said.
     """
@@ -56,7 +56,7 @@ class Tally:
 def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
     """The predictions that events of kind "prediction" tell of, in the order they were made.
 
-    What was said first to a question stays, as the reader has it; the last judgement counts.
+    The first prediction for a question stays, as in the reader; the last judgement counts.
     """
     found: dict[tuple[str, str], RecordedPrediction] = {}
     for event in events:

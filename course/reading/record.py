@@ -1,4 +1,4 @@
-"""What a reader did in one lesson: read back from the student's record, and written to it as it happens.
+"""A reader's actions in one lesson: read from the student's record, and written to it as they happen.
 
 Four kinds of events, each one short transaction: "bookmark" (a place in the text), "prediction" (typed or
 skipped, and later how it did), "cell" (its code as it ran, and what it gave) and "lesson" (its end was
@@ -36,7 +36,7 @@ _WORDS = 60
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """What a reader said before the answer; ``text`` is empty if they skipped it.
+    """A reader's prediction; ``text`` is empty if they skipped it.
 
     Attributes:
         at: when; None if it was not read from a record.
@@ -150,7 +150,7 @@ class InProgress:
     # -- predictions ---------------------------------------------------------------------------------
 
     def prediction(self, question: Question) -> Prediction | None:
-        """What was said; None if it was neither answered nor skipped."""
+        """The prediction; None if the question was neither answered nor skipped."""
         return self._predictions.get(question.key)
 
     def closed_by(self, index: int) -> Question | None:
@@ -159,12 +159,12 @@ class InProgress:
         return question if question is not None and question.key not in self._predictions else None
 
     def asked_by(self, index: int) -> Question | None:
-        """The open prediction that is this block, or keeps it closed; None if nothing is to be predicted."""
+        """The open prediction that is this block, or keeps it closed; None if there is none."""
         question = self.script.question_at(index)
         return question if question and question.key not in self._predictions else self.closed_by(index)
 
     def predict(self, question: Question, text: str) -> None:
-        """Keep what was said; an empty text is a skip. What was said first stays."""
+        """Keep a prediction; an empty text is a skip. The first prediction stays."""
         if question.key not in self._predictions:
             said = text.strip()[:_KEPT].encode("utf-8", "replace").decode()
             self._predictions[question.key] = Prediction(said)
@@ -180,7 +180,7 @@ class InProgress:
     # -- cells ---------------------------------------------------------------------------------------
 
     def cell(self, cell: Cell) -> CellState:
-        """A cell as it is now."""
+        """A cell's present state."""
         return self._cells.get(cell.key) or CellState(cell.source)
 
     def edit(self, cell: Cell, source: str) -> None:
@@ -221,7 +221,7 @@ class InProgress:
         self._write(kind, self.script.lesson.id, data)
 
     def _take(self, event: Event) -> None:
-        """An event of the record; what does not fit this lesson any more is passed over."""
+        """Take an event of the record; one that no longer fits this lesson is ignored."""
         data, key = event.data, str(event.data.get("key", ""))
         if event.kind == "lesson":
             self.read = True

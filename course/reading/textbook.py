@@ -46,7 +46,7 @@ class Textbook:
 
 
 def textbook_for(sources: Iterable[str]) -> Textbook:
-    """What these pieces of code import of the course. Code that does not parse imports nothing."""
+    """The course's modules that these pieces of code import. Code that does not parse imports none."""
     texts = list(sources)
     files: dict[str, bytes] = {}
     others: set[str] = set()

@@ -19,7 +19,7 @@ from course.scoring.explain.words import Diagnosis
 from course.scoring.places import Places
 from course.scoring.verdict import Finding
 
-#: What was compared along time: its times, the student's values, the right ones, quantity and units.
+#: A comparison along time: the times, the student's values, the right ones, quantity and units.
 Comparison = tuple[Any, Any, Any, str, str]
 
 __all__ = [
@@ -41,7 +41,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: message and advice of the check itself, without its probe's diagnosis.
         guess: its probe's diagnosis.
         broke: where the probe raised, for the check's author; empty if it did not.
-        comparison: what was compared along time, if something was.
+        comparison: along time, if there was one.
     """
 
     def __init__(

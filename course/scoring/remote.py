@@ -88,7 +88,7 @@ class RemoteSubmission:
     # -- for checks -----------------------------------------------------------------------------------
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
-        """What the student's function returns, as plain data.
+        """The result of the student's function, as plain data.
 
         Args:
             name: the function.
@@ -155,7 +155,7 @@ class RemoteSubmission:
         return paths
 
     def call_each(self, name: str, calls: Iterable[Sequence[Any]]) -> list[Any]:
-        """What the student's function returns for each sequence of arguments, in one round trip.
+        """The results of the student's function for each sequence of arguments, in one round trip.
 
         Raises:
             StudentFailure: one of the calls gave no value; the later ones were not made.

@@ -1,4 +1,4 @@
-"""What an exercise shows a student about their own code: text, tables and figures on public data.
+"""An exercise's report on a student's own code: text, tables and figures on public data.
 
 An exercise that has something to show ships ``report.py`` with a function ``report(submission)``. It calls
 the student's functions through the same boundary as the checks do.

@@ -54,7 +54,7 @@ class Inspected:
     """The result of a call and its effect on the arguments.
 
     Attributes:
-        value: what it returned.
+        value: the returned value.
         args_after: the arguments as they were after the call.
         shared: True if a returned array shares memory with an argument.
     """

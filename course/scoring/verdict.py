@@ -1,4 +1,4 @@
-"""What a check found, what a submission scored: the types every report and export is made from.
+"""The results of checks and the scores of submissions: the types behind every report and export.
 
 A finding keeps words and values apart: ``message`` and ``help`` never contain a number that a hidden check
 must not reveal, so ``for_student`` only has to drop fields, and no other code has to care.
@@ -56,7 +56,7 @@ class Tolerance(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class Finding(msgspec.Struct, frozen=True):
-    """What was measured, what was expected and why, and what to do about it.
+    """The measured and the expected value, the reason, and what to do.
 
     Attributes:
         message: what is wrong, in words without values.

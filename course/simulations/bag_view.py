@@ -1,4 +1,4 @@
-"""A configuration of RViz for the bags of this course: what to show, from above, in which frame.
+"""A configuration of RViz for the bags of this course: the displays, a view from above, the frame.
 
 It names only what differs from RViz's own defaults.
 """

@@ -11,7 +11,7 @@ and what a viewer needs to put them in their places: ``/tf`` with the poses of b
 with what does not move (``odom`` lies on ``map``), and ``/clock`` at every time at which something happens. A
 configuration of RViz that shows them lies in the folder, too.
 
-What the messages say beyond the streams:
+The messages hold more than the streams:
 
 - Stamps are the stream's times plus ``START_S``, to the nanosecond; a message is logged when it is stamped.
 - A range of ``range_max`` means that nothing came back and is written as +inf (REP 117); ranges and angles

@@ -1,4 +1,4 @@
-"""What a simulation is, what may be set, and what comes out."""
+"""The types of a simulation, its parameters and its results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Parameter:
     """Something that may be set.
 
     Attributes:
-        name: what ``--set`` calls it.
+        name: in ``--set``.
         default: its value if it is not set; the type of the default is the type of the parameter.
         unit: "" for words, "1" for pure numbers.
         low, high: the range, both ends allowed. ``above``: the lower end itself is not.
@@ -46,7 +46,7 @@ class Parameter:
 
     @property
     def range(self) -> str:
-        """What is allowed, as a person reads it."""
+        """The allowed values in words."""
         if self.choices:
             return " | ".join(self.choices)
         opening = "above " if self.above else ""
@@ -80,7 +80,7 @@ class Row:
     """One number that was measured, beside what theory says.
 
     Attributes:
-        quantity: what it is, a few words.
+        quantity: its meaning, in a few words.
         simulated: measured in the simulation; NaN if it did not happen.
         unit: "1" for a pure number.
         theory: None where nothing is known in closed form, NaN if theory too says that it does not happen.
@@ -116,7 +116,7 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What came out of one run.
+    """The results of one run.
 
     Attributes:
         simulation: its id.
@@ -124,7 +124,7 @@ class Result:
         rows: measured beside theory.
         headline: the finding in at most 78 characters, for the head of a figure.
         finding: the finding in a sentence or two.
-        columns: what ``--csv`` writes: series of one length, the first one being the axis.
+        columns: for ``--csv``: series of one length, the first one being the axis.
     """
 
     simulation: str
@@ -150,8 +150,8 @@ class Simulation:
     Attributes:
         id, title: ...
         question: what to predict before running it.
-        teaches: what one can feel with it: a kind of simulation, or a factor of its accuracy.
-        parameters: what may be set.
+        teaches: its subject: a kind of simulation, or a factor of its accuracy.
+        parameters: those that can be set.
         run: settings (every parameter, checked) -> result.
             It may raise ValueError for settings that are fine alone and impossible together.
     """

@@ -1,4 +1,4 @@
-"""Which simulations there are; a simulation is imported when it is asked for."""
+"""The list of simulations; each is imported when it is needed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot's sensors showed, as plain arrays with units: streams that can be kept, compared and sent.
+"""Recordings of a robot's sensors, as plain arrays with units: streams to keep, compare and send.
 
 Frames and signs are those of REP 103: x forward, y left, z up, angles counter-clockwise, SI units. A stream's
 time is in seconds from the start of the recording.
@@ -109,7 +109,7 @@ class TruthStream(OdometryStream):
 
 Stream = ImuStream | ScanStream | OdometryStream  # a TruthStream is an OdometryStream
 
-#: What the seconds of a ROS stamp can hold.
+#: The range of the seconds in a ROS stamp.
 _LATEST = 2**31
 
 #: Kind of stream, as plain data name it: its type.

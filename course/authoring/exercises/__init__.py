@@ -1,3 +1,3 @@
-"""What the course proves of an exercise: its files, and that solutions pass, stubs fail and each wrong
+"""The proofs of an exercise: its files are in order, solutions pass, stubs fail and each wrong
 variant loses exactly what it breaks.
 """

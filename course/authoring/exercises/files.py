@@ -1,7 +1,7 @@
 """The audit of an exercise's files, without running any of them.
 
 Blanks left by ``course author new``, hints, README, stub against solution, and the checks' own declarations.
-What only a grading run can show is in ``course.authoring.exercises.proofs``.
+``course.authoring.exercises.proofs`` has the rules that take a grading run.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BLANK", "audit_files", "exercise_folders", "find_blanks"]
 
-#: What ``course author new`` leaves where an author has to write.
+#: The mark that ``course author new`` leaves where an author has to write.
 BLANK = re.compile(r"<<FILL IN:\s*(?P<what>.*?)>>")
 
 #: Mildest first; the last may nearly be the solution.
@@ -48,7 +48,7 @@ def exercise_folders(catalog: Catalog, exercise_id: str) -> tuple[Path, Path, Pa
 
 
 def find_blanks(catalog: Catalog, exercise_id: str, findings: Findings) -> bool:
-    """Report each blank that is still to be filled; True if there is one."""
+    """Report each blank that is left; True if there is one."""
     found = False
     for folder in exercise_folders(catalog, exercise_id):
         for path in sorted(folder.rglob("*")):

@@ -36,7 +36,7 @@ GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator
 def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
     """Grade sources as a grading run would, on every processor.
 
-    The seed is fixed: the same files get the same verdicts, whichever of them are done first. Most sources
+    The seed is fixed: the same files get the same verdicts, in any order. Most sources
     are the model solution with a few definitions after it. A check that uses none of the changed functions,
     directly or through others, has the same result as for the model, and is not run again.
 

@@ -31,7 +31,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class MutantOutcome:
-    """What happened to a mutant.
+    """The outcome for a mutant.
 
     Attributes:
         caught_by: ids of the checks that did not pass, in order.

@@ -35,7 +35,7 @@ class _Sum:
 
     Attributes:
         where: its key, as steps from the top of the file.
-        about: what it is, in words.
+        about: its meaning, in words.
         written, due: the value in the file, and the sum over the checks.
     """
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["audit_slow", "due", "measured", "write_slow"]
 
-#: A number is written anew once a check takes more, or less than this share of it: times vary by two.
+#: A number is replaced once a check takes longer, or less than this share of it: times vary by two.
 _LEAST = 0.4
 
 

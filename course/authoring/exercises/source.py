@@ -28,7 +28,7 @@ __all__ = [
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
-#: A number with a decimal point or an exponent: what a hidden check's words must not contain.
+#: A number with a decimal point or an exponent, which a hidden check's words must not contain.
 DECIMAL = re.compile(r"(?<![\w.])\d+(?:\.\d+(?:[eE][-+]?\d+)?|[eE][-+]?\d+)(?![\w.]*\w)")
 
 _INDIRECT = object()
@@ -54,7 +54,7 @@ class CheckSource:
         task, points: what its markers say; None where a marker is missing or is not written as a plain value.
         requires: ids of the checks it depends on.
         hidden: True for a grader, False for a public check.
-        indirect: names of markers that are there, and whose values only running the file can tell.
+        indirect: names of markers whose values are known only when the file runs.
     """
 
     id: str

@@ -57,7 +57,7 @@ class LocalSubmission:
         self.asked = set()
 
     def printed(self) -> str:
-        """Nothing: what it prints goes where this process prints."""
+        """Empty: its output goes to this process's own."""
         return ""
 
     def close(self) -> None:
@@ -132,7 +132,7 @@ class LocalSubmission:
 
 
 def _guarded(fn: Any) -> Any:
-    """``fn()``, with whatever student code raises as a StudentFailure."""
+    """``fn()``, with the student code's exceptions as StudentFailure."""
     try:
         with np.errstate(all="ignore"):
             return fn()

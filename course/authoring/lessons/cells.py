@@ -45,7 +45,7 @@ class CellRun:
 
 @dataclass(frozen=True, slots=True)
 class ValueRun:
-    """One quoted number and what its expression gives, written as the author wrote it."""
+    """One quoted number, and the value of its expression in the same form."""
 
     value: b.Value
     computed: str

@@ -67,7 +67,7 @@ class LinkChecker:
             self._findings.add(path, line, "link", f"the link {target!r} {problem[0]}", problem[1])
 
     def _problem_with(self, path: Path, target: str) -> tuple[str, str] | None:
-        """What is wrong with a link and the fix, or None."""
+        """A link's fault and the fix, or None."""
         if target.startswith(_WEB):
             return None
         place, _, anchor = target.partition("#")

@@ -26,7 +26,7 @@ _SMALL = 12
 _YEARS = range(1600, 2100)
 _NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 
-#: What is left in the text of ``[3](=a + b)``, which has spaces and is therefore no link in Markdown.
+#: Left in the text by ``[3](=a + b)``, which has spaces and is therefore not a link in Markdown.
 _UNREAD_VALUE = re.compile(r"\]\(<?=")
 
 

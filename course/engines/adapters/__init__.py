@@ -1,1 +1,1 @@
-"""One module for each engine, and a file with its options: their defaults, what they do, what was tried."""
+"""One module for each engine, and a file with its options: defaults, effects, and the values tried."""

@@ -109,7 +109,7 @@ class OdeWorld:
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``; looked for anew, at the positions of now."""
+        """See ``World``; searched again, at the present positions."""
         depths: list[float] = []
 
         def look(_arg: Any, one: Any, other: Any) -> None:

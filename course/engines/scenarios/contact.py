@@ -44,7 +44,7 @@ def _phases(dt: float, quick: bool) -> Iterator[float]:
 
 
 def _mean(samples: list[float], details: list[dict[str, Any]]) -> Measured:
-    """The mean over the phases, what it is the mean of, and the further details."""
+    """The mean over the phases, the single values, and further details."""
     return statistics.fmean(samples), {"samples": samples, **_together(details)}
 
 

@@ -36,7 +36,7 @@ class Outcome:
 
     Attributes:
         value: the number that is compared.
-        samples: what it is the mean or the median of: one for each phase of the step, or each start; empty
+        samples: ``value`` is their mean or median: one for each phase of the step, or each start; empty
             where there is one run.
         details: further results.
     """
@@ -51,11 +51,11 @@ class Scenario:
     """One test.
 
     Attributes:
-        id, title: what it is called.
+        id, title: its names.
         question: a question to answer before seeing the numbers.
-        quantity: what ``value`` is.
+        quantity: the meaning of ``value``.
         unit: of ``value`` and ``truth``; "%" and "mm" are meant for reading.
-        truth: the right value; None where there is none (a speed), inf for "whatever comes".
+        truth: the right value; None where there is none (a speed), inf for "any speed".
         source: where the truth comes from.
         digits: decimals worth showing.
         measure: given how to build a scene, the step (s) and whether it should be quick, gives an Outcome.

@@ -1,4 +1,4 @@
-"""What the checks of an exercise share, from the course in use: modules, known answers, words."""
+"""Shared by the checks of an exercise, from the course in use: modules, known answers, words."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def reference(exercise_id: str, module: str) -> ModuleType | None:
 
 
 def known_answers(exercise_id: str, check: str) -> list[Any]:
-    """What a public check with fixed inputs expects where there is no reference, in the order it asks."""
+    """The answers that a public check with fixed inputs expects where there is no reference, in its order."""
     table = read_table(content().exercise_folder(exercise_id) / TABLE)
     return [_known(value) for value in table.answers[check]]
 

@@ -1,4 +1,4 @@
-"""What known wrong programs answer to the questions of an exercise: ``hypotheses.json``, made by a command.
+"""The answers of known wrong programs to an exercise's questions: ``hypotheses.json``, made by a command.
 
 The file is part of the exercise, so that a diagnosis at home is as good as in a grading run. It contains
 nothing that solves the exercise: only fingerprints, and the answers to public checks with fixed inputs.
@@ -24,7 +24,7 @@ FILE = "hypotheses.json"
 
 
 class Row(msgspec.Struct, frozen=True, array_like=True):
-    """One wrong program: the codes of what is wrong in it, and what it answers.
+    """One wrong program: the codes of its mistakes, and its answers.
 
     Attributes:
         codes: one for each mistake.
@@ -44,7 +44,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
         within: relative tolerance of the tasks whose answers are stored directly.
         rows: by task; programs with one mistake come first.
         right: fingerprints of right programs, by task.
-        answers: what public checks with fixed inputs expect, by check and in the order they ask.
+        answers: those that public checks with fixed inputs expect, by check and in its order.
     """
 
     format_version: int = 1

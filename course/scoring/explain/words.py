@@ -19,7 +19,7 @@ __all__ = ["FILE", "NOT_FINITE", "Diagnosis", "Entry", "Words", "read_words"]
 
 
 FILE = "diagnoses.toml"
-#: Codes of values that are nan or infinite where a number belongs, whatever made them so.
+#: Codes of values that are nan or infinite where a number belongs, from any cause.
 NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
 
 

@@ -1,1 +1,1 @@
-"""A submission judged: what a run decides once, the session, and the words of the verdict."""
+"""Judging a submission: the terms of a run, the session, and the words of the verdict."""

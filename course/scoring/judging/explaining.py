@@ -137,7 +137,7 @@ def answer_numbers(
 
 
 def answers(remote: RemoteSubmission, task: str, questions: Calls) -> list[Any]:
-    """What a function answers to each question; ``{"raised": name}`` where it raises."""
+    """A function's answer to each question; ``{"raised": name}`` where it raises."""
     questions = copy.deepcopy(questions)  # generators start anew each time
     try:
         return list(remote.call_each(task, questions))

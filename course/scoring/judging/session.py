@@ -61,7 +61,7 @@ class GradingSession:
     """Checks and sandbox of one exercise, ready for any number of submissions.
 
     Args:
-        exercise: what to grade.
+        exercise: the exercise to grade.
         catalog: where its files are.
         scope: "public" for the checks a student has, "full" for the hidden ones too.
         terms: protection level, deadline and seed.
@@ -71,7 +71,7 @@ class GradingSession:
         running: title of the running check; empty between runs.
         asked: for each check that has run, the functions of the last submission that it used.
         took: and the CPU time of the worker for it, s.
-        printed: what the last submission printed while it was loaded.
+        printed: the last submission's output while it was loaded.
         curves: for failed checks at home, the student's curve and the right one, if they show anything.
 
     Raises:
@@ -352,7 +352,7 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
 
 
 def _explainer(exercise: Exercise) -> Explainer | None:
-    """What explains failed checks, for an exercise whose words are data."""
+    """The explainer of failed checks, for an exercise whose words are data."""
     if not (Path(exercise.folder) / "diagnoses.toml").is_file():
         return None
     return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))

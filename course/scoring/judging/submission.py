@@ -1,4 +1,4 @@
-"""What one student handed in for one exercise, and its digest."""
+"""One student's submission for one exercise, and its digest."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ __all__ = ["Submission"]
 
 @dataclass(frozen=True)
 class Submission:
-    """What one student handed in for one exercise.
+    """One student's submission for one exercise.
 
     Attributes:
         files: file name to content, exactly as handed in.
         places: how its lines are named; None if the student wrote the module itself.
-        notes: what was left out or assumed when it was read, one sentence each.
+        notes: parts left out, and assumptions, one sentence each.
     """
 
     files: Mapping[str, bytes]

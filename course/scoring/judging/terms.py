@@ -1,4 +1,4 @@
-"""What a grading run decides once, for every submission of it."""
+"""The terms of a grading run, the same for every submission in it."""
 
 from __future__ import annotations
 

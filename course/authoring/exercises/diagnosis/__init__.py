@@ -1,1 +1,1 @@
-"""What students are told of wrong work, proven: hypotheses, their words, and who is told what."""
+"""Proofs of the diagnoses: hypotheses, their words, and the diagnosis of each wrong program."""

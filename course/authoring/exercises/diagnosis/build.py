@@ -1,4 +1,4 @@
-"""What the author's machine computes and an exercise ships: ``hypotheses.json``.
+"""``hypotheses.json``: computed on the author's machine, and part of the exercise.
 
 The wheel has no solutions. So that a diagnosis at home is as good as in a grading run, this module writes the
 answers of each known wrong program to the questions of an exercise, as fingerprints, and the expected values
@@ -71,7 +71,7 @@ def digest(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    """The table of an exercise, computed anew."""
+    """Compute the table of an exercise."""
     questions = kit.companion(exercise.id, "questions")
     within: dict[str, float] = getattr(questions, "WITHIN", {})
     tasks = sorted(tasks_asked(questions))
@@ -156,7 +156,7 @@ def _executed(source: bytes) -> dict[str, Any]:
 
 
 def _expected(exercise: Exercise) -> dict[str, Any]:
-    """What the public checks expect for their fixed inputs, by check."""
+    """The answers that public checks expect for their fixed inputs, by check."""
     known: Callable[[], dict[str, Any]] | None = (
         getattr(kit.companion(exercise.id, "bundles"), "known", None)
         if (exercise.readme_path.with_name("bundles.py").is_file())

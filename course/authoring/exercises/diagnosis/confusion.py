@@ -57,7 +57,7 @@ class Reported(msgspec.Struct, frozen=True, array_like=True):
     """How often programs with these mistakes get this diagnosis.
 
     Attributes:
-        codes: what is wrong in them.
+        codes: of the mistakes in them.
         said: diagnosis, "" for none, "survives" where no check fails.
     """
 

@@ -215,7 +215,9 @@ def _check_numbers(document: Document[Question], where: Where, variant: Variant)
         at = (*where, "number", index)
         if not number.name.isidentifier() or number.name in known:
             document.fail(
-                (*at, "name"), f"{number.name!r} is no new name.", fix="Use letters, each name once: t_end"
+                (*at, "name"),
+                f"{number.name!r} is not a new, valid name.",
+                fix="Use letters, each name once: t_end",
             )
         if bool(number.values) == bool(number.formula):
             document.fail(
@@ -287,7 +289,7 @@ def _check_slug(document: Document[Any], where: Where, name: str, kind: str) -> 
     if not _SLUG.fullmatch(name):
         document.fail(
             where,
-            f"{name!r} is no name of a {kind}.",
+            f"{name!r} is not a valid name of a {kind}.",
             fix="Use lower-case words joined by hyphens: looks-are-everything",
         )
 

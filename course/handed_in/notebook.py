@@ -117,7 +117,7 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
         name: what to call it in messages.
 
     Raises:
-        UngradableError: it is no notebook, one of another language, or has none of the functions.
+        UngradableError: it is not a notebook, is one of another language, or has none of the functions.
     """
     try:
         return source_of(code_cells(data, name), exercise, name)

@@ -24,7 +24,7 @@ _HEAD = """\
 # Quiz
 
 {mark}. In a workspace the next cell is an attempt that counts, as `course quiz take` in a terminal is one;
-what was begun there goes on here."""
+an attempt begun there continues here."""
 _PRACTICE = """\
 ## Practice
 

@@ -191,7 +191,7 @@ def trajectory(stepper: Stepper, system: System, start: State, h: float, n: int)
         h: negative to go back in time.
 
     Raises:
-        ValueError: h is 0 or not finite, n is no whole number or negative, the start is not finite, or the
+        ValueError: h is 0 or not finite, n is not a whole number of steps, the start is not finite, or the
             system's acceleration there is not a number. A method that blows up later is not stopped.
     """
     if not (math.isfinite(h) and h != 0):

@@ -104,7 +104,7 @@ def check_seed(seed: int) -> int:
     """
     if not 0 <= seed <= MAX_SEED:
         raise UsageError(
-            f"{seed} is no seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"
+            f"{seed} is not a seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"
         )
     return seed
 

@@ -161,7 +161,7 @@ def _ask_functions(console: Console) -> Iterator[scaffold.Function]:
         except UsageError as error:
             console.line(f"{error.message} {error.help}")
             continue
-        gives = console.ask(f"What {found.name} gives, with units: ") or ""
+        gives = console.ask(f"The result of {found.name}, with units: ") or ""
         yield scaffold.Function(found.signature, gives)
 
 
@@ -215,7 +215,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
     if kind == "warm-up":
         console.note(f"What wrong solutions answer is computed by: course author build {name}")
     then = "sandbox play" if kind == "scene" else "author check"
-    console.note(f"Fill in what is marked, then run: course {then} {name}")
+    console.note(f"Fill in the marked blanks, then run: course {then} {name}")
     console.emit(AuthorNew(kind=kind, id=name, files=written))
     return 0
 

@@ -56,7 +56,7 @@ def pictures(
             continue
         stale.append(name)
         if check:
-            console.line(f"{name} is stale: course author pictures makes it anew.")
+            console.line(f"{name} is stale: course author pictures makes it again.")
             continue
         folder.mkdir(parents=True, exist_ok=True)
         write_atomically(path, picture())  # generated, and under version control: no copy

@@ -105,7 +105,7 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
     if done.up_to_date:
         console.note(f"{done.up_to_date} were graded by these same graders; --all grades them too.")
     if done.kept:
-        console.note(f"{done.kept} had nothing that could be graded, and stay as they are.")
+        console.note(f"{done.kept} had nothing to grade, and stay unchanged.")
     if done.faults:
         console.line(f"{done.faults} failed because of a fault of the grader and are marked for regrading.")
     if dry_run and done.changes:

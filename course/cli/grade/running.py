@@ -121,7 +121,7 @@ def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...]
         return
     names = ", ".join(summary.edited)
     console.line((f"The graders were edited after these scores were given: {names}.", "bold"))
-    console.line(f"No score was changed by that. With the graders as they are now, {len(changes)} would:")
+    console.line(f"No score was changed by that. With the present graders, {len(changes)} would change:")
     for change in changes[:_MOST_TROUBLED]:
         show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
@@ -164,7 +164,7 @@ def _show_people(console: Console, summary: Summary) -> None:
     """Missing students, and submissions without a student."""
     for listed, words in (
         (summary.missing, "enrolled and handed in nothing"),
-        (summary.strangers, "not in the roster, or not told apart by it"),
+        (summary.strangers, "not in the roster, or ambiguous there"),
         (summary.unrecognised, "unknown owner"),
     ):
         if listed:

@@ -202,6 +202,6 @@ def _sentence(folder: Path, file: NotebookFile) -> str:
         "current": "up to date.",
         "replaced": "replaced by the newer one; nothing of yours was in it.",
         "merged": "newer text was put around your work.",
-        "beside": f"left as it is, since {file.reason}; the newer one is {shown(file.new or '')}.",
+        "beside": f"not changed, since {file.reason}; the newer one is {shown(file.new or '')}.",
     }
     return f"{shown(file.path)}: {said[file.action]}{kept}"

@@ -152,7 +152,7 @@ class PlainPrinter:
     def _figure(self, figure: b.Figure) -> None:
         number = self._figure_ids.index(figure.id) + 1
         self._prose(f"Figure {number}: {self._words(figure.caption)}")
-        self._prose(f"What is to be seen: {figure.alt}")
+        self._prose(f"The figure shows: {figure.alt}")
         if self._figures_dir is None:
             if not self._told_how:
                 self._say(f"To save the pictures: course lesson {self._lesson.id} --figures DIR")

@@ -112,7 +112,7 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
     files = put(console, here, chosen)
     step = f"course check {chosen.id}"
     console.note(
-        f"Write in {chosen.place}/{chosen.module} with an editor of yours, about {chosen.minutes} minutes."
+        f"Write in {chosen.place}/{chosen.module} with your own editor, about {chosen.minutes} minutes."
     )
     console.note(f"Check it:          {step}")
     console.note(f"On every save:     course watch {chosen.id}")

@@ -45,7 +45,7 @@ INSIGHTS = (
     "The method decides what kind of error you get; the step decides how much of it and, past a limit, "
     "whether there is an answer at all.",
     "A smaller step cannot repair a model that leaves something out: air, a radius, a rebound.",
-    "Energy and momentum tell on a simulation even where no closed form exists.",
+    "Energy and momentum reveal an error even where no closed form exists.",
 )
 
 
@@ -123,7 +123,7 @@ def run(
         if name is not None or pairs:
             extra = name if name is not None else f"--set {pairs[0]}"
             raise UsageError(
-                f"{extra}: --all runs all four as they are.",
+                f"{extra}: --all runs all four with their defaults.",
                 help="Leave one of the two out.",
                 code="all_and_one",
             )

@@ -19,7 +19,7 @@ __all__ = ["put", "start"]
 def start(exercise: OneExercise) -> int:
     """Put an exercise into the workspace.
 
-    You get the stub to fill in and its README. A file that is there already is left as it is.
+    You get the stub to fill in and its README. An existing file is not changed.
     """
 
     console, here = current(), Here.load()
@@ -42,7 +42,7 @@ def put(console: Console, here: Here, chosen: Exercise) -> tuple[FileReply, ...]
         target = here.workspace.path(chosen.place, source.name)
         new = here.workspace.give(chosen.place, source.name, source.read_bytes())
         files.append(FileReply(path=str(target), action="created" if new else "kept"))
-        verb = "created" if new else "is there already and was left as it is"
+        verb = "created" if new else "exists already and was not changed"
         console.line(f"{here.workspace.shown(target)} {verb}.")
     here.record("start", chosen.id, {"version": here.catalog.version})
     return tuple(files)

@@ -249,7 +249,7 @@ def _outcome(future: Any, *, connected: bool) -> Outcome:
 
 def _scheduler_gone() -> MissingCapabilityError:
     return MissingCapabilityError(
-        "The cluster's scheduler is gone; what was graded is kept.",
+        "The cluster's scheduler is gone; all results so far are kept.",
         help="Start it again, then run the same command with --resume.",
         code="no_scheduler",
     )

@@ -196,7 +196,7 @@ class _Coordinator:
         self._places = max(1, places)  # what waits on the cluster is begun by the next worker that comes
         if now - self._seen_at > self._patience_s:
             raise MissingCapabilityError(
-                "The cluster has no workers left; what was graded is kept.",
+                "The cluster has no workers left; all results so far are kept.",
                 help="Start workers, then run the same command with --resume.",
                 code="no_workers",
             )

@@ -85,7 +85,7 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
     with contextlib.suppress(OSError), path.open("rb") as handle:
         if handle.read(len(_DATABASE)) == _DATABASE:
             raise UsageError(
-                f"{path} is a database, a gradebook most likely; it was left as it is.",
+                f"{path} is a database, most likely a gradebook; it was not changed.",
                 help="Name another file with -o.",
                 code="is_a_database",
             )

@@ -45,7 +45,7 @@ def main(arguments: list[str]) -> int:
 
 def _our_fault() -> dict[str, Any]:
     """No score and no test: Gradescope then asks the instructor to look."""
-    words = "A fault of the grader kept this from being graded; it is none of yours. It can be run again."
+    words = "A fault of the grader, not of yours, kept this from being graded. It can be run again."
     return {"output": words, "output_format": "text", "visibility": "visible", "stdout_visibility": "hidden"}
 
 

@@ -14,7 +14,7 @@ __all__ = ["checks_for_student", "problem_for_student"]
 #: The message of a broken check may contain its hidden values.
 _OUR_FAULT = Problem(
     "grader_error",
-    "A fault of the grader kept this from being graded; it is none of yours.",
+    "A fault of the grader, not of yours, kept this from being graded.",
     "It will be graded again. Your instructor knows of it.",
 )
 

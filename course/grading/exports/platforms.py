@@ -85,7 +85,9 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
         rows.append([person.moodle_key, for_moodle(person.name), *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
-    selection.written.notes.append("In Moodle, map the column moodle_key to what your roster has in it.")
+    selection.written.notes.append(
+        "In Moodle, map the column moodle_key to the field that your roster has in it."
+    )
     return selection.written
 
 

@@ -49,8 +49,8 @@ FORMAT_VERSION = 4
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
 _DAMAGED = (
-    "`course grade salvage` gets what is whole out of it and its backups into a new folder; nothing in this"
-    " one was mended or removed."
+    "`course grade salvage` writes the intact rows of it and its backups to a new folder; this file was not"
+    " changed."
 )
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
@@ -218,7 +218,7 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
         fix = "Make the folder writable, or copy it somewhere that is."
     else:
         message, fix, code = f"{path} cannot be used: {error}.", "Check the disk.", "gradebook_unusable"
-    return MissingCapabilityError(message, help=f"{fix} What was graded so far is kept.", code=code)
+    return MissingCapabilityError(message, help=f"{fix} All results so far are kept.", code=code)
 
 
 def create(path: Path) -> None:
@@ -314,7 +314,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
     sealed = _SEALED if version < 4 else (*_SEALED, *_SEALED_SINCE_4)
     if kept is not None and kept[0] != _digest(db, sealed):
-        raise IntegrityError(f"{path} is damaged: it is not what was written.", help=_DAMAGED)
+        raise IntegrityError(f"{path} is damaged: its content is not what the course wrote.", help=_DAMAGED)
     if version < 4 and writing:
         db.executescript(
             f"BEGIN EXCLUSIVE; {_TO_4} {_SINCE_4} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"

@@ -90,7 +90,7 @@ def salvage(path: Path, target: Path) -> Salvaged:
     found["found"] = {key: row for key, row in found["found"].items() if row[:2] not in settled}
     if not any(found.values()):
         raise IntegrityError(
-            f"Nothing in {path} is whole, and there is no backup.", help="Grade the class into a new folder."
+            f"{path} has no intact row, and there is no backup.", help="Grade the class into a new folder."
         )
     _write(found, target)
     told.rows = Counter({name: len(rows) for name, rows in found.items()})

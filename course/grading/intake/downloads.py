@@ -235,7 +235,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         match = _MOODLE.fullmatch(raw)
         if match is None:
-            found.unrecognised.append(f"{_text(raw)}: not a name that Moodle gives")
+            found.unrecognised.append(f"{_text(raw)}: not a name in Moodle's form")
             continue
         student = _text(f"{match['name']}_{match['key']}")
         people[student] = PlatformIdentity("moodle", match["key"], _text(match["name"]))
@@ -265,7 +265,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         match = _CANVAS.fullmatch(raw)
         if match is None or (folder / raw).is_dir():
-            found.unrecognised.append(f"{_text(raw)}: not a name that Canvas gives")
+            found.unrecognised.append(f"{_text(raw)}: not a name in Canvas' form")
             continue
         key = match["key"] or match["anon_key"]
         mine = files.setdefault(key, [])
@@ -299,7 +299,7 @@ def _gradescope(folder: Path, names: list[str]) -> ClassList:
     claims: dict[str, list[tuple[str, Student]]] = {}
     for name in names:
         if (folder / name).is_dir() and name not in metadata:
-            found.unrecognised.append(f"{_text(name)}: {_METADATA} does not say whose it is")
+            found.unrecognised.append(f"{_text(name)}: {_METADATA} does not name its owner")
     for name, about in metadata.items():
         # A folder's name comes out of a file: it must be one that was listed, never a path.
         if name not in names or not (folder / name).is_dir():

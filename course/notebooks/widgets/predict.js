@@ -1,4 +1,4 @@
-// A field for a prediction, and two buttons. The answer is no part of this page until one was pressed.
+// A field for a prediction, and two buttons. The answer is not in this page until one of them is pressed.
 
 export default {
   render({ model, el }) {
@@ -9,7 +9,7 @@ export default {
     field.rows = 3;
     field.style.cssText = "display: block; width: 100%; box-sizing: border-box; font: inherit; padding: 0.4em";
     field.setAttribute("aria-label", "Your prediction");
-    field.placeholder = "What do you expect, and why? A guess that is written is a guess that teaches.";
+    field.placeholder = "What do you expect, and why? You learn most from a guess that you wrote down.";
     const say = (text) => model.send({ kind: "predict", text });
     const button = (words, act) => {
       const made = document.createElement("button");

@@ -1,4 +1,4 @@
-// What a notebook adds to world.js, which stands in front of this: messages instead of a socket.
+// The notebook part of world.js, which precedes this: messages instead of a socket.
 
 export default {
   render({ model, el }) {
@@ -7,7 +7,7 @@ export default {
     el.addEventListener("focusin", (event) => {
       event.target.dataset.lmSuppressShortcuts = "true";
     });
-    // How wide the cell is decides how the world is laid out, not how wide the window is.
+    // The width of the cell, not of the window, decides the layout of the world.
     el.style.containerType = "inline-size";
     const world = mount(el, { send: (request) => model.send({ kind: "request", text: JSON.stringify(request) }) });
     const hear = (message, buffers) => {

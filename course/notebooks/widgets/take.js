@@ -1,4 +1,4 @@
-// The questions of an attempt, one group of options each. Which is right is not known here.
+// The questions of an attempt, one group of options each. The page does not know which one is right.
 
 export default {
   render({ model, el }) {

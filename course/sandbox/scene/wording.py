@@ -60,7 +60,7 @@ def _pieces(text: str) -> Iterator[tuple[str, str | None, str]]:
         raise _refused(text, f"has a brace without its partner ({error})") from None
     for words, formula, shape, conversion in pieces:
         if conversion or (shape and not _SHAPE.fullmatch(shape)):
-            raise _refused(f"{formula}:{shape or conversion}", "has a format that is none of .2f, .3g, +.1e")
+            raise _refused(f"{formula}:{shape or conversion}", "has a format other than .2f, .3g or +.1e")
         yield words, formula, shape or _USUAL
 
 

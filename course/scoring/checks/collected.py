@@ -81,7 +81,7 @@ class CollectedChecks:
                 if required not in self._items:
                     item = self._items[check.id]
                     raise _fault(
-                        item, f"it requires {required!r}, which is no check", "Name an existing check."
+                        item, f"it requires {required!r}, which is not a check", "Name an existing check."
                     )
 
     @property

@@ -121,7 +121,7 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
     if not failure.line:
         # A MemoryError, which is what deep nesting ends in, says nothing.
         reason = failure.message or "it is nested more deeply than Python can read"
-        message = f"{where} is no Python source: {reason}."
+        message = f"{where} is not Python source: {reason}."
         # Python gives the same message for a non-ASCII letter in another encoding and for a file that is not
         # text.
         letters = "Save it as UTF-8, or declare its encoding in the first line. "

@@ -86,7 +86,7 @@ def test_all_takes_neither_a_name_nor_settings(course):
     for extra in (["free-fall"], ["--set", "step=0.1"]):
         ran = course("sim", "run", "--all", *extra)
         assert ran.code == 2
-        assert "--all runs all four as they are" in ran.err
+        assert "--all runs all four with their defaults" in ran.err
 
 
 @pytest.mark.parametrize(

@@ -147,7 +147,7 @@ def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSes
     for source in (b"\x00\x01\xff\xfe\x80 random", b"PK\x03\x04\x00\x00"):
         error = grade(session, source).error
         assert error is not None
-        assert error.message.startswith("doubling.py is no Python source: ")
+        assert error.message.startswith("doubling.py is not Python source: ")
         assert "that line" not in error.help
         assert "course reset" in error.help
 

@@ -96,5 +96,5 @@ def test_a_seed_for_questions_that_went_is_drawn_all_the_same(bank: Bank) -> Non
 
 @pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
 def test_a_seed_out_of_range_is_refused(seed: int) -> None:
-    with pytest.raises(UsageError, match="is no seed"):
+    with pytest.raises(UsageError, match="is not a seed"):
         check_seed(seed)

@@ -348,7 +348,7 @@ class ScreenPrinter(FancyPrinter):
     def _figure(self, figure: b.Figure) -> RenderableType:
         number = self._figure_ids.index(figure.id) + 1
         caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
-        seen = Text.assemble(("To be seen: ", "bold"), figure.alt, style="dim")
+        seen = Text.assemble(("The figure shows: ", "bold"), figure.alt, style="dim")
         picture = self._picture(figure.id, self._prose)
         if not picture:
             return Group(caption, seen)

@@ -43,7 +43,7 @@ def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text
         yield Text("Done: every check passed.", style="bold green")
     elif now.reply is None:
         yield Text.assemble(
-            ("e", "bold"), " changes it here, or save it in an editor of yours; ", ("r", "bold"), " checks it"
+            ("e", "bold"), " changes it here, or save it in your own editor; ", ("r", "bold"), " checks it"
         )
     else:
         yield from _said(now.reply, name)

@@ -68,7 +68,7 @@ def test_where_merging_is_not_safe_the_newer_one_is_put_beside(course, workspace
     path = workspace / "doubling" / "doubling.ipynb"
     path.write_text("{}")
     ran = course("notebook", "build", "doubling")
-    assert "left as it is" in ran.out
+    assert "not changed, since" in ran.out
     assert "doubling/doubling.new.ipynb" in ran.out
     assert path.read_text() == "{}"
     assert json.loads((workspace / "doubling" / "doubling.new.ipynb").read_text())["nbformat"] == 4

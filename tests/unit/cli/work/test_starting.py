@@ -68,7 +68,7 @@ def test_start_never_overwrites(course, workspace, write):
     before = path.read_bytes()
     ran = course("start", "doubling")
     assert ran.code == 0
-    assert "left as it is" in ran.out
+    assert "was not changed" in ran.out
     assert path.read_bytes() == before
 
 

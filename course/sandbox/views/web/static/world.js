@@ -258,7 +258,7 @@ class View {
     this.flashes = [];
     this.chosen = null; // name of the body that keys push
     this.pointer = null; // what a pointer is doing
-    this.waiting = new Map(); // requests that only count in their latest form
+    this.waiting = new Map(); // requests of which only the latest counts
     this.count = 0;
     this.spoke = 0;
     this.unsaid = [];
@@ -290,7 +290,7 @@ class View {
     const button = (label, act, more = {}) => h("button", { type: "button", onclick: act, ...more }, label);
     this.title = h("h1");
     this.teaches = h("p", { class: "teaches" });
-    // An output would be read aloud at every change.
+    // A screen reader would read an output element aloud at every change.
     this.clock = h("span", { class: "clock", role: "timer", "aria-label": "simulated time" });
     this.canvas = h("canvas", { class: "world", tabindex: "0", role: "application" });
     this.canvas.setAttribute("aria-label", "The world. N chooses a body, arrow keys push it, Space runs and pauses.");
@@ -493,7 +493,7 @@ class View {
     this.changed = true;
   }
 
-  // -- words for everybody ------------------------------------------------------------------------
+  // -- words for screen readers ------------------------------------------------------------------------
 
   tell({ events, anew }) {
     if (anew) {
@@ -582,7 +582,7 @@ class View {
   }
 
   touched() {
-    return [h("p", { class: "aside" }, "This run was changed by hand, so there is nothing to compare it with. Reset starts a new one.")];
+    return [h("p", { class: "aside" }, "You moved a body, so there is nothing to compare with. Reset starts a new run.")];
   }
 
   compare(c) {
@@ -882,7 +882,7 @@ class View {
     } else {
       c.fillStyle = body.colour;
       c.fill(body.path);
-      // Outlines cost five times what areas do, so only what would not be seen gets one.
+      // Outlines cost five times as much as areas, so only bodies that would be hard to see get one.
       if (this.faint(body)) {
         c.strokeStyle = this.colour("--rim");
         c.lineWidth = this.pixel;

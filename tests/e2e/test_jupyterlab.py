@@ -291,7 +291,7 @@ def test_the_sandbox_moves_and_a_throw_changes_a_path(open_notebook: Any) -> Non
     page.mouse.up()
     widget.locator(".picked", has_text=re.compile(r"left puck, 1 kg: (0\.9|1\.0)")).wait_for()
     assert widget.locator(".clock").inner_text() == "0.00 s"
-    widget.locator(".card", has_text="You moved a body").wait_for()
+    widget.locator(".card", has_text="You changed this run").wait_for()
     widget.get_by_role("button", name="Run", exact=True).click()
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== '0.00 s'")
     page.wait_for_function("() => !document.querySelector('.sandbox .clock').innerText.startsWith('0')")

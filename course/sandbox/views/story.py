@@ -150,7 +150,7 @@ class Experiment:
             self._begin()
 
     def touch(self) -> None:
-        """The user moved a body."""
+        """The user changed the run: there is nothing to compare with."""
         if self.stage in {"ask", "run"}:
             self.stage = "touched"
 

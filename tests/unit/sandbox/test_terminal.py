@@ -287,7 +287,7 @@ def test_a_run_that_a_hand_was_in_is_compared_with_nothing_and_goes_on():
         assert not isinstance(app.screen, PageOverlay)
         await pilot.press("p")
         app.frames(1)
-        assert "You moved a body" in app.keys.text
+        assert "You changed this run" in app.keys.text
 
     play("head-on", script)
 

@@ -140,7 +140,7 @@ def test_no_export_is_written_over_a_gradebook(results: Results, tmp_path: Path)
     with make_book(tmp_path, {"ada": RIGHT}):
         pass
     before = path.read_bytes()
-    with pytest.raises(UsageError, match="a gradebook most likely") as caught:
+    with pytest.raises(UsageError, match="most likely a gradebook") as caught:
         export(results, "csv", tmp_path, path, OPTIONS)
     assert caught.value.code == "is_a_database"
     assert path.read_bytes() == before

@@ -582,7 +582,7 @@ class View {
   }
 
   touched() {
-    return [h("p", { class: "aside" }, "You moved a body, so there is nothing to compare with. Reset starts a new run.")];
+    return [h("p", { class: "aside" }, "You changed this run, so there is nothing to compare with. Reset starts a new run.")];
   }
 
   compare(c) {

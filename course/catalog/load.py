@@ -220,7 +220,7 @@ class Catalog:
         return document.value
 
     def mutants(self, exercise: Exercise) -> tuple[Mutant, ...]:
-        """What must happen to each wrong solution; empty where there are no solutions (a wheel)."""
+        """The expected outcome of each wrong solution; empty where there are no solutions (a wheel)."""
         if self.content.solutions is None:
             return ()
         if exercise.id not in self._mutants:

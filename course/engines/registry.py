@@ -97,7 +97,7 @@ ENGINES: dict[str, EngineInfo] = {
 
 @dataclass(frozen=True, slots=True)
 class Availability:
-    """What this machine has of one engine.
+    """The state of one engine on this machine.
 
     Attributes:
         version: of the package; None if it is not installed.

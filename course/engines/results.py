@@ -73,7 +73,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EngineState(msgspec.Struct, frozen=True, kw_only=True):
-    """What this machine has of one engine."""
+    """The state of one engine on this machine."""
 
     id: str
     name: str

@@ -60,7 +60,7 @@ def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> St
 
 
 def _answer(handle: Handle, buffer: bytes) -> Any:
-    """What the worker says of where its code is; None if nothing comes that can be read as that."""
+    """The place in the code that the worker reports; None if it sends nothing that can be read as one."""
     codec, deadline = wire.Codec(), Deadline(_ANSWER_S)
     deadline.watch(handle)
     while not deadline.passed() and len(buffer) < _MOST:

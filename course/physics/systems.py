@@ -57,7 +57,7 @@ class System(Protocol):
 
 
 class _Plain:
-    """What every system shares: its parameters are its fields, and they are plain finite numbers."""
+    """The base of every system: its parameters are its fields, which are plain finite numbers."""
 
     __slots__ = ()
 

@@ -225,7 +225,7 @@ class RemoteSubmission:
         return self._deadline.used
 
     def printed(self) -> str:
-        """What the submission printed since the check began."""
+        """The submission's output since the check began."""
         return self._connection.output()[self._printed_before :]
 
     def give_up(self) -> None:

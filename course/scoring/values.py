@@ -154,7 +154,7 @@ def as_matrix(value: Any, shape: tuple[int | None, int | None], name: str = "the
 
 
 def as_tuple(value: Any, names: Sequence[str]) -> list[Any]:
-    """What a function that returns several things returned: exactly as many as there are names."""
+    """The results of a function that returns several: exactly as many as there are names."""
     wanted = f"({', '.join(names)})"
     if isinstance(value, np.ndarray) and value.shape[:1] == (len(names),):
         value = list(value)
@@ -247,7 +247,7 @@ def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per 
 
 
 def kind_of(value: Any) -> str:
-    """What kind of value it is and what is unusual in it, in words that reveal nothing of its content."""
+    """The kind of a value and anything unusual in it, in words that reveal nothing of its content."""
     odd = sorted({name for item in _leaves(value) if (name := _oddity(item))})
     within = f" with {' and '.join(odd)} in it" if odd else ""
     if isinstance(value, int | float | np.generic) and not isinstance(value, bool) and odd:
@@ -267,7 +267,7 @@ def _leaves(value: Any, depth: int = 6) -> Iterator[Any]:
 
 
 def _oddity(item: Any) -> str:
-    """What may be unexpected for a computation in one plain value; empty if nothing is."""
+    """The unusual properties of one plain value; empty if there are none."""
     if isinstance(item, float):
         if math.isnan(item):
             return "nan"
@@ -318,7 +318,7 @@ def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
 
 
 def _advice(value: Any, wanted: str) -> str:
-    """What to do about a value of the wrong kind."""
+    """The advice for a value of the wrong kind."""
     if wanted == "a number" and isinstance(value, list | tuple | np.ndarray):
         return "Return one plain number: no brackets around it, and no array, not even of one element."
     if wanted.startswith("an array of numbers") and isinstance(value, list | tuple):
@@ -327,7 +327,7 @@ def _advice(value: Any, wanted: str) -> str:
 
 
 def _kind(value: Any) -> str:
-    """What kind of value it is, in words that reveal nothing of its content."""
+    """The kind of a value, in words that reveal nothing of its content."""
     return _KINDS.get(type(value), "something else")
 
 

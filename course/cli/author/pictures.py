@@ -76,7 +76,7 @@ def _known(folder: Path) -> dict[str, str]:
 
 
 def _run(*arguments: str, colour: bool = False) -> str:
-    """What the program prints in a terminal of a fixed width."""
+    """The program's output in a terminal of a fixed width."""
     environ = {key: value for key, value in os.environ.items() if key not in {"NO_COLOR", "COURSE_CONTENT"}}
     environ |= {"COLUMNS": str(_COLUMNS), "TERM": "xterm-256color", "COLORTERM": "truecolor"}
     environ |= {"PYTHONUTF8": "1"} | ({"FORCE_COLOR": "1"} if colour else {})

@@ -1,4 +1,4 @@
-"""What ``course author ... --json`` prints, as types."""
+"""The replies of ``course author ... --json``, as types."""
 
 from __future__ import annotations
 

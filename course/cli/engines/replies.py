@@ -1,4 +1,4 @@
-"""What ``course engines ... --json`` prints, as types."""
+"""The replies of ``course engines ... --json``, as types."""
 
 from __future__ import annotations
 

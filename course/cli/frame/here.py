@@ -126,7 +126,7 @@ class Here:
         return exercise.stub_path.read_bytes() if given is None else given
 
     def history(self, exercise: Exercise) -> History:
-        """What is recorded about an exercise.
+        """The recorded history of an exercise.
 
         Raises:
             IntegrityError, MissingCapabilityError: the record cannot be read.

@@ -130,7 +130,7 @@ class LateOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
-    """Who is late under the present policy; ``time_unknown`` counts results without a trusted date."""
+    """The late results under the present policy; ``time_unknown`` counts results without a trusted date."""
 
     policy: bool
     late: tuple[LateOne, ...]

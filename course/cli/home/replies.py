@@ -162,7 +162,7 @@ class PredictionsOf(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PredictionsState(msgspec.Struct, frozen=True, kw_only=True):
-    """What was predicted in lessons, and how well."""
+    """The predictions in lessons, and how good they were."""
 
     all: PredictionsOf
     by_lesson: tuple[PredictionsOf, ...]

@@ -1,4 +1,4 @@
-"""What ``course notebook ... --json`` prints, as types."""
+"""The replies of ``course notebook ... --json``, as types."""
 
 from __future__ import annotations
 

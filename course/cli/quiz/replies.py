@@ -1,4 +1,4 @@
-"""What ``course quiz ... --json`` prints, as types."""
+"""The replies of ``course quiz ... --json``, as types."""
 
 from __future__ import annotations
 

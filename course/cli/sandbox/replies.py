@@ -1,4 +1,4 @@
-"""What ``course sandbox ... --json`` prints, as types."""
+"""The replies of ``course sandbox ... --json``, as types."""
 
 from __future__ import annotations
 

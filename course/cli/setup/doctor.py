@@ -128,7 +128,7 @@ def _satisfies(installed: str, wanted: str) -> bool:
 
 
 def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
-    """What to install, one command for the base and one for each extra."""
+    """The commands that install missing parts: one for the base and one for each extra."""
     groups: dict[str, list[Package]] = {}
     for item in found:
         if not item.ok:

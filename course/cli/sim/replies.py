@@ -1,4 +1,4 @@
-"""What ``course sim ... --json`` prints, as types."""
+"""The replies of ``course sim ... --json``, as types."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ _COLOURS = 255
 
 
 def sixels(png: bytes, width: int) -> str:
-    """What a terminal is sent to show a picture.
+    """The characters that make a terminal show a picture.
 
     Args:
         png: the file's bytes.

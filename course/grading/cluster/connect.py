@@ -43,7 +43,7 @@ _ANSWER_S = 20.0
 
 
 class Cluster:
-    """What turns entries into verdicts, for ``grade_class``; a context manager that ends what it started.
+    """Turns entries into verdicts, for ``grade_class``; a context manager that ends what it started.
 
     Args:
         catalog: the course that the coordinator has.

@@ -156,7 +156,7 @@ class _Coordinator:
             self._workers.send(encode(message), lambda outcome, n=number: self._arrived.put((n, outcome)))  # type: ignore[misc]
 
     def _next(self) -> list[_Work]:
-        """What to send next; nothing if sending must wait."""
+        """The next batch to send; empty if sending must wait."""
         if self._again:
             return [self._again.popleft()]
         self._read_ahead()

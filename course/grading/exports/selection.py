@@ -1,4 +1,4 @@
-"""What goes into an export, who is left out, and why; the same for every format."""
+"""The content of an export, who is left out, and why; the same for every format."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SHOWN = 10
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What to export.
+    """The options of an export.
 
     Attributes:
         exercises: ids; empty takes all.
@@ -43,7 +43,7 @@ class ExportOptions:
 
 @dataclass
 class Written:
-    """What an export wrote.
+    """The result of an export.
 
     Attributes:
         paths: the files.

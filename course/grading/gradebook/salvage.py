@@ -49,7 +49,7 @@ _NUMBERED = {"runs", "overrides", "results", "journal"}
 
 @dataclass
 class Salvaged:
-    """What was recovered.
+    """The recovered rows, and the losses.
 
     Attributes:
         rows: number of rows by table.

@@ -1,4 +1,4 @@
-"""What a submission may import: the standard library, its own files and the packages its exercise declares.
+"""Limits imports to the standard library, the submission's own files and packages its exercise declares.
 
 This runs in the student's process and is no protection by itself: at L3 and L2 the files of other packages
 cannot be read at all. It gives a clear message instead of a bare ModuleNotFoundError, and lets the rest of a
@@ -29,7 +29,7 @@ class ImportNotDeclaredError(ImportError):
 
 
 class StandIn(types.ModuleType):
-    """What a submission gets for a package it may not import, if it imports it at its top level.
+    """A stand-in for a package that a submission may not import, if it imports it at its top level.
 
     While the submission loads, it silently accepts any use, so that a plot at the end of a file costs
     nothing. After that every use raises: only the tasks that need the package fail.

@@ -1,4 +1,4 @@
-"""What both ends of the wire agree on: limits, kinds of message, placeholders for what cannot cross."""
+"""Shared by both ends of the wire: limits, kinds of message, placeholders for values that cannot cross."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def room_for(size: int, begun: bytes) -> memoryview:
 
 
 class Kind(enum.IntEnum):
-    """What a frame is about. The first group goes to the worker, the second comes from it."""
+    """The kind of a frame. The first group goes to the worker, the second comes from it."""
 
     LOAD = 1  # [files, module name]
     CALL = 2  # [function, args, kwargs, inspect]
@@ -96,7 +96,7 @@ class Names(Protocol):
     """How one side turns its objects into references and back."""
 
     def lower(self, value: Any) -> Reference | Rhs | Seed | None:
-        """What stands for ``value`` on the wire, or None if it cannot cross."""
+        """The placeholder of ``value`` on the wire, or None if it cannot cross."""
 
     def raise_(self, value: Reference | Rhs | Seed) -> Any:
-        """What a reference, right-hand side or seed that arrived stands for here."""
+        """The object here behind a reference, right-hand side or seed that arrived."""

@@ -54,7 +54,7 @@ def march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) ->
 
 
 def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
-    """What ``function`` returns for each list of arguments, as it was at the time."""
+    """The result of ``function`` for each list of arguments, copied at once."""
     return [_snapshot(function(*args)) for args in calls]
 
 

@@ -42,7 +42,7 @@ _CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
 
 
 class CallbackError(ValueError):
-    """What student code sees when the grader's function refuses its arguments."""
+    """Raised in student code when the grader's function refuses its arguments."""
 
 
 class CappedText(io.TextIOBase):

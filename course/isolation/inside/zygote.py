@@ -96,7 +96,7 @@ def _end_with_grader(sock: socket.socket) -> None:
 
 
 class _ForkSetup(NamedTuple):
-    """What a fork needs to become a worker."""
+    """The data that a fork needs to become a worker."""
 
     descriptors: list[int]
     workdir: str

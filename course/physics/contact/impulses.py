@@ -60,7 +60,7 @@ class Motion:
 
 @dataclass(slots=True)
 class Impulses:
-    """What every pair exchanges, on its second body: along the normal, N s, shape (P, ...), and across it."""
+    """The impulses of every pair on its second body: along the normal, N s, shape (P, ...), and across it."""
 
     push: Array
     rub: Array  # shape (P, ..., 3)

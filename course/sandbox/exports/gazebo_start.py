@@ -48,5 +48,5 @@ class StartVelocities:
 
 
 def get_system() -> StartVelocities:
-    """What Gazebo asks a module for."""
+    """Gazebo's entry point of a module."""
     return StartVelocities()

@@ -113,7 +113,7 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
 
 
 def values_of(chosen: Chosen) -> dict[str, float]:
-    """What a formula of the scene may name: its parameters, ``g``, ``step``, and fields of bodies."""
+    """The names that a formula of the scene may use: its parameters, ``g``, ``step``, fields of bodies."""
     scene, parts = chosen.scene, layout(chosen.scene)
     gravity = chosen.settings.get("gravity", math.hypot(*scene.gravity))
     values = {name.replace("-", "_"): value for name, value in chosen.parameters.items()}

@@ -200,7 +200,7 @@ class World:
         )
 
     def drain_events(self) -> list[Event]:
-        """What happened since the last call, oldest first."""
+        """The events since the last call, oldest first."""
         self._settle()
         events = list(self._events)
         self._events.clear()

@@ -62,7 +62,7 @@ def skipped(check: Check, blocking: str) -> CheckResult:
 
 
 def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
-    """What a student reads where the check's own code raised an exception on the submission's value.
+    """The finding where the check's own code raised an exception on the submission's value.
 
     Args:
         returned: name and value of the function that returned last; None if none did.
@@ -113,7 +113,7 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
 
 
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
-    """What is wrong with a file that is not valid Python, and what to do about it."""
+    """The finding for a file that is not valid Python."""
     failure = refused.failure
     if "UnicodeError" in failure.bases:
         message = f"{where}: Python cannot read this file: {failure.message}."

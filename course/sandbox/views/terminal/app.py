@@ -294,7 +294,7 @@ class SandboxApp(FullScreenApp):
         elif asked is None:
             self.say("This scene does not ask for a number.")
         elif stage == "touched":
-            self.say("You changed this run, so there is nothing to compare with. r: run it again from the start.")
+            self.say("You changed this run, so there is nothing to compare with. r: start it again.")
         else:
             guess = "no guess" if self.experiment.guess is None else f"your guess {self.experiment.guess:g}"
             page: Page = [(clean(self.experiment.question), ""), "", f"{guess}, {clean(asked.unit)}", ""]

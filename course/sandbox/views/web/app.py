@@ -47,7 +47,7 @@ _BEHIND = 1008
 
 
 def _headers(host: str) -> dict[str, str]:
-    """What every answer carries: it loads nothing from elsewhere, and no other page may frame or read it."""
+    """The headers of every answer: it loads nothing from elsewhere; no other page may frame or read it."""
     policy = {
         "default-src": "'none'",
         "script-src": "'self'",

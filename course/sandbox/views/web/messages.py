@@ -190,7 +190,7 @@ def frame(world: World, pace: float) -> bytes:
 
 
 def past(world: World, most: int = 900) -> bytes:
-    """What plots show from before the page was opened.
+    """The past, for plots in a page that opened later.
 
     3, version, rows, columns, and then rows of t, kinetic, potential, contacts, friction, residual, px, py.
 

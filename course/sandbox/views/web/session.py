@@ -82,14 +82,14 @@ class Page:
         self._news.set()
 
     def take(self) -> str | bytes | None:
-        """What is next to send; None if there is nothing."""
+        """The next message to send; None if there is none."""
         if self._texts:
             return self._texts.popleft()
         data, self._frame = self._frame, None
         return data
 
     async def fetch(self) -> str | bytes | None:
-        """What is next to send, as soon as there is something; None if the page is let go."""
+        """Wait for the next message to send; None if the page is closed."""
         while not self.lost:
             data = self.take()
             if data is not None:

@@ -187,7 +187,7 @@ def as_record(value: Any, keys: Sequence[str], name: str = "the result") -> dict
     missing = [key for key in keys if key not in value]
     extra = [str(key)[:80] for key in value if key not in keys]
     if missing or extra:
-        parts = [f"lacks {', '.join(missing)}"] * bool(missing) + ["has extra keys"] * bool(extra)
+        parts = [f"lacks {', '.join(missing)}"] * bool(missing) + ["has unexpected keys"] * bool(extra)
         raise CheckFailed(
             Finding(
                 message=f"{_capital(name)} {' and '.join(parts)}.",

@@ -184,9 +184,14 @@ class Connection:
         """
         return self._batch(self._ask(Kind.MARCH, [step, marches], step), len(marches))
 
-    def each(self, function: str, calls: list[list[Any]]) -> list[Any]:
-        """The results of ``function`` for each list of arguments; the loop runs in the student's process."""
-        return self._batch(self._ask(Kind.EACH, [function, calls], function), len(calls))
+    def each(self, function: str, calls: list[list[Any]]) -> tuple[list[Any], bool]:
+        """The results of ``function`` for each list of arguments; the loop runs in the student's process.
+
+        Returns:
+            The values, and whether a later call changed one of them.
+        """
+        values, changed = self._batch(self._ask(Kind.EACH, [function, calls], function), 2)
+        return self._batch(values, len(calls)), changed is not None
 
     def fold(
         self, function: str, state: Any, calls: list[list[Any]], carry: int | None, keep: list[str] | None

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, TypeVar
+import copy
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from course.isolation.deadline import WALL, Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection, LoadRefusedError
 from course.scoring.places import Places
-from course.scoring.values import Inspected, as_march
+from course.scoring.values import Inspected, as_march, overwritten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -22,11 +23,25 @@ T = TypeVar("T")
 #: A step's name, the system that was marched along, and its times and states: t, (q, v).
 March = tuple[str, Any, Any, Any]
 
-__all__ = ["BUDGET_S", "RemoteSubmission"]
+__all__ = ["BUDGET_S", "Heard", "RemoteSubmission"]
 
 #: Seconds of CPU time for all of one submission; checks after that end as timeouts. By the wall clock there
 #: are ``WALL`` times as many.
 BUDGET_S = 60.0
+
+
+class Heard(NamedTuple):
+    """A call that returned.
+
+    Attributes:
+        method: of ``RemoteSubmission``, that made it.
+        args: of that method; generators as they were before the call.
+        value: what it gave.
+    """
+
+    method: str
+    args: tuple[Any, ...]
+    value: Any
 
 
 class RemoteSubmission:
@@ -41,8 +56,10 @@ class RemoteSubmission:
         places: how its lines are told; failures carry it.
         home: a worker that does not answer is asked where it is.
         patience: seconds of CPU time for loading, if that is to have less than a check.
+        listened: functions whose calls are recorded in ``heard``.
 
     Attributes:
+        heard: the calls of this check, in order, that returned.
         returned: name and value of the last of the student's functions that returned in this check.
         asked: names of the functions that this check has used.
         marched: the first march of this check at home, if it made one.
@@ -62,7 +79,10 @@ class RemoteSubmission:
         places: Places | None = None,
         home: bool = False,
         patience: float | None = None,
+        listened: frozenset[str] = frozenset(),
     ) -> None:
+        self._listened = listened
+        self.heard: list[Heard] = []
         self._home = home
         self._places = places or Places(module=main)
         self.seed = seed
@@ -100,14 +120,16 @@ class RemoteSubmission:
             StudentFailure: it gave no value.
             CheckFailed: a function given to it refused its arguments.
         """
+        given = self._kept(name, args) if not kwargs else None
         with self._asking(name) as worker:
-            return self._told(name, worker.call(name, *args, **kwargs))
+            return self._hear("call", name, given, worker.call(name, *args, **kwargs))
 
     def call_inspect(self, name: str, *args: Any) -> Inspected:
         """Call it, and report its value and its arguments after the call."""
+        given = self._kept(name, args)
         with self._asking(name) as worker:
             value, after, shared = worker.inspect(name, *args)
-        self._told(name, value)
+        self._hear("call", name, given, value)
         return Inspected(value, after, shared)
 
     def ref(self, name: str) -> Any:
@@ -149,6 +171,8 @@ class RemoteSubmission:
             (t0 + h * np.arange(n + 1), *as_march(value, n, len(q0)))
             for value, (_, q0, _, h, n, t0) in zip(values, marches, strict=True)
         ]
+        for one, path in zip(marches, paths, strict=True):
+            self._hear("march", step_name, self._kept(step_name, one), path)
         if self._home and self.marched is None:
             t, *states = paths[0]
             self.marched = step_name, marches[0][0], t, tuple(states)
@@ -159,9 +183,17 @@ class RemoteSubmission:
 
         Raises:
             StudentFailure: one of the calls gave no value; the later ones were not made.
+            CheckFailed: a later call changed what an earlier one had returned.
         """
+        sent = [list(args) for args in calls]
+        given = [self._kept(name, args) for args in sent]
         with self._asking(name) as worker:
-            return self._told(name, worker.each(name, [list(args) for args in calls]))
+            values, changed = worker.each(name, sent)
+        for args, value in zip(given, values, strict=True):
+            self._hear("call", name, args, value)
+        if changed:
+            raise overwritten(name)
+        return self._told(name, values)
 
     def fold(
         self,
@@ -188,6 +220,20 @@ class RemoteSubmission:
         with self._asking(name) as worker:
             states = worker.fold(name, state, [list(args) for args in calls], carry, kept)
         return self._told(name, states)
+
+    def _kept(self, name: str, args: Sequence[Any]) -> tuple[Any, ...] | None:
+        """A copy of the arguments of a call that is listened to; None if not, or if they cannot be kept."""
+        if name not in self._listened:
+            return None
+        try:
+            return copy.deepcopy(tuple(args))
+        except TypeError:  # one of the student's own functions, which is part of a worker
+            return None
+
+    def _hear(self, method: str, name: str, args: tuple[Any, ...] | None, value: T) -> T:
+        if args is not None:
+            self.heard.append(Heard(method, (name, *args), value))
+        return self._told(name, value)
 
     def _told(self, name: str, value: T) -> T:
         self.returned = name, value
@@ -216,6 +262,7 @@ class RemoteSubmission:
         self._deadline = Deadline(min(most, left), min(WALL * most, self._wall_left))
         self.returned = None
         self.asked, self.marched = set(), None
+        self.heard = []
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
 

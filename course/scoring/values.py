@@ -39,6 +39,7 @@ __all__ = [
     "as_tuple",
     "as_vector",
     "kind_of",
+    "overwritten",
     "plain",
 ]
 
@@ -220,6 +221,18 @@ def as_march(result: Any, n: int, d: int) -> tuple[Array, Array]:
         )
     q, v = as_tuple(result, ("q", "v"))
     return as_array(q, (n + 1, d), "q"), as_array(v, (n + 1, d), "v")
+
+
+def overwritten(name: str) -> CheckFailed:
+    """The finding on a function whose later calls change what an earlier one returned."""
+    return CheckFailed(
+        Finding(
+            message=f"A later call of `{name}` changed what an earlier call had returned.",
+            help="Make new arrays, lists and dicts in every call. One that is kept outside the function, or in "
+            "a default argument, and filled again, is still in the hands of whoever called before.",
+            diagnosis="RESULT_OVERWRITTEN",
+        )
+    )
 
 
 def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per kind of value

@@ -17,7 +17,7 @@ import numpy as np
 from course.isolation.inside import loops
 from course.physics.systems import SYSTEMS
 from course.scoring.failures import StudentFailure
-from course.scoring.values import Inspected, as_march
+from course.scoring.values import Inspected, as_march, overwritten
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,6 +43,7 @@ class LocalSubmission:
         self.asked: set[str] = set()
         self.marched = None
         self.used = 0.0
+        self.heard: list[Any] = []
         self._module = types.ModuleType("submission")
         exec(compile(source, _FILE, "exec", dont_inherit=True), self._module.__dict__)
         self._module.__dict__.update(replaced or {})
@@ -73,16 +74,20 @@ class LocalSubmission:
 
     def call_each(self, name: str, calls: Any) -> list[Any]:
         """Call the student's function once for each sequence of arguments."""
-        return [self.call(name, *args) for args in calls]
+        function = self._function(name)
+        escaped: list[BaseException] = []
+        given = [[_given(arg, escaped) for arg in args] for args in calls]
+        values, changed = self._loop(lambda: loops.each(function, given), escaped)
+        if changed is not None:
+            raise overwritten(name)
+        return [_plain(value) for value in values]
 
     def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None, keep: Any = None) -> Any:
         """Pass a state through the student's function."""
         function = self._function(name)
         escaped: list[BaseException] = []
         given = [[_given(arg, escaped) for arg in args] for args in calls]
-        values, last = _guarded(lambda: loops.fold(function, _plain(state), given, carry, keep))
-        if escaped:
-            raise escaped[0]
+        values, last = self._loop(lambda: loops.fold(function, _plain(state), given, carry, keep), escaped)
         return [_plain(value) for value in (values if keep is None else [*values[:-1], last])]
 
     def ref(self, name: str) -> Any:
@@ -109,19 +114,24 @@ class LocalSubmission:
         escaped: list[BaseException] = []
         given = [_given(arg, escaped) for arg in args]
         named = {key: _given(arg, escaped) for key, arg in kwargs.items()}
-        try:
-            value = _guarded(lambda: function(*given, **named))
-        except StudentFailure:
-            if escaped:  # a callback refused its arguments: that is the finding
-                raise escaped[0] from None
-            raise
-        if escaped:
-            raise escaped[0]
+        value = self._loop(lambda: function(*given, **named), escaped)
         after = [
             None if callable(arg) or isinstance(arg, np.random.Generator | loops.Methods) else _plain(arg)
             for arg in given
         ]
         return Inspected(_plain(value), after, _shares(value, given))
+
+    def _loop(self, loop: Any, escaped: list[BaseException]) -> Any:
+        """What student code gives; a callback that refused its arguments is the finding."""
+        try:
+            result = _guarded(loop)
+        except StudentFailure:
+            if escaped:
+                raise escaped[0] from None
+            raise
+        if escaped:
+            raise escaped[0]
+        return result
 
     def _function(self, name: str) -> Any:
         self.asked.add(name)

@@ -54,8 +54,18 @@ def march(step: Any, rhs: Any, q0: Any, v0: Any, t0: float, h: float, n: int) ->
 
 
 def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
-    """The result of ``function`` for each list of arguments, copied at once."""
-    return [_snapshot(function(*args)) for args in calls]
+    """The result of ``function`` for each list of arguments, copied at once.
+
+    Returns:
+        The values, and the number of the first that a later call changed; None if they all stayed.
+    """
+    values: list[Any] = []
+    record: list[Any] = []
+    for args in calls:
+        values.append(function(*args))
+        record.append(_snapshot(values[-1]))
+    changed = (i for i, (value, kept) in enumerate(zip(values, record, strict=True)) if _changed(value, kept))
+    return [record, next(changed, None)]
 
 
 def fold(
@@ -85,6 +95,19 @@ def _part(value: Any, keep: list[str] | None) -> Any:
     if keep is None or not isinstance(value, dict):
         return value
     return {key: value[key] for key in keep if key in value}
+
+
+def _changed(value: Any, kept: Any, depth: int = _MAX_DEPTH) -> bool:
+    """Whether a value is no longer what its snapshot kept."""
+    if isinstance(value, np.ndarray):
+        return value.shape != kept.shape or not np.array_equal(
+            value, kept, equal_nan=value.dtype.kind in "fc"
+        )
+    if depth and isinstance(value, list | tuple):
+        return len(value) != len(kept) or any(map(_changed, value, kept, [depth - 1] * len(kept)))
+    if depth and isinstance(value, dict):
+        return value.keys() != kept.keys() or any(_changed(value[key], kept[key], depth - 1) for key in kept)
+    return value is not kept and bool(value != kept)
 
 
 def _snapshot(value: Any, depth: int = _MAX_DEPTH) -> Any:

@@ -1,10 +1,13 @@
-"""Which functions of a submission call which others: read from its syntax tree, including its own helpers."""
+"""What a submission's syntax tree says: which functions call which others, and which may remember something.
+
+Its own helpers are followed.
+"""
 
 from __future__ import annotations
 
 import ast
 
-__all__ = ["calls_between", "reached_from"]
+__all__ = ["calls_between", "may_remember", "reached_from"]
 
 #: Largest source that is parsed here, in bytes, because this process has no limits: it takes a third of a
 #: second and 90 MB at most. The longest file of the course has 27,000.
@@ -33,20 +36,74 @@ def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str
         names: which ones to examine; None for all, which takes time proportional to the square of their
             number.
     """
+    return _reach(_defined(source), names)
+
+
+def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
+    """The tasks whose functions could keep something from one call to the next, directly or through helpers.
+
+    The others have nowhere to keep it: no variable of the module but plain numbers and texts, no default
+    argument that can change, no decorator, no attribute that is set, no class.
+    """
+    if len(source) > _LONGEST:
+        return frozenset()
+    defined = _defined(source)
+    keeps = {node: _keeps(node) for node in dict.fromkeys(defined.values())}
+    reach = _reach(defined, tasks)
+    return frozenset(task for task in reach if any(keeps[defined[name]] for name in {task} | reach[task]))
+
+
+def _keeps(node: ast.stmt) -> bool:
+    """Whether something that a definition binds can change between two calls."""
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return False
+    if isinstance(node, ast.Assign | ast.AnnAssign):
+        return node.value is not None and not _is_fixed(node.value)
+    if not isinstance(node, ast.FunctionDef) or node.decorator_list:
+        return True
+    defaults = [*node.args.defaults, *(default for default in node.args.kw_defaults if default)]
+    return not all(map(_is_fixed, defaults)) or any(
+        isinstance(child, ast.Global)
+        or (isinstance(child, ast.Attribute) and isinstance(child.ctx, ast.Store))
+        for child in ast.walk(node)
+    )
+
+
+def _is_fixed(value: ast.expr) -> bool:
+    """Whether an expression is a number, a text, or a tuple of these: made of nothing that can change."""
+    fixed = (
+        ast.Constant,
+        ast.UnaryOp,
+        ast.BinOp,
+        ast.Tuple,
+        ast.Name,
+        ast.Attribute,
+        ast.operator,
+        ast.unaryop,
+    )
+    return all(isinstance(child, (*fixed, ast.expr_context)) for child in ast.walk(value))
+
+
+def _defined(source: bytes) -> dict[str, ast.stmt]:
+    """The statement that binds each name of a module: a later one replaces an earlier one."""
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return {}
-    # A later definition replaces an earlier one.
     defined: dict[str, ast.stmt] = {}
     for node in tree.body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             defined[node.name] = node
         elif isinstance(node, ast.Assign | ast.AnnAssign):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            defined |= {target.id: node for target in targets if isinstance(target, ast.Name)}
+            parts = (part for target in targets for part in ast.walk(target))
+            defined |= {part.id: node for part in parts if isinstance(part, ast.Name)}
         elif isinstance(node, ast.Import | ast.ImportFrom):
             defined |= {(alias.asname or alias.name).partition(".")[0]: node for alias in node.names}
+    return defined
+
+
+def _reach(defined: dict[str, ast.stmt], names: frozenset[str] | None) -> dict[str, frozenset[str]]:
     # By statement: one may bind thousands of names.
     uses = {node: _names(node) & defined.keys() for node in dict.fromkeys(defined.values())}
     wanted = defined if names is None else names & defined.keys()

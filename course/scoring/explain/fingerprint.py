@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range", "read"]
+__all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range", "numbers_of", "read"]
 
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
@@ -37,10 +37,15 @@ def fingerprint(answers: Answers) -> tuple[float, ...]:
     Args:
         answers: plain values, one for each question; an exception's class name as ``{"raised": name}``.
     """
-    numbers = np.fromiter((x for answer in answers for x in _numbers(answer)), float, -1)[:_MOST]
+    numbers = numbers_of(answers)[:_MOST]
     weights = np.random.default_rng(20260).uniform(-1.0, 1.0, (SUMS, _MOST))[:, : len(numbers)]
     # Large values count by their logarithm, so that a path that diverges is still compared digit by digit.
     return tuple(round(float(total), 5) for total in weights @ np.arcsinh(numbers))
+
+
+def numbers_of(answers: Answers) -> np.ndarray[Any, Any]:
+    """All the numbers of plain values, in order: equal values have the same ones."""
+    return np.fromiter((x for answer in answers for x in _numbers(answer)), float, -1)
 
 
 def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.scoring.explain.words import NOT_FINITE, Diagnosis
+from course.scoring.explain.words import KEPT, NOT_FINITE, STATE, Diagnosis
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,20 +49,26 @@ class Story:
     bare: frozenset[str] = frozenset()
 
 
-def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words) -> Story:
+def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, kept: bool = False) -> Story:
     """The story of a task.
 
-    A program that fits decides. If none fits, the probes decide: first the origin of a nan, then causes, then
-    consequences. Of several causes, the one that most checks name is taken, and none if two are named equally
-    often. A cause is said of every check that saw no other; a consequence only of those that saw it.
+    Something that is kept between two calls is said first, for it can look like anything else; where the
+    exercise has a code for it, that one. Then a program that fits decides. If none fits, the probes decide:
+    first the origin of a nan, then causes, then consequences. Of several causes, the one that most checks
+    name is taken, and none if two are named equally often. A cause is said of every check that saw no other;
+    a consequence only of those that saw it.
 
     Args:
         failures: its failed checks, in order.
         fits: known wrong programs that give the same answers as the student's.
+        kept: the same call was seen to give another result after other calls.
     """
     own = frozenset(f.check for f in failures if f.guess and words.kind(f.guess.code) == "fact")
     left = [failure for failure in failures if failure.check not in own]
     guesses = [failure.guess for failure in left if failure.guess]
+    state = next((guess for guess in guesses if guess.code in STATE), KEPT if kept else None)
+    if state:
+        return Story(state, True, own)
     shared = common(fits, [guess.code for guess in guesses])
     if shared:
         return Story(merged(shared, words), True, own)

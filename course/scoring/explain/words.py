@@ -15,12 +15,10 @@ if TYPE_CHECKING:
 
     from course.scoring.divergence import Divergence
 
-__all__ = ["FILE", "NOT_FINITE", "Diagnosis", "Entry", "Words", "read_words"]
+__all__ = ["FILE", "KEPT", "NOT_FINITE", "STATE", "Diagnosis", "Entry", "Words", "read_words"]
 
 
 FILE = "diagnoses.toml"
-#: Codes of values that are nan or infinite where a number belongs, from any cause.
-NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +36,19 @@ class Diagnosis:
     looks_like: str
     advice: str
     divergence: Divergence | None = None
+
+
+#: Codes of values that are nan or infinite where a number belongs, from any cause.
+NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
+#: Codes of exercises for something that is kept between two calls: probes that say them have seen it.
+STATE = frozenset({"STALE_CACHE", "STATE_IN_MODULE", "STATE_KEPT"})
+#: What is said of it where an exercise has no words of its own.
+KEPT = Diagnosis(
+    "STATE_KEPT",
+    "The same call gives another result when other calls come before it: something is kept between calls.",
+    "What a call returns may depend on its arguments alone. Look for what one call changes and a later one "
+    "reads: a variable at the top of the file, an array or a dict that is filled again, a default argument.",
+)
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

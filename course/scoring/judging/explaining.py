@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import copy
 import math
+import types
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
 
 from course.scoring.explain import Failure, Story, fingerprint, read_table, read_words, story_of
-from course.scoring.explain.calls import calls_between
+from course.scoring.explain.calls import calls_between, may_remember
 from course.scoring.explain.fingerprint import in_range, read
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import Row, is_right, matching
 from course.scoring.explain.words import FILE as WORDS
 from course.scoring.failures import CheckFailed, StudentFailure
+from course.scoring.judging.repeating import depends_on_the_past
 from course.scoring.verdict import CheckResult, Finding, Status
 
 if TYPE_CHECKING:
@@ -24,13 +26,17 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from course.scoring.explain import Diagnosis, Table, Words
-    from course.scoring.remote import RemoteSubmission
+    from course.scoring.remote import Heard, RemoteSubmission
 
 __all__ = ["CASCADE", "Explainer", "answer_numbers", "answers", "tasks_asked"]
 
 #: Diagnosis of a function that calls another function of the exercise, which is wrong itself.
 CASCADE = "CALLS_A_WRONG_FUNCTION"
 Calls = list[tuple[Any, ...]]
+Past = tuple[float, "list[Heard]"]
+#: Seconds of CPU time of the checks whose calls are made again, together. They are made once, or twice where
+#: they show something; a step, an impact or a summary takes milliseconds, and a search for gains is left out.
+_PATIENCE = 0.5
 _GONE = frozenset({Status.TIMEOUT, Status.MEMORY, Status.CRASH})
 #: Exceptions from reading an unexpected value: they identify no mistake, and are not a fault of the grader.
 _STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError, RecursionError, CheckFailed)
@@ -52,14 +58,25 @@ class Explainer:
         self._questions = questions
         self._parts: Mapping[str, str] = getattr(questions, "PARTS", {})
 
+    def listened(self, source: bytes) -> frozenset[str]:
+        """The functions whose calls ``explain`` wants to know: those that could keep something."""
+        return may_remember(source, tasks_asked(self._questions))
+
     def explain(
         self,
         results: dict[str, CheckResult],
         failed: Mapping[str, CheckFailed],
         remote: RemoteSubmission,
         source: bytes,
+        heard: Mapping[str, Past] = types.MappingProxyType({}),
+        anew: Callable[[], RemoteSubmission] | None = None,
     ) -> None:
-        """Put the story of each task into the results of its failed checks."""
+        """Put the story of each task into the results of its failed checks.
+
+        Args:
+            heard: of failed checks, the CPU time they took, s, and the calls that were listened to.
+            anew: loads the submission in another worker.
+        """
         wrong = {
             result.task for result in results.values() if result.status not in {Status.PASS, Status.SKIP}
         }
@@ -73,9 +90,13 @@ class Explainer:
             names = frozenset(self._parts.get(check.id, task) for check in checks)
             said = {} if gone else self._answer_sums(task, remote, names)
             culprit = next((name for name in callers.get(task, ()) if name in wrong), None)
+            past = [heard[check.id] for check in checks if check.id in heard]
+            kept = bool(anew and not gone and culprit is None and _kept(past, task, anew))
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
                 part = [check for check in checks if self._parts.get(check.id, task) == name]
-                story = self._story(name, {check.id: failed[check.id] for check in part}, said.get(name))
+                story = self._story(
+                    name, {check.id: failed[check.id] for check in part}, said.get(name), kept
+                )
                 for check in part:
                     if check.id not in story.own:
                         results[check.id] = _retold(check, failed[check.id], story, task, culprit)
@@ -92,14 +113,27 @@ class Explainer:
         except _STRANGE:
             return {}
 
-    def _story(self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None) -> Story:
+    def _story(
+        self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None, kept: bool
+    ) -> Story:
         failures = [
             Failure(check, failure.guess, _finite(failure.finding)) for check, failure in failed.items()
         ]
-        return story_of(failures, self._fits(name, sums) if sums else (), self._words)
+        return story_of(failures, self._fits(name, sums) if sums else (), self._words, kept=kept)
 
     def _fits(self, name: str, sums: tuple[float, ...]) -> tuple[Row, ...]:
         return () if is_right(self._table, name, sums) else matching(self._table, name, sums)
+
+
+def _kept(past: list[Past], task: str, anew: Callable[[], RemoteSubmission]) -> bool:
+    """Whether calls of failed checks, of those that took least, give something else in another order."""
+    calls: list[Heard] = []
+    total = 0.0
+    for took, heard in sorted(past, key=lambda item: item[0]):
+        total += took
+        if total <= _PATIENCE:
+            calls += heard
+    return bool(calls) and depends_on_the_past(calls, task, anew, _PATIENCE)
 
 
 def tasks_asked(questions: ModuleType) -> frozenset[str]:

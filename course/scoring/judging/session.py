@@ -30,7 +30,7 @@ from course.scoring.judging.outcomes import found, load_problem, no_functions, r
 from course.scoring.judging.submission import Submission
 from course.scoring.judging.terms import Terms
 from course.scoring.places import Places
-from course.scoring.remote import RemoteSubmission
+from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, bounded
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ class GradingSession:
             keep_private()
         self._catalog = catalog
         self._failed: dict[str, CheckFailed] = {}  # of the submission at hand
+        self._heard: dict[str, tuple[float, list[Heard]]] = {}  # calls of its failed checks, and their time
         self._explainer = _explainer(exercise)
         self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
         self._checks = CollectedChecks(check_files(exercise, catalog, scope), draws=scope == "full")
@@ -199,6 +200,8 @@ class GradingSession:
             self._spawner, submission.files, self.exercise.module,
             timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
             home=self._terms.home, patience=self.exercise.patience() if self._terms.home else None,
+            listened=self._explainer.listened(submission.files[self.exercise.module])
+            if self._explainer else frozenset(),
         )  # fmt: skip
 
     def _places(self, submission: Submission) -> Places:
@@ -214,6 +217,7 @@ class GradingSession:
             ordered = [check for check in ordered if check.id in wanted]
         results: dict[str, CheckResult] = {}
         self._failed.clear()
+        self._heard.clear()
         self.asked.clear()
         self.took.clear()
         self._hung.clear()
@@ -225,7 +229,9 @@ class GradingSession:
             results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
         if self._explainer is not None and self._failed:
             source = submission.files[self.exercise.module]
-            self._explainer.explain(results, self._failed, remote, source)
+            self._explainer.explain(
+                results, self._failed, remote, source, self._heard, lambda: self._load(submission)
+            )
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
@@ -245,6 +251,7 @@ class GradingSession:
                 raise outcome
             case CheckFailed():
                 self._failed[check.id] = outcome
+                self._heard[check.id] = remote.used, remote.heard
                 self._keep_curve(check, outcome, remote)
                 ours = OURS + outcome.broke if outcome.broke else None
                 return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)

@@ -311,11 +311,28 @@ def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:
 
 def test_a_batch_of_calls_keeps_each_value_as_it_was_returned(load: Any) -> None:
     connection = load("kept = []\ndef f(x, y=0):\n    kept.append(x + y)\n    return kept, {'a': (x,)}\n")
-    assert connection.each("f", [[1.0], [2.0, 3.0]]) == [
-        [[1.0], {"a": [1.0]}],
-        [[1.0, 5.0], {"a": [2.0]}],
-    ]
-    assert connection.each("f", []) == []
+    values, changed = connection.each("f", [[1.0], [2.0, 3.0]])
+    assert values == [[[1.0], {"a": [1.0]}], [[1.0, 5.0], {"a": [2.0]}]]
+    assert changed
+    assert connection.each("f", []) == ([], False)
+
+
+@pytest.mark.parametrize(
+    ("source", "changed"),
+    [
+        ("def f(x):\n    return np.array([x]), {'a': [x]}\n", False),
+        ("kept = np.zeros(1)\ndef f(x):\n    kept[:] = x\n    return kept\n", True),
+        ("kept = np.zeros(1)\ndef f(x):\n    return 2.0, [{'a': kept}]\n", False),
+        ("def f(x, kept={}):\n    kept['a'] = x\n    return 1.0, kept\n", True),
+        ("def f(x, kept=[]):\n    kept.append(x)\n    return kept[-1], np.array(kept)\n", False),
+        ("def f(x):\n    return np.array([np.nan]), math.nan, None\n", False),
+    ],
+)
+def test_a_batch_of_calls_tells_whether_a_later_one_changed_an_earlier_value(
+    load: Any, source: str, changed: bool
+) -> None:
+    connection = load("import math\nimport numpy as np\n" + source)
+    assert connection.each("f", [[1.0], [2.0]])[1] is changed
 
 
 def test_a_batch_of_calls_ends_at_the_first_that_fails(load: Any) -> None:
@@ -359,7 +376,7 @@ def test_methods_are_functions_of_the_graders(load: Any) -> None:
     box = {"$methods": {"info": lambda: {"mass": 2.0}, "run": run}}
     info, ran, shown, names = connection.call("f", box)
     assert (info, ran, shown, names) == ({"mass": 2.0}, 6, "<object with info, run>", ["info", "run"])
-    assert connection.each("f", [[box], [box]])[1][1] == 6
+    assert connection.each("f", [[box], [box]])[0][1][1] == 6
     assert asked == [3, 3, 3]
 
 

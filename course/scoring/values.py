@@ -228,8 +228,8 @@ def overwritten(name: str) -> CheckFailed:
     return CheckFailed(
         Finding(
             message=f"A later call of `{name}` changed what an earlier call had returned.",
-            help="Make new arrays, lists and dicts in every call. One that is kept outside the function, or in "
-            "a default argument, and filled again, is still in the hands of whoever called before.",
+            help="Make new arrays, lists and dicts in every call. One that is kept outside the function, or "
+            "in a default argument, and filled again, is still in the hands of whoever called before.",
             diagnosis="RESULT_OVERWRITTEN",
         )
     )

@@ -23,22 +23,34 @@ def refused(rng):
 
 
 def scattered(rng):
-    """(hs, errors) whose errors do not all grow with the step, and such as are smaller than any rounding."""
+    """(hs, errors) whose errors do not all grow with the step; that are tiny; of which two are equal."""
     hs = 0.3 * np.cumprod(rng.uniform(0.5, 0.8, 6))
     up_and_down = np.exp(rng.uniform(0.8, 1.6, 6) * np.array([-1, 1, -1, 1, -1, 1]))
     yield hs, rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 1.5) * up_and_down
     hs = 0.3 * np.cumprod(rng.uniform(0.08, 0.3, 5))
-    yield hs, hs ** rng.uniform(3.0, 4.5) * np.exp(rng.normal(0.0, 0.3, 5))
+    errors = hs ** rng.uniform(3.0, 4.5) * np.exp(rng.normal(0.0, 0.3, 5))
+    yield hs, errors * 10 ** rng.uniform(-17.0, -15.0) / errors.min()
+    hs = 0.3 * np.cumprod(rng.uniform(0.4, 0.7, 5))
+    errors = hs ** rng.uniform(0.8, 3.0) * np.exp(rng.normal(0.0, 0.2, 5))
+    errors[2] = errors[1]
+    yield hs, errors
 
 
 def starts(rng):
-    """Where narrow unstable ranges begin, h omega: at so many places that a coarse search steps over one."""
-    return tuple(rng.uniform(0.6, 4.0, 8).tolist())
+    """Where narrow unstable ranges begin, h omega: at so many places that a coarse search steps over one.
+
+    The last four are side by side, where steps that grow with h are longest.
+    """
+    return *rng.uniform(0.6, 4.0, 8).tolist(), *(rng.uniform(7.5, 8.6) + WIDTH * np.arange(4)).tolist()
+
+
+#: Of the narrow ranges, in h omega: the README promises 0.25.
+WIDTH = 0.27
 
 
 def pocket(low):
-    """A map that is unstable in h omega from ``low`` to ``low`` + 0.27 and stable around it."""
-    high = low + 0.27
+    """A map that is unstable in h omega from ``low`` to ``low`` + ``WIDTH`` and stable around it."""
+    high = low + WIDTH
     curve = 1.5 / (low * high)
     return LinearStep([1 - curve * low * high, curve * (low + high), -curve], [0.0], [0.0], [0.2])
 
@@ -65,6 +77,22 @@ def expect_refusals(submission, state, durations):
         )
 
 
+def expect_start_kept(submission, args, inspected, given):
+    """integrate leaves q0, v0 (whole numbers in ``inspected``, then floats) and earlier results as they are."""
+    step, accel, q0, v0, *rest = args
+    floats = [step, accel, q0.astype(float), v0.astype(float), *rest]
+    for asked, seen in ((args, inspected), (floats, submission.call_inspect("integrate", *floats))):
+        kit.expect_untouched(
+            asked,
+            seen,
+            names=["", "", "q0", "v0", "", ""],
+            mutated=probes.named("MUTATES_INPUT"),
+            shared=probes.named("RETURNS_ARGUMENT"),
+            input=given,
+        )
+    submission.call_each("integrate", [floats, [step, accel, floats[3], floats[2], *rest]])
+
+
 def expect_clean(submission, task, system, t, whole, h):
     """A step changes none of its arguments, returns arrays of its own and takes whole numbers (``whole``).
 
@@ -84,6 +112,8 @@ def expect_clean(submission, task, system, t, whole, h):
         shared=probes.named("RETURNS_ARGUMENT"),
         input=given,
     )
+    # The values of two calls in a row: the second must not change what the first returned.
+    submission.call_each(task, [args, [system, t, args[3], args[2], h]])
     result = kit.expect_accepts(
         lambda: submission.call(task, system, t, *whole, h),
         "TypeError",

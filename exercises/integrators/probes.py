@@ -46,6 +46,8 @@ def of_step(submission, task, run=None):
         return named("ACCEL_ARGUMENTS_MIXED")
     if _looks_elsewhere(submission, task):
         return named("TIME_OUTSIDE_STEP")
+    if _wraps(submission, task):
+        return named("POSITION_WRAPPED")
     if not all(map(np.all, map(np.isfinite, _generic(submission, task)))):
         return None  # the check says that it is nan, or infinite; nothing else may be read off it
     if _remembers(submission, task):
@@ -59,6 +61,19 @@ def of_whole_numbers(submission, task):
     """Why a step from integers differs from the same step from floats."""
     cached = kit.attempt(lambda: _remembers(submission, task))
     return named("STALE_CACHE" if cached else "INTEGER_STATE")
+
+
+def _wraps(submission, task):
+    """Whether a body at rest without forces is elsewhere after the step, if it is far away, and only then."""
+    places = [
+        kit.attempt(lambda at=at: kit.as_pair(submission.call(task, FreeFall(0.0), _T, at, 0 * _Q, _H), 2)[0])
+        for at in (_Q, 30 * _Q)
+    ]
+    return _stays(places[0], _Q) and places[1] is not None and not _stays(places[1], 30 * _Q)
+
+
+def _stays(place, at):
+    return place is not None and np.allclose(place, at, rtol=1e-9, atol=1e-12)
 
 
 def _generic(submission, task):

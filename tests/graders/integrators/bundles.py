@@ -124,7 +124,7 @@ def unknown_system(rng):
     def accel(t, q, v):
         return -stiffness * np.sin(q) * (1 + 0.2 * q * q) - drag * v * abs(v) + push * np.cos(beat * t + q)
 
-    q, v = signed(rng, 0.4, 1.2, 3), signed(rng, 0.4, 1.2, 3)
+    q, v = signed(rng, 3.5, 9.0, 3), signed(rng, 0.4, 1.2, 3)  # beyond what an angle is
     return kit.acceleration(accel, 3), rng.uniform(0.3, 2.0), q, v, rng.uniform(0.1, 0.3)
 
 

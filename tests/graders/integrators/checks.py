@@ -336,7 +336,10 @@ def test_stable_step_limits(submission, rng):
     steps = [(systems.LinearStep(qq, qp, pq, qq if pp is None else pp), z) for qq, qp, pq, pp, z in maps]
     steps.append((bundles.cases.slow_growth(c), c))
     # Springs so slow or so fast that a range in seconds is not one in h omega.
-    omegas = rng.permutation(rng.uniform((0.1, 0.2, 2.0, 45.0), (0.15, 20.0, 20.0, 60.0)))
+    omegas = rng.permutation(rng.uniform((0.1, 0.2, 2.0, 45.0), (0.15, 20.0, 20.0, 60.0))).tolist()
+    near = rng.uniform(0.2, 0.5)
+    steps.append((bundles.cases.slow_growth(near), near))
+    omegas.append(rng.uniform(45.0, 60.0))  # so fast, and unstable so soon, that no error in seconds is small
     bundles.expect_limits(
         submission,
         [(step, float(omega), limit, message) for (step, limit), omega in zip(steps, omegas, strict=True)],
@@ -372,11 +375,13 @@ def test_stable_step_edges(submission, rng):
     calm = systems.LinearStep([0.5, rng.uniform(0.01, 0.04)], [0.1], [0.0], [0.4])
     never = "For a map that is unstable at every step, the result is not zero."
     always = "For a map that is stable at every step of the search, the result is not infinite."
+    beyond = bundles.cases.slow_growth(rng.uniform(10.3, 12.0))
     bundles.expect_limits(
         submission,
         [
             (euler, rng.uniform(0.2, 20.0), 0.0, never),
             (calm, rng.uniform(0.2, 20.0), math.inf, always),
+            (beyond, rng.uniform(0.2, 20.0), math.inf, always),
         ],
     )
 

@@ -109,14 +109,7 @@ def expect_whole_numbers(submission, rng):
             "the steps produce.",
             diagnose=lambda: probes.of_rows(t, q, v, h, (q_true, v_true)),
         )
-    kit.expect_untouched(
-        args,
-        inspected,
-        names=["", "", "q0", "v0", "", ""],
-        mutated=probes.named("MUTATES_INPUT"),
-        shared=probes.named("RETURNS_ARGUMENT"),
-        input=given,
-    )
+    bundles.cases.expect_start_kept(submission, args, inspected, given)
 
 
 def _path(submission, args, n, given):

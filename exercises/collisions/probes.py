@@ -25,7 +25,9 @@ def of_calls(task, calls, values, truth):
     if not code and not all(map(_same, truth, values)):
         code = (
             _moment(task, calls, values, truth)
-            or _of_contact(task, values, truth)
+            or _of_contact(task, calls, values, truth)
+            or _of_walls(task, calls, values, truth)
+            or _only_where(task, calls, values, truth)
             or _unmoved(task, calls, values)
             or _concerned(task, calls, values, truth)
             or _by_law(task, calls, values, truth)
@@ -33,14 +35,43 @@ def of_calls(task, calls, values, truth):
     return named(code) if code else None
 
 
-def _of_contact(task, values, truth):
+def _of_contact(task, calls, values, truth):  # noqa: PLR0911 - one return per mistake
     """Whether ``touching`` alone is wrong, or the normal is no direction at all."""
     if not task.startswith("detect"):
         return None
     if any(not np.any(value[1]) for value in values):
         return "NORMAL_IS_ZERO"
-    wrong = [(value, right) for value, right in zip(values, truth, strict=True) if not _same(right, value)]
-    return "TOUCHING_WRONG" if all(_same(right[1:], value[1:]) for value, right in wrong) else None
+    wrong = [
+        (call, value, right)
+        for call, value, right in zip(calls, values, truth, strict=True)
+        if not _same(right, value)
+    ]
+    if all(_same(right[1:], value[1:]) for _, value, right in wrong):
+        return "TOUCHING_WRONG"
+    close = [np.allclose([*v[1], v[2]], [*right[1], right[2]], rtol=1e-6, atol=1e-6) for _, v, right in wrong]
+    if all(close) and 2 * len(wrong) > len(values):
+        return "PRECISION_LOST"
+    if all(not math.isclose(float(np.sqrt(value[1] @ value[1])), 1.0, rel_tol=1e-9) for _, value, _ in wrong):
+        return "NORMAL_NOT_UNIT"
+    if all(_same((-right[1], right[2]), value[1:]) for _, value, right in wrong) and len(wrong) < len(values):
+        return "NORMAL_REVERSED_AT_TIMES"
+    return _other_height(wrong) if task == "detect_sphere_plane" else None
+
+
+def _other_height(wrong):
+    """What takes the place of the height above a plane, if it is one thing in all wrong answers."""
+    if len(wrong) < 2 or not all(_same(right[1], value[1]) for _, value, right in wrong):
+        return None
+    ways = (
+        ("DISTANCE_TO_POINT", lambda x, r, point, n, right: float(np.linalg.norm(x - point))),
+        ("HEIGHT_ALONG_AN_AXIS", lambda x, r, point, n, right: (r - right) / n[-1]),
+        ("DEPTH_ALONG_AN_AXIS", lambda x, r, point, n, right: r - right / abs(n[-1])),
+    )
+    for code, height in ways:
+        seen = [(call[1] - value[2], height(*call, right[2])) for call, value, right in wrong]
+        if all(_same(abs(other), abs(found)) for found, other in seen):
+            return code
+    return None
 
 
 def _not_a_number(task, calls, values, truth):
@@ -90,6 +121,66 @@ def _same(wanted, value):
     return found.shape == np.shape(wanted) and np.allclose(found, wanted, rtol=1e-9, atol=1e-10)
 
 
+def _of_walls(task, calls, values, truth):
+    """What is wrong with walls, if nothing but walls is wrong."""
+    if task != "impulse_1d" and not task.startswith("resolve"):
+        return None
+    wrong = [c for c in zip(calls, values, truth, strict=True) if not _same(c[2], c[1])]
+    if not all(math.inf in call[:2] for call, _, _ in wrong):
+        return None
+    if task == "impulse_1d":
+        own = [_wall_at_rest(call) for call, _, _ in wrong]
+        return "WALL_ASSUMED_AT_REST" if all(map(_same, own, (value for _, value, _ in wrong))) else None
+    cases = [_at_wall(*case) for case in wrong]
+    if not any(kept for kept, *_ in cases):
+        return "WALL_MOVED"
+    changes = [change for _, *change in cases]
+    if task == "resolve_with_friction":
+        smooth = all(
+            _same(true, along) and not np.any(np.abs(across) > 1e-9) for along, across, true, _ in changes
+        )
+        return "WALLS_SMOOTH" if smooth else None
+    rest = all(_same(at_rest, along) or (not along and at_rest <= 0) for along, _, _, at_rest in changes)
+    return "WALL_ASSUMED_AT_REST" if rest and any(along for along, *_ in changes) else None
+
+
+def _at_wall(call, value, right):
+    """Whether a wall keeps its velocity; then of the other body's change the part away from it, the part
+    across the normal, the right part away from it, and that part if the wall did not move."""
+    wall = 0 if call[0] == math.inf else 1
+    away = call[4] if wall == 0 else -call[4]
+    old, new, true = (part[1 - wall] for part in (call[2:4], value, right))
+    along = float((new - old) @ away)
+    at_rest = -(1 + call[5]) * float(old @ away)
+    return (
+        _same(call[2 + wall], value[wall]),
+        along,
+        new - old - along * away,
+        float((true - old) @ away),
+        at_rest,
+    )
+
+
+def _only_where(task, calls, values, truth):
+    """What is common to all calls with a wrong answer, and to no other: a special case that is none."""
+    if task != "impulse_1d" and not task.startswith("resolve"):
+        return None
+    wrong = [not _same(right, value) for value, right in zip(values, truth, strict=True)]
+    special = (
+        ("ONLY_WITHOUT_REBOUND", lambda call: call[4 if task == "impulse_1d" else 5] == 0.0),
+        ("ONLY_NEARLY_EQUAL", lambda call: 0.99 < call[0] / call[1] < 1.01 and call[0] != call[1]),
+        ("ONLY_VERY_UNEQUAL", lambda call: max(call[:2]) > 1e4 * min(call[:2]) and math.inf not in call[:2]),
+    )
+    return next((code for code, is_so in special if list(map(is_so, calls)) == wrong), None)
+
+
+def _wall_at_rest(call):
+    """The impulse on a line if the wall did not move."""
+    ma, mb, va, vb, e = call
+    closing = -vb if ma == math.inf else va
+    return (1 + e) * max(closing, 0.0) * min(ma, mb)
+
+
 def _unmoved(task, calls, values):
     """Whether bodies that run into each other keep their velocities, in two cases at least."""
     if task != "impulse_1d" and not task.startswith("resolve"):
@@ -136,10 +227,45 @@ def _by_law(task, calls, values, truth):
             return "ENERGY_CREATED"
         if any(_momentum_lost(c, v) for c, v in finite):
             return "MOMENTUM_LOST"
+    return (
+        _by_speeds(task, colliding)
+        if task != "resolve_with_friction"
+        else (_rubs(calls, values, truth) or _by_speeds(task, colliding))
+    )
+
+
+def _by_speeds(task, colliding):
+    """Whether bodies part too fast in all impacts, or too slowly."""
     excess = np.array([_excess(task, c, v) for c, v in colliding])
     if np.all(excess > 1e-8):
         return "BLOW_TOO_STRONG"
     return "BLOW_TOO_WEAK" if np.all(excess < -1e-8) else None
+
+
+def _rubs(calls, values, truth):
+    """How friction is wrong, where all else is right: its direction, or its size."""
+    seen = set()
+    for call, value, right in zip(calls, values, truth, strict=True):
+        if _same(right, value):
+            continue
+        va, vb, n = call[2:5]
+        if not np.isfinite(call[1]) or not _same(float(right[1] @ n), float(value[1] @ n)):
+            return None
+        slip, wanted, found = (u - (u @ n) * n for u in (vb - va, right[1] - vb, value[1] - vb))
+        size = float(np.sqrt(slip @ slip))
+        found_size, share = (
+            float(np.sqrt(found @ found)),
+            float(found @ wanted) / float(wanted @ wanted or 1.0),
+        )
+        if not size:
+            return None
+        if found_size and not np.allclose(found, share * wanted, rtol=0, atol=1e-8):
+            return "FRICTION_ASKEW"
+        left = ((value[1] - value[0]) @ slip) / size
+        seen.add("FRICTION_TURNS_THE_SLIP" if left < -1e-8 else "TOO_STRONG" if share > 1 else "TOO_WEAK")
+    names = {"TOO_STRONG": "FRICTION_TOO_STRONG", "TOO_WEAK": "FRICTION_TOO_WEAK"}
+    code = seen.pop() if len(seen) == 1 else None
+    return names.get(code, code)
 
 
 def _closing(task, call):
@@ -167,8 +293,11 @@ def _moment(task, calls, values, truth):
     """With a time of impact: the mistake that spoils the first answer that is wrong."""
     if task != "time_of_impact":
         return None
-    if all(value is None for value in values):
-        return "NEVER_FINDS_A_CONTACT"
+    never = all(value is None for value in values)
+    return "NEVER_FINDS_A_CONTACT" if never else _wrong_moment(calls, values, truth)
+
+
+def _wrong_moment(calls, values, truth):
     for call, value, right in zip(calls, values, truth, strict=True):
         if value is None or _same(right, value):
             continue
@@ -177,6 +306,8 @@ def _moment(task, calls, values, truth):
             if _apart(call, value) >= 1e-6:
                 return "MISS_IS_A_NUMBER"
             return "IMPACT_IN_THE_PAST" if value < 0.0 else _beyond(call, value)
+        if right == 0.0:
+            return "OVERLAP_IN_THE_PAST" if value < 0.0 else None
         # The other root of the quadratic lies as far beyond the closest approach as this one before it.
         dx, dv = call[3] - call[0], call[4] - call[1]
         late = -2 * float(dx @ dv) / float(dv @ dv) - right

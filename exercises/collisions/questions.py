@@ -66,6 +66,9 @@ FIXED = {
         (2.0, 1.0, 5.0, 1.0, 0.0),
         (1.0, 4.0, -1.0, -3.0, 0.8),
         (2.0, 1.0, 0.01, 0.004, 0.5),
+        # Nearly the same mass, and one that is nearly a wall.
+        (2.0, 2.015, 3.0, -1.0, 0.5),
+        (1.0, 50000.0, 3.0, -1.0, 0.5),
     ],
     "impulse_separating": [
         (1.0, 1.0, -2.0, 2.0, 1.0),
@@ -79,6 +82,8 @@ FIXED = {
         (1.0, 3.0, [4, 1, 2], [-1, 2, 0], [0.6, 0, 0.8], 0.5),
         (5.0, 0.5, [0, -3], [1, 2], [0.8, -0.6], 0.3),
         (1.0, 2.0, [0.01, 1], [0.002, 0], [1, 0], 0.6),
+        (2.0, 2.015, [3, 1], [-1, 0], [1, 0], 0.5),
+        (1.0, 50000.0, [3, 1], [-1, 0], [1, 0], 0.5),
     ),
     "resolve_separating": _calls(
         (1.0, 2.0, [-1, 5, 0], [2, 0, 0], [1, 0, 0], 0.8),
@@ -94,6 +99,7 @@ FIXED = {
         *_calls(*((*_RUB, mu) for mu in (0.1, 0.3, 0.9, 4.0))),
         *_calls((2.0, 1.0, [1, -3], [0, 1], [0, -1], 0.2, 0.15)),
         *_calls((1.0, 2.0, [1, 9], [0, -8], [1, 0], 0.5, 2.5)),
+        *_calls(*((1.0, mb, [3, 1], [-1, 0], [1, 0], 0.5, 0.1) for mb in (1.008, 50000.0))),
     ],
     "friction_absent": _calls(
         (1.0, 2.0, [3, 1, 0], [0, 0, 2], [1, 0, 0], 0.5, 0.0),
@@ -112,6 +118,7 @@ FIXED = {
         ([-1, 0, 0], [400, 0, 0], 0.01, [0, 0, 0], [0, 0, 0], 0.01, 0.01),
         ([0, 0, 0], [3, 0, 0], 0.5, [4, 0.6, 0], [0, 0, 0], 0.5, 1.4),
         ([0, 0], [0, 1], 0.3, [1.5, 2], [-1, 0], 0.4, 4.0),
+        ([0, 0], [0.003, 0], 0.5, [1.004, 0.2], [0.001, 0], 0.5, 20.0),
     ),
     "moment_never": _calls(
         ([0, 0, 0], [3, 1.5, 0], 0.5, [4, 0, 0], [0, 0, 0], 0.5, 9.0),
@@ -132,12 +139,14 @@ FIXED = {
         (paths.HeadOn((1.0, 2.0), (-0.251, 0.2515), (0.002, -0.001), 0.25, 0.6), 2.0, 0.05),
     ],
     "head_on_pymunk": [(paths.HeadOn((1.0, 3.0), (-5.0, 5.0), (2.0, -2.0), 0.5, 0.6), 4.8, 0.008)],
-    # Dropped, thrown upwards, thrown from the floor, and for a duration whose quotient by h is not exact.
+    # Dropped, thrown upwards, thrown from the floor, for a duration whose quotient by h is not exact, and
+    # thrown up from just above the floor, so slowly that it is back within the step.
     "drop_bounces": [
         (_BALL, 4.0, 0.01),
         (paths.Drop(0.5, 3.0, 0.2, 0.5), 4.0, 0.01),
         (paths.Drop(0.2, 2.5, 0.2, 0.6), 1.5, 0.01),
         (paths.Drop(0.5, 0.0, 0.1, 0.6), 0.29, 0.01),
+        (paths.Drop(0.1001, 0.02, 0.1, 0.6), 0.2, 0.01),
     ],
     "drop_pymunk": [(_BALL, 0.9, 0.002)],  # it ends before the second contact, where pymunk's errors add up
 }

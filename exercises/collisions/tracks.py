@@ -142,6 +142,8 @@ def of_drop(scene, truth, t, z, v, h):
         return named(code) if code else None
     if np.allclose(z, fall, rtol=1e-9, atol=1e-8):
         return named("FALLS_THROUGH_FLOOR")
+    if truth.times and truth.times[0] < h and scene.v0 > 0 and z[1] < scene.radius - 1e-9:
+        return named("SHORT_HOP_MISSED")
     code = (
         _drop_late(scene, truth, t, z, v, fall)
         or _drop_rebound(scene, truth, t, z, v)
@@ -159,7 +161,13 @@ def _drop_flight(scene, t, z, v, h, before, off):
         if math.isclose(v[1], scene.restitution * scene.v0 - scene.g * h, abs_tol=1e-8):
             return "LAUNCH_IS_BOUNCE"
     drift = np.abs(np.abs(off) - scene.g * h * t / 2)
-    return "EULER_IN_FLIGHT" if np.all(drift[before] < 1e-6) else None
+    if np.all(drift[before] < 1e-6):
+        return "EULER_IN_FLIGHT"
+    g = (scene.v0 - v[1]) / h
+    path = scene.z0 + scene.v0 * t - g * t * t / 2
+    early = before & (t <= 4 * h)  # with its own g it may come to the floor before
+    other = early.sum() > 2 and np.allclose(z[early], path[early], rtol=0, atol=1e-9)
+    return "OTHER_GRAVITY" if other and not math.isclose(g, scene.g, rel_tol=1e-6) else None
 
 
 def _drop_late(scene, truth, t, z, v, fall):
@@ -215,7 +223,9 @@ def _drop_end(scene, truth, t, z, v):
         return "RESTS_ELSEWHERE"
     if np.any(z[late] < scene.radius - 1e-9) and z[-1] < scene.radius - 1e-6:
         return "SINKS_THROUGH_FLOOR"
-    return "RESTING_JITTER" if np.any(~rests[late]) or np.any(v[late] != 0.0) else None
+    if rests[late].all() and np.any(v[late] != 0.0):
+        return "REST_KEEPS_SPEED"
+    return "RESTING_JITTER" if np.any(~rests[late]) else None
 
 
 def _drop_impact(scene, truth, t, z, v):

@@ -78,7 +78,7 @@ def expect_refusals(submission, state, durations):
 
 
 def expect_start_kept(submission, args, inspected, given):
-    """integrate leaves q0, v0 (whole numbers in ``inspected``, then floats) and earlier results as they are."""
+    """integrate leaves q0, v0 (whole in ``inspected``, then floats) and earlier results as they are."""
     step, accel, q0, v0, *rest = args
     floats = [step, accel, q0.astype(float), v0.astype(float), *rest]
     for asked, seen in ((args, inspected), (floats, submission.call_inspect("integrate", *floats))):

@@ -21,6 +21,7 @@ from course.physics.integrators import (
     VelocityVerlet,
     trajectory,
 )
+from course.physics.invariants import convergence_order
 from course.physics.systems import DrivenPendulum, FreeFall, LinearStep, Oscillator
 
 named = kit.words("integrators")
@@ -307,6 +308,11 @@ def of_order(value, hs, errors):
         return None
     if value < 0:
         return named("ORDER_SIGN_FLIPPED")
+    last = {error: h for h, error in zip(hs, errors, strict=True)}
+    if len(last) < len(hs) and math.isclose(
+        value, convergence_order(list(last.values()), list(last)), abs_tol=1e-8
+    ):
+        return named("EQUAL_ERRORS_LOST")
     scattered = len(hs) > 2 and float(value).is_integer()
     return named("ORDER_ROUNDED") if scattered and value > 0 else None
 

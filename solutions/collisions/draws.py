@@ -230,6 +230,17 @@ def launched(rng):
     return scene, 250 * h, h
 
 
+def short_hop(rng):
+    """A ball thrown up from just above the floor, so slowly that it is back within the step."""
+    radius, g, h = (
+        float(rng.uniform(0.05, 0.3)),
+        float(rng.uniform(4.0, 15.0)),
+        float(rng.uniform(0.01, 0.03)),
+    )
+    high, up = (rng.uniform(0.05, 0.12), rng.uniform(0.1, 0.3)) * np.array([g * h * h, g * h])
+    return paths.Drop(radius + float(high), float(up), radius, float(rng.uniform(0.45, 0.85)), g), 20 * h, h
+
+
 def early(rng):
     """A pair that meets within the first step."""
     h, radius, va, vb = (
@@ -279,6 +290,21 @@ def slow_line(rng):
     """The same on a line."""
     ma, mb, va, _, e = line(rng)
     return ma, mb, va, va - float(10 ** rng.uniform(-2.7, -2.2)), e
+
+
+def alike(rng, args):
+    """The same two bodies with masses that differ by less than 1 %."""
+    return args[0], args[0] * float(1 + rng.uniform(0.002, 0.009)), *args[2:]
+
+
+def heavy(rng, args):
+    """The same two bodies, one of them so heavy that it is nearly a wall."""
+    return args[0], args[0] * float(10 ** rng.uniform(4.2, 6.0)), *args[2:]
+
+
+def ends(args):
+    """The same impact without a rebound, and with all of it."""
+    return [(*args[:4], 0.0), (*args[:4], 1.0)]
 
 
 def parting(args):
@@ -369,10 +395,20 @@ PUBLIC = {
         exact_plane(rng, 0.0),
         exact_plane(rng, gap(rng)),
     ],
-    "impulse_value": lambda rng: [*(line(rng) for _ in range(4)), slow_line(rng)],
+    "impulse_value": lambda rng: [
+        *(line(rng) for _ in range(3)),
+        slow_line(rng),
+        *ends(line(rng)),
+        alike(rng, line(rng)),
+        heavy(rng, line(rng)),
+    ],
     "impulse_separating": lambda rng: [*(parting(line(rng)) for _ in range(3)), line(rng)],
     "impulse_walls": lambda rng: [wall(line(rng), side) for side in (0, 1)],
-    "resolve_oblique": lambda rng: [*(impact(rng, d) for d in (3, 3, 2)), slow(rng, 2)],
+    "resolve_oblique": lambda rng: [
+        *(impact(rng, d) for d in (3, 3, 2)),
+        slow(rng, 2),
+        *(change(rng, impact(rng, 3)) for change in (alike, heavy)),
+    ],
     "resolve_separating": lambda rng: [
         *(carried(rng, parting(impact(rng, d)), way) for d, way in ((3, 1.0), (2, -1.0))),
         impact(rng, 3),
@@ -381,6 +417,7 @@ PUBLIC = {
     "friction_regimes": lambda rng: [
         *(friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
         rough(rng),
+        *(change(rng, friction(rng, 3, 0.5)) for change in (alike, heavy)),
     ],
     "friction_absent": _no_friction,
     "friction_walls": lambda rng: [wall(friction(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))],
@@ -389,10 +426,17 @@ PUBLIC = {
         shot(rng, 300.0),
         passing(rng, 3, 0.6),
         passing(rng, 2, 0.4),
+        shot(rng, float(10 ** rng.uniform(-2.7, -2.2))),
     ],
     "moment_never": _never,
     "head_on_mended": _mended,
     "head_on_pymunk": _beside_pymunk,
-    "drop_bounces": lambda rng: [drop(rng, 0.0), drop(rng, 1.0), launched(rng), _decimal(rng)],
+    "drop_bounces": lambda rng: [
+        drop(rng, 0.0),
+        drop(rng, 1.0),
+        launched(rng),
+        _decimal(rng),
+        short_hop(rng),
+    ],
     "drop_pymunk": _fall_beside_pymunk,
 }

@@ -100,7 +100,13 @@ def test_impulse_drawn(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.IMPULSE,
-        [*(draws.line(rng) for _ in range(8)), *(draws.slow_line(rng) for _ in range(3))],
+        [
+            *(draws.line(rng) for _ in range(6)),
+            *(draws.slow_line(rng) for _ in range(3)),
+            *draws.ends(draws.line(rng)),
+            draws.alike(rng, draws.line(rng)),
+            draws.heavy(rng, draws.line(rng)),
+        ],
         "The impulse of two bodies on a line is wrong.",
         "Test it yourself: momentum kept, and the speed of parting e times the speed of approach.",
     )
@@ -137,7 +143,11 @@ def test_impulse_wall(submission, rng):
 @pytest.mark.points(2)
 def test_resolve_momentum(submission, rng):
     """An impact conserves the total momentum"""
-    laws.expect_momentum(submission, bundles.RESOLVE, [draws.impact(rng, d) for d in (2, 2, 3, 3, 3)])
+    laws.expect_momentum(
+        submission,
+        bundles.RESOLVE,
+        [*(draws.impact(rng, d) for d in (2, 2, 3, 3)), draws.alike(rng, draws.impact(rng, 3))],
+    )
 
 
 @pytest.mark.task(bundles.RESOLVE)
@@ -145,6 +155,7 @@ def test_resolve_momentum(submission, rng):
 def test_resolve_parting(submission, rng):
     """Bodies separate at e times the speed of approach, and slide past each other as before"""
     calls = [*(draws.impact(rng, d) for d in (1, 2, 3, 3, 3)), *(draws.slow(rng, 3) for _ in range(3))]
+    calls.append(draws.heavy(rng, draws.impact(rng, 3)))
     laws.expect_parting(submission, calls)
 
 
@@ -190,6 +201,7 @@ def test_friction_cone(submission, rng):
             *(draws.friction(rng, d, share) for d in (2, 3, 3) for share in (0.3, 0.8, 1.3, 4.0)),
             draws.rough(rng),
             (*draws.slow(rng, 3), 0.3),
+            *(change(rng, draws.friction(rng, 3, 0.5)) for change in (draws.alike, draws.heavy)),
         ],
         "The velocities after an impact with friction are wrong.",
         "Find the tangential part of the relative velocity as a vector; its length decides which "
@@ -231,12 +243,12 @@ def test_friction_inputs(submission, rng):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(3)
 def test_moment_any_speed(submission, rng):
-    """No speed is high enough to tunnel"""
+    """No speed is high enough to tunnel, and none too low to touch"""
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
-        [draws.shot(rng, 10.0**power) for power in np.linspace(0.0, 5.0, 11)],
-        "A fast body's contact is missed or comes at the wrong time.",
+        [draws.shot(rng, 10.0**power) for power in (*np.linspace(0.0, 5.0, 11), -2.4)],
+        "A contact is missed or comes at the wrong time.",
         "Do not sample the step: solve the quadratic for the first moment of contact.",
     )
 
@@ -355,7 +367,7 @@ def test_head_on_samples(submission, rng):
 @pytest.mark.points(3)
 def test_drop_drawn(submission, rng):
     """Balls dropped and thrown, on this planet and others, bounce as they should"""
-    cases = [*(draws.drop(rng, up) for up in (0.0, 1.0, -1.0)), draws.launched(rng)]
+    cases = [*(draws.drop(rng, up) for up in (0.0, 1.0, -1.0)), draws.launched(rng), draws.short_hop(rng)]
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
     for (scene, t_end, h), truth, value in zip(cases, bundles.bounces(cases), values, strict=True):
         bundles.expect_drop(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from course.errors import ContentError
-from course.scoring.explain.calls import calls_between
+from course.scoring.explain.calls import calls_between, may_remember
 from course.scoring.explain.fingerprint import SAME, fingerprint, read
 from course.scoring.explain.story import Failure, common, story_of
 from course.scoring.explain.table import Row, Table, is_right, matching, read_table, write_table
@@ -214,6 +214,43 @@ def impulse(x):
 
 
 # -- words ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("more", "could"),
+    [
+        ("", False),
+        ("LIMIT, WAYS = -1e-8, (1, 'up')", False),
+        ("import numpy as np\nfar = np.inf", False),
+        ("known = {}", True),
+        ("(known, other) = [], 0", True),
+        ("draws = np.random.default_rng(1)", True),
+        ("class known:\n    last = 0", True),
+        ("def known(x, seen=[]):\n    return x", True),
+        ("def known(x):\n    known.last = x", True),
+        ("def known(x):\n    global last\n    last = x", True),
+        ("@cache\ndef known(x):\n    return x", True),
+    ],
+)
+def test_only_what_can_change_between_two_calls_may_be_remembered(more: str, could: bool) -> None:
+    source = (
+        f"def g(x):\n    return 2 * x\n{more}\ndef f(x):\n    return g(x), LIMIT, WAYS, far, known, draws\n"
+    )
+    found = may_remember(source.encode(), frozenset({"f", "g"}))
+    assert found == (frozenset({"f"}) if could else frozenset())
+
+
+def test_what_is_kept_between_calls_comes_first_and_a_code_of_the_exercise_names_it() -> None:
+    kept = story_of(
+        failures("SIGN_FLIPPED", "CHANGED_IN_PLACE"), (Row(("MASS_SWAPPED",), (1.0,)),), WORDS, kept=True
+    )
+    assert kept.diagnosis
+    assert kept.diagnosis.code == "STATE_KEPT"
+    assert kept.own == {"check_1"}
+    own = Words({**WORDS.entries, "STALE_CACHE": Entry("It is stale.", "Ask again.")})
+    some = [Failure("check_0", own("STALE_CACHE")), Failure("check_1", own("SIGN_FLIPPED"))]
+    for seen in (True, False):
+        assert story_of(some, (), own, kept=seen).diagnosis == own("STALE_CACHE")
 
 
 def test_words_of_no_known_kind_are_refused(tmp_path: Path) -> None:

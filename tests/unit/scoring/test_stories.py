@@ -104,3 +104,54 @@ def detect_sphere_plane(x, r, point, normal):
 def test_of_nan_only_its_origin_is_told(session: GradingSession) -> None:
     found = failed(session, "\ndef impulse_1d(ma, mb, va, vb, restitution):\n    return float('nan')\n")
     assert codes(found["impulse_1d"]) == {"NOT_A_NUMBER"}
+
+
+REMEMBERS = """
+_right, _met = simulate_head_on, []
+def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+    if _met:
+        t = h * np.arange(round(t_end / h) + 1)
+        return t, x0 + t[:, None] * v0, np.tile(v0, (len(t), 1))
+    _met.append(True)
+    return _right(m, x0, v0, radius, restitution, t_end, h)
+"""
+
+
+def test_what_is_kept_between_calls_is_told_before_what_it_looks_like(session: GradingSession) -> None:
+    found = failed(session, REMEMBERS)
+    assert codes(found["simulate_head_on"]) == {"STATE_KEPT"}
+
+
+def test_a_cache_that_is_right_is_no_story_of_another_mistake(session: GradingSession) -> None:
+    found = failed(
+        session,
+        """
+_known = {}
+def impulse_1d(*args):
+    if args not in _known:
+        ma, mb, va, vb, e = args
+        _known[args] = (1 + e) * (va - vb) / (1 / ma + 1 / mb)
+    return _known[args]
+""",
+    )
+    assert codes(found["impulse_1d"]) == {"IMPULSE_ON_SEPARATING"}
+
+
+def test_numbers_of_its_own_are_nothing_that_is_kept(session: GradingSession) -> None:
+    found = failed(
+        session,
+        "\n_draws = np.random.default_rng()\n"
+        "def impulse_1d(ma, mb, va, vb, restitution):\n    return _draws.random()\n",
+    )
+    assert "STATE_KEPT" not in codes(found["impulse_1d"])
+
+
+def test_results_that_the_next_call_fills_again_fail(session: GradingSession) -> None:
+    buffers = """
+_right, _kept = resolve, {}
+def resolve(ma, mb, va, vb, normal, restitution):
+    kept = _kept.setdefault(len(va), np.zeros((2, len(va))))
+    kept[:] = _right(ma, mb, va, vb, normal, restitution)
+    return kept[0], kept[1]
+"""
+    assert codes(failed(session, buffers)["resolve"]) == {"RESULT_OVERWRITTEN"}

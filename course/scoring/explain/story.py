@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from course.scoring.explain.words import KEPT, NOT_FINITE, STATE, Diagnosis
+from course.scoring.explain.words import KEPT, NOT_FINITE, OWN_WORDS, STATE, Diagnosis
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,10 +66,13 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     own = frozenset(f.check for f in failures if f.guess and words.kind(f.guess.code) == "fact")
     left = [failure for failure in failures if failure.check not in own]
     guesses = [failure.guess for failure in left if failure.guess]
-    state = next((guess for guess in guesses if guess.code in STATE), KEPT if kept else None)
+    shared = common(fits, [guess.code for guess in guesses])
+    codes = OWN_WORDS if kept else STATE
+    state = next((guess for guess in guesses if guess.code in codes), None)
+    if kept and state is None:
+        state = merged(shared, words) if shared and shared[0] in OWN_WORDS else KEPT
     if state:
         return Story(state, True, own)
-    shared = common(fits, [guess.code for guess in guesses])
     if shared:
         return Story(merged(shared, words), True, own)
     if not all(failure.finite for failure in left):

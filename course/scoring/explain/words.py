@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from course.scoring.divergence import Divergence
 
-__all__ = ["FILE", "KEPT", "NOT_FINITE", "STATE", "Diagnosis", "Entry", "Words", "read_words"]
+__all__ = ["FILE", "KEPT", "NOT_FINITE", "OWN_WORDS", "STATE", "Diagnosis", "Entry", "Words", "read_words"]
 
 
 FILE = "diagnoses.toml"
@@ -42,6 +42,8 @@ class Diagnosis:
 NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
 #: Codes of exercises for something that is kept between two calls: probes that say them have seen it.
 STATE = frozenset({"STALE_CACHE", "STATE_IN_MODULE", "STATE_KEPT"})
+#: Codes whose words are true of it, too, and say what of it matters: they win once it was seen.
+OWN_WORDS = STATE | {"BIAS_CARRIED_OVER", "WALLS_NOT_READ", "LAG_WITHOUT_DT", "GAINS_HARD_CODED"}
 #: What is said of it where an exercise has no words of its own.
 KEPT = Diagnosis(
     "STATE_KEPT",
@@ -83,6 +85,8 @@ class Words:
         Raises:
             KeyError: ``diagnoses.toml`` has no words for it.
         """
+        if code == KEPT.code and code not in self.entries:
+            return KEPT
         entry = self.entries[code]
         return Diagnosis(code, entry.looks_like, entry.advice, divergence)
 

@@ -122,7 +122,7 @@ class LocalSubmission:
         return Inspected(_plain(value), after, _shares(value, given))
 
     def _loop(self, loop: Any, escaped: list[BaseException]) -> Any:
-        """What student code gives; a callback that refused its arguments is the finding."""
+        """The value of student code; a callback that refused its arguments is the finding."""
         try:
             result = _guarded(loop)
         except StudentFailure:

@@ -1,4 +1,4 @@
-"""What a submission's syntax tree says: which functions call which others, and which may remember something.
+"""A submission read from its syntax tree: which functions call which others, and which may remember.
 
 Its own helpers are followed.
 """

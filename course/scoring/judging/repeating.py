@@ -52,7 +52,7 @@ def depends_on_the_past(
 def _again(
     asked: Sequence[Heard], task: str, anew: Callable[[], RemoteSubmission], patience: float
 ) -> list[Any] | None:
-    """What the calls give in a worker of their own; None if one of them fails."""
+    """The values of the calls in a worker of their own; None if one of them fails."""
     try:
         remote = anew()
     except LoadRefusedError:  # it was loaded before, so it is not loaded the same way every time

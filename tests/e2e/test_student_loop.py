@@ -1,4 +1,8 @@
-"""A student's way through an exercise, as they walk it: one process per command, the real sandbox."""
+"""A student's way through an exercise, as they walk it, with the real sandbox.
+
+One walk goes from init to submit with a process per command; elsewhere a command is a process where its
+terminal, its signals or a second program matter.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +15,13 @@ import subprocess
 import sys
 import time
 import zipfile
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from course.progress.store import Store
+from tests.command_line import as_process, in_process
 
 ROOT = Path(__file__).resolve().parents[2]
 MINI_COURSE = ROOT / "tests" / "fixtures" / "mini_course"
@@ -36,7 +42,7 @@ def content(tmp_path):
 
 @pytest.fixture
 def course(content, tmp_path):
-    """Run a command line as a process; whatever it is, no traceback reaches the screen."""
+    """Run a command line in ``tmp_path``; whatever it is, no traceback reaches the screen."""
     environ = {
         key: value
         for key, value in os.environ.items()
@@ -44,23 +50,19 @@ def course(content, tmp_path):
     }
     environ |= {"PYTHONPATH": str(ROOT), "COURSE_CONTENT": str(content), "PYTHONUTF8": "1"}
 
-    def run(*words, cwd=None, **extra):
-        ran = subprocess.run(
-            [sys.executable, "-m", "course", *words],
-            cwd=cwd or tmp_path,
-            env={**environ, **extra},
-            capture_output=True,
-            text=True,
-            encoding="utf-8",
-            timeout=120,
-            check=False,
-            stdin=subprocess.DEVNULL,
-        )
+    def run(*words, cwd=None, way=in_process, **extra):
+        ran = way(*words, cwd=cwd or tmp_path, env={**environ, **extra})
         assert "Traceback (most recent call last)" not in ran.stdout + ran.stderr
         return ran
 
     run.environ = environ
     return run
+
+
+@pytest.fixture
+def process(course):
+    """Run a command line as a process."""
+    return partial(course, way=as_process)
 
 
 @pytest.fixture
@@ -87,40 +89,40 @@ def worked():
         )
 
 
-def test_the_whole_way_from_init_to_submit(course, tmp_path):
+def test_the_whole_way_from_init_to_submit(process, tmp_path):
     root = tmp_path / "work"
-    assert _next(course("init", "work"), "Then: ") == ["go"]
-    step = _next(course(cwd=root))
-    assert course("go", cwd=root).returncode == 0
-    assert _next(course(cwd=root)) == step, "a print is no reading"
+    assert _next(process("init", "work"), "Then: ") == ["go"]
+    step = _next(process(cwd=root))
+    assert process("go", cwd=root).returncode == 0
+    assert _next(process(cwd=root)) == step, "a print is no reading"
     Store(root / ".course" / "progress.sqlite").append("lesson", "twice-as-much")  # as the reader notes it
-    step = _next(course(cwd=root))
+    step = _next(process(cwd=root))
     assert step == ["start", "doubling"]
-    step = _next(course(*step, cwd=root), "Then check it on every save: ")
+    step = _next(process(*step, cwd=root), "Then check it on every save: ")
     assert step[:2] == ["watch", "doubling"]
-    assert course("check", cwd=root).returncode == 1
+    assert process("check", cwd=root).returncode == 1
 
     module = root / "doubling" / "doubling.py"
     module.write_text(WRONG)
-    failed = course("check", cwd=root)
+    failed = process("check", cwd=root)
     assert failed.returncode == 1
     step = _next(failed)
     assert step == ["hint", "doubling"]
-    first = course(*step, cwd=root)
-    assert course(*step, cwd=root).stdout.splitlines()[1] == first.stdout.splitlines()[1]
+    first = process(*step, cwd=root)
+    assert process(*step, cwd=root).stdout.splitlines()[1] == first.stdout.splitlines()[1]
 
     module.write_text(RIGHT)
-    passed = course("check", cwd=root)
+    passed = process("check", cwd=root)
     assert passed.returncode == 0
     assert "All 2 public checks pass; 2 hidden checks run when it is graded." in passed.stdout
-    assert course("solution", cwd=root).returncode == 5
+    assert process("solution", cwd=root).returncode == 5
     step = _next(passed)
     assert step == ["submit"]
-    assert course(*step, cwd=root).returncode == 0
+    assert process(*step, cwd=root).returncode == 0
     with zipfile.ZipFile(root / "mini-submission.zip") as archive:
         assert archive.read("doubling/doubling.py").decode() == RIGHT
     assert module.read_text() == RIGHT
-    assert "every public check passes" in course("progress", cwd=root).stdout
+    assert "every public check passes" in process("progress", cwd=root).stdout
 
 
 @pytest.mark.parametrize(
@@ -160,16 +162,16 @@ def test_a_workspace_behind_a_link_works(course, workspace, tmp_path):
 @pytest.mark.parametrize(
     "extra", [{"NO_COLOR": "1", "FORCE_COLOR": "1"}, {"TERM": "dumb"}, {"FORCE_COLOR": "1"}, {}]
 )
-def test_colour_is_where_it_was_asked_for(course, workspace, extra):
-    words = course("check", cwd=workspace, COLUMNS="60", **extra).stdout
+def test_colour_is_where_it_was_asked_for(process, workspace, extra):
+    words = process("check", cwd=workspace, COLUMNS="60", **extra).stdout
     coloured = re.search(r"\x1b\[[0-9;]*3[1-7]", words) is not None
     assert coloured is (extra == {"FORCE_COLOR": "1"})
     if "FORCE_COLOR" in extra:
         assert max(len(re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", row)) for row in words.splitlines()) <= 60
 
 
-def test_a_console_of_an_old_code_page_is_no_obstacle(course, workspace):
-    ran = course(
+def test_a_console_of_an_old_code_page_is_no_obstacle(process, workspace):
+    ran = process(
         "-C", str(workspace), "check", PYTHONUTF8="0", PYTHONIOENCODING="cp437", PYTHONLEGACYWINDOWSSTDIO="1"
     )
     assert ran.returncode == 1
@@ -205,10 +207,10 @@ def test_a_save_is_answered_within_a_quarter_second_of_the_checks_own_time(cours
     assert sorted(took)[2] - checks < 0.25
 
 
-def test_the_demonstration_names_a_mistake_mends_it_and_leaves_nothing(course, tmp_path):
+def test_the_demonstration_names_a_mistake_mends_it_and_leaves_nothing(process, tmp_path):
     empty = tmp_path / "empty"
     empty.mkdir()
-    ran = course("demo", cwd=empty)
+    ran = process("demo", cwd=empty)
     assert ran.returncode == 0
     said = [
         "v_next = v - h * rate**2 * x",

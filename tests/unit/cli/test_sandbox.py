@@ -5,35 +5,31 @@ from __future__ import annotations
 import csv
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import course
+from tests.command_line import as_process, in_process
+
+if TYPE_CHECKING:
+    import subprocess
 
 ROOT = Path(course.__file__).parents[1]
 
 
-def sandbox(*arguments: str, cwd: Path, code: int = 0) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
-    done = subprocess.run(
-        [sys.executable, "-m", "course", "sandbox", *arguments],
-        cwd=cwd,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+def sandbox(*arguments: str, cwd: Path, code: int = 0, way=in_process) -> subprocess.CompletedProcess[str]:
+    done = way("sandbox", *arguments, cwd=cwd, env={**os.environ, "COLUMNS": "80"})
     assert done.returncode == code, done.stderr + done.stdout
     return done
 
 
-@pytest.mark.parametrize("arguments", [[], ["--list"], ["list"]])
-def test_the_list_comes_out_of_a_pipe(tmp_path: Path, arguments: list[str]) -> None:
-    out = sandbox(*arguments, cwd=tmp_path).stdout
+@pytest.mark.parametrize(
+    ("arguments", "way"), [([], in_process), (["--list"], in_process), (["list"], as_process)]
+)
+def test_the_list_comes_out_of_a_pipe(tmp_path: Path, arguments: list[str], way) -> None:
+    out = sandbox(*arguments, cwd=tmp_path, way=way).stdout
     assert "newtons-cradle" in out
     assert len(out.splitlines()) >= 13
 
@@ -47,7 +43,7 @@ def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) ->
 
 
 def test_a_piped_play_runs_unseen_and_compares(tmp_path: Path) -> None:
-    out = sandbox("play", "head-on", "--guess", "1.5", cwd=tmp_path).stdout
+    out = sandbox("play", "head-on", "--guess", "1.5", cwd=tmp_path, way=as_process).stdout
     assert "your guess: 1.5 m/s" in out
     assert "simulation: 2 m/s" in out
     assert "25 % too low" in out
@@ -109,13 +105,13 @@ def test_a_replay_that_differs_says_where_and_exits_with_one(tmp_path: Path) -> 
     sandbox("play", "billiards-break", "--duration", "0.5", "--record", "a.jsonl", cwd=tmp_path)
     path = tmp_path / "a.jsonl"
     path.write_text(path.read_text().replace('"velocity":[6.0,', '"velocity":[6.1,'))
-    out = sandbox("replay", "a.jsonl", cwd=tmp_path, code=1).stdout
+    out = sandbox("replay", "a.jsonl", cwd=tmp_path, code=1, way=as_process).stdout
     assert "differs at step 240" in out
 
 
 @pytest.mark.parametrize("kind", ["sdf", "mjcf"])
 def test_an_export_goes_to_the_screen_or_a_file(tmp_path: Path, kind: str) -> None:
-    out = sandbox("export", "head-on", "--format", kind, cwd=tmp_path).stdout
+    out = sandbox("export", "head-on", "--format", kind, cwd=tmp_path, way=as_process).stdout
     assert out.startswith("<?xml")
     written = sandbox("export", "head-on", "--format", kind, "-o", "world.xml", "--json", cwd=tmp_path).stdout
     assert (tmp_path / "world.xml").read_text() == out
@@ -160,14 +156,7 @@ def test_each_mistake_has_its_exit_code_and_a_help(tmp_path: Path, arguments: li
 
 
 def test_a_guess_made_in_a_workspace_is_kept(tmp_path: Path) -> None:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    subprocess.run(
-        [sys.executable, "-m", "course", "init", "."],
-        cwd=tmp_path,
-        env=environment,
-        check=True,
-        capture_output=True,
-    )
+    assert in_process("init", ".", cwd=tmp_path).returncode == 0
     sandbox("play", "head-on", "--guess", "2", cwd=tmp_path)
     from course.progress.workspace import Workspace
 

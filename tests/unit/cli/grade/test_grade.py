@@ -6,24 +6,27 @@ import csv
 import io
 import json
 import os
-import subprocess
-import sys
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+
+from tests.command_line import as_process, in_process
+
+if TYPE_CHECKING:
+    import subprocess
 
 ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 
 
-def course(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    return subprocess.run(
-        [sys.executable, "-m", "course", *map(str, arguments)],
-        env={**os.environ, "COURSE_CONTENT": str(MINI), "PYTHONPATH": path, **environment},
-        capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
-    )  # fmt: skip
+def course(*arguments: object, way=in_process, **environment: str) -> subprocess.CompletedProcess[str]:
+    return way(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI), **environment})
+
+
+process = partial(course, way=as_process)
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +38,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
         place = folder / "class" / student
         place.mkdir(parents=True)
         (place / "doubling.py").write_bytes(source)
-    done = course(
+    done = process(
         "grade", "run", folder / "class", "--exercise", "doubling", "--out", folder / "out",
         "--isolation", "process", "--seed", "4",
     )  # fmt: skip
@@ -57,7 +60,7 @@ def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None
 
 
 def test_explain_shows_hidden_values_to_the_instructor(graded: Path) -> None:
-    done = course("grade", "explain", graded, "=bob", "doubling")
+    done = process("grade", "explain", graded, "=bob", "doubling")
     assert done.returncode == 0, done.stderr
     assert "6 of 10" in done.stdout
     assert "double_of_negative, hidden" in done.stdout

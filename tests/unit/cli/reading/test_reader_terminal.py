@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.progress.store import Store
+from tests.command_line import in_process
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -95,12 +96,7 @@ class Terminal:
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    subprocess.run(
-        [sys.executable, "-m", "course", "init", str(tmp_path / "mine")],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        check=True,
-        capture_output=True,
-    )
+    assert in_process("init", tmp_path / "mine").returncode == 0
     return tmp_path / "mine"
 
 

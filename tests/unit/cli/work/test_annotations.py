@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import subprocess
-import sys
 
 import pytest
 import yaml
@@ -14,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course.cli.work.verdict.annotations import github
+from tests.command_line import in_process
 
 #: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
 DATA = (("%0D", "\r"), ("%0A", "\n"), ("%25", "%"))
@@ -83,16 +82,12 @@ def test_whatever_is_said_comes_back(folder, title, message):
 def test_what_a_file_says_when_it_fails_is_no_command(where, tmp_path):
     """Run for real: the words of an exception are the student's."""
     said = 'raise ValueError("a\\n::stop-commands::x\\r\\n::error::y")'
-    course = [sys.executable, "-m", "course", "-C", str(tmp_path)]
     for words in (["init"], ["start", "integrators"]):
-        subprocess.run([*course, *words], check=True, capture_output=True)
+        assert in_process(*words, cwd=tmp_path).returncode == 0
     text = said if where == "loading" else f"def explicit_euler_step(accel, t, q, v, h):\n    {said}\n"
     (tmp_path / "integrators" / "integrators.py").write_text(text, "utf-8")
     environment = {name: value for name, value in os.environ.items() if name != "GITHUB_WORKSPACE"}
-    ran = subprocess.run(
-        [*course, "check", "integrators", "--format", "github"],
-        capture_output=True, text=True, encoding="utf-8", env=environment, check=False,
-    )  # fmt: skip
+    ran = in_process("-C", tmp_path, "check", "integrators", "--format", "github", env=environment)
     lines = [line for line in (ran.stdout + ran.stderr).splitlines() if line.lstrip().startswith("::")]
     found = [parse(line) for line in lines]
     assert [(name, at["file"]) for name, at, _ in found] == [("error", "integrators/integrators.py")] * len(

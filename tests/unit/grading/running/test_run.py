@@ -7,7 +7,6 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import zipfile
 from functools import partial
 from pathlib import Path
@@ -28,6 +27,7 @@ from course.grading.running.grader import Answer
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Verdict
+from tests.command_line import as_process, in_process
 from tests.unit.grading.made import read_class, stillborn
 
 if TYPE_CHECKING:
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from course.grading.running.summary import Summary
 
 MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
-ROOT = Path(__file__).resolve().parents[4]
 
 WRONG = b"\ndef double(x):\n    return x\n"
 
@@ -56,15 +55,6 @@ def make_class(folder: Path, solution: bytes, students: int) -> None:
 def scores(out: Path) -> dict[str, float]:
     with Gradebook(out / "gradebook.sqlite") as book:
         return {result.key.student: result.verdict.score for result in book.results()}
-
-
-def command(*arguments: object) -> list[str]:
-    return [sys.executable, "-m", "course", "grade", "run", *map(str, arguments), "--exercise", "doubling"]
-
-
-def environment() -> dict[str, str]:
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    return {**os.environ, "COURSE_CONTENT": str(MINI), "PYTHONPATH": path}
 
 
 def test_two_graders_give_what_one_gives(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
@@ -262,10 +252,9 @@ def _children(parent: int) -> list[int]:
 def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution: bytes) -> None:
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "nobody").mkdir()
-    done = subprocess.run(
-        command(tmp_path / "class", "--out", tmp_path / "out", "--json", "--isolation", "process"),
-        env=environment(), capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    line = ("grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--exercise", "doubling", "--json")
+    environment = {**os.environ, "COURSE_CONTENT": str(MINI)}
+    done = as_process(*line, "--isolation", "process", env=environment)
     assert done.returncode == 6, done.stderr
     lines = [json.loads(line) for line in done.stdout.splitlines()]
     assert [line["schema"] for line in lines] == ["course.grade/1"] * 3 + ["course.grade-summary/1"]
@@ -273,10 +262,7 @@ def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution:
     assert (summary["graded"], summary["ungradable"], summary["exit_code"]) == (2, 1, 6)
     assert summary["troubled"][0]["code"] == "no_file"
     assert summary["isolation"] == {"L1": 2}
-    again = subprocess.run(
-        command(tmp_path / "class", "--out", tmp_path / "out", "--json"),
-        env=environment(), capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    again = in_process(*line, env=environment)
     assert again.returncode == 2
     assert json.loads(again.stdout)["error"]["code"] == "out_exists"
 

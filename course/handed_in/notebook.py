@@ -20,7 +20,7 @@ import msgspec
 from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
 from course.printable import one_line
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.places import Places
 
 if TYPE_CHECKING:

@@ -143,7 +143,7 @@ def _motion(console: Console, session: GradingSession, source: str) -> _Motion:
     import numpy as np
 
     from course.cli.work.checking import error_without_checks, grade_once
-    from course.scoring.judging.session import Submission
+    from course.scoring.judging.submission import Submission
 
     submission = Submission({session.exercise.module: source.encode()})
     with console.working("Checking"):

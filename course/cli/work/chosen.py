@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.cli.frame.here import Here
     from course.handed_in.notebook import NotebookSource
-    from course.scoring.judging.session import Submission
+    from course.scoring.judging.submission import Submission
 
 __all__ = ["StudentWork", "asked_for", "chosen_work", "work_of", "worked_on"]
 
@@ -64,7 +64,7 @@ class StudentWork:
         """The part that is graded."""
         if self.notebook is not None:
             return self.notebook.submission(self.exercise)
-        from course.scoring.judging.session import Submission
+        from course.scoring.judging.submission import Submission
 
         return Submission({self.exercise.module: self.source})
 

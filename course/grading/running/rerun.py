@@ -22,7 +22,7 @@ from course.grading.running.batch import grade_all
 from course.grading.running.run import QUIZ_RECORD, graded_exercises
 from course.grading.running.snapshot import Snapshot, frozen, kept
 from course.quizzing.bank import Bank
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:

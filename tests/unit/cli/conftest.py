@@ -11,9 +11,11 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from course.cli.frame import registry
 from course.cli.frame.schemas import schema_of
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
+make_command = registry._load
 
 
 @dataclass
@@ -120,6 +122,16 @@ def keeps_its_schema(out):
         assert not problems, problems[0][:1000]
 
 
+@functools.cache
+def as_click_knows_it(target, name, entry, mode):
+    """A command does not change as it is run; those of ``grade`` take 10 ms to make."""
+    return make_command(name, entry, mode)
+
+
+def loaded(name, entry, mode):
+    return as_click_knows_it(registry.find(entry.module, entry.name), name, entry, mode)
+
+
 @pytest.fixture
 def course(monkeypatch, tmp_path, capsys):
     """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err."""
@@ -132,6 +144,7 @@ def course(monkeypatch, tmp_path, capsys):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(checking, "open_session", lambda exercise, catalog: FakeSession(exercise))
+    monkeypatch.setattr(registry, "_load", loaded)
 
     def run(*words):
         capsys.readouterr()
@@ -142,6 +155,17 @@ def course(monkeypatch, tmp_path, capsys):
         return Ran(code, captured.out, captured.err)
 
     return run
+
+
+@pytest.fixture(scope="module")
+def unpacked():
+    """The graders of the miniature course as a run unpacks them, once for all runs of a file."""
+    from course.catalog.load import Catalog
+    from course.catalog.locate import chosen
+    from course.grading.running.snapshot import Snapshot, frozen
+
+    with frozen(Snapshot.take(Catalog(chosen(MINI_COURSE)).content)):
+        yield
 
 
 @pytest.fixture

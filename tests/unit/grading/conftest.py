@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.catalog.load import Catalog
+from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.terms import Terms
 
@@ -24,6 +25,13 @@ def catalog() -> Iterator[Catalog]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("COURSE_CONTENT", str(MINI))
         yield Catalog()
+
+
+@pytest.fixture(scope="module")
+def unpacked(catalog: Catalog) -> Iterator[None]:
+    """The graders as a run unpacks them, once for all runs of a file; edited ones are others."""
+    with frozen(Snapshot.take(catalog.content)):
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from course.catalog.load import Catalog
 
+pytestmark = pytest.mark.usefixtures("unpacked")
+
 CANVAS = """\
 Student,ID,SIS User ID,SIS Login ID,Section,Doubling (4711),Current Score
 ,,,,,Manual Posting,

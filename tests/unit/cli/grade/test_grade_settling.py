@@ -15,6 +15,8 @@ from tests.unit.grading.running.test_run import right
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.usefixtures("unpacked")
+
 SOURCE = "def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 
 

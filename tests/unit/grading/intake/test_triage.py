@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.grading.intake.students import Entry
 
+pytestmark = pytest.mark.usefixtures("unpacked")
+
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 OTHER = SOURCE + b"# the second try\n"
 NOTEBOOK = json.dumps(

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from course.grading.running.run import GradeAll
 
 #: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has both wrong.
+pytestmark = pytest.mark.usefixtures("unpacked")
+
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 WRONG = b"\ndef double(x):\n    return x\n"
 EVERYBODY = range(1, 151)

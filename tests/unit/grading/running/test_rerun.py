@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from course.grading.intake.students import Entry
     from course.scoring.judging.terms import Terms
 
+pytestmark = pytest.mark.usefixtures("unpacked")
+
 NOW = {"ada": RIGHT, "bob": HALF, "cy": RIGHT, "dan": RIGHT}
 
 

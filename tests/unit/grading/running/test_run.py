@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from course.grading.intake.students import Entry
     from course.grading.running.summary import Summary
 
+pytestmark = pytest.mark.usefixtures("unpacked")
+
 MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
 WRONG = b"\ndef double(x):\n    return x\n"

@@ -8,7 +8,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pytest
@@ -21,6 +21,7 @@ from course.figures.drawing.style import METHODS, WIDTH_IN, house_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
 
 GOLDEN = Path(__file__).parents[2] / "fixtures" / "golden"
 GOLDEN_DPI = 50
@@ -30,15 +31,38 @@ GOLDEN_DPI = 50
 TOLERANCE = 8.0
 
 
+class Drawn(NamedTuple):
+    """A figure that was drawn once, and where its words lie on its page."""
+
+    figure: Figure
+    words: list[Bbox]
+
+
+def drawn(figure_id: str) -> Drawn:
+    figure = registry.build(figure_id)
+    with house_style():
+        figure.canvas.draw()
+    words = [
+        Text.get_window_extent(text)  # of the words alone: an annotation's own extent includes its line
+        for axes in figure.axes
+        for text in [*axes.texts, axes.title]
+        if text.get_text()
+    ]
+    return Drawn(figure, words)
+
+
 #: Each drawn once for all tests that look at it.
-built = functools.cache(registry.build)
+once = functools.cache(drawn)
+
+
+def built(figure_id: str) -> Figure:
+    return once(figure_id).figure
 
 
 def without_letters(figure: Figure, figure_id: str) -> np.ndarray:
-    """A figure in grey, blurred a little, its letters left out."""
+    """A figure that was drawn, in grey, blurred a little, its letters left out."""
     out = io.BytesIO()
     with house_style():
-        figure.canvas.draw()
         letters = [text for text in figure.findobj(Text) if text.get_visible()]
         for text in letters:
             text.set_visible(False)
@@ -67,10 +91,10 @@ def letters_of(figure: Figure) -> str:
 
 @pytest.mark.parametrize("figure_id", registry.figure_ids())
 def test_a_figure_looks_as_it_did_when_somebody_last_looked_at_it(figure_id: str) -> None:
-    drawn = without_letters(built(figure_id), figure_id)
+    looks = without_letters(built(figure_id), figure_id)
     golden = grey(GOLDEN / f"{figure_id}.png")
-    assert drawn.shape == golden.shape
-    assert np.max(np.abs(drawn - golden)) < TOLERANCE
+    assert looks.shape == golden.shape
+    assert np.max(np.abs(looks - golden)) < TOLERANCE
 
 
 @pytest.mark.parametrize("figure_id", registry.figure_ids())
@@ -88,8 +112,8 @@ def test_the_tolerance_sees_one_method_drawn_as_another(
     monkeypatch.setattr(integrators, "STEPPERS", swapped)
     monkeypatch.delenv("COURSE_UPDATE_GOLDEN", raising=False)
     golden = grey(GOLDEN / f"{figure_id}.png")
-    drawn = without_letters(registry.build(figure_id), figure_id)
-    assert np.max(np.abs(drawn - golden)) > TOLERANCE
+    looks = without_letters(drawn(figure_id).figure, figure_id)
+    assert np.max(np.abs(looks - golden)) > TOLERANCE
 
 
 @pytest.mark.parametrize("figure_id", registry.figure_ids())
@@ -104,15 +128,7 @@ def test_a_figure_has_a_finding_for_a_title_and_axes_with_units(figure_id: str) 
 
 @pytest.mark.parametrize("figure_id", registry.figure_ids())
 def test_no_text_of_a_figure_leaves_it_or_lies_on_other_text(figure_id: str) -> None:
-    figure = built(figure_id)
-    figure.canvas.draw()
-    boxes = [
-        Text.get_window_extent(text)  # of the words alone: an annotation's own extent includes its line
-        for axes in figure.axes
-        for text in [*axes.texts, axes.title]
-        if text.get_text()
-    ]
-    page = figure.bbox
+    boxes, page = once(figure_id).words, built(figure_id).bbox
     assert all(page.x0 <= box.x0 and box.x1 <= page.x1 and box.y1 <= page.y1 for box in boxes)
     assert not [(a, b) for i, a in enumerate(boxes) for b in boxes[i + 1 :] if a.overlaps(b)]
 

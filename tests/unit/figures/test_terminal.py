@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from course.figures.registry import build
-from course.figures.terminal import terminal_figure
+from course.figures.terminal import in_cells, terminal_figure
 
 #: Quick to draw, and of every kind: several panels, logarithmic axes, maps, bars.
 FIGURES = ["integrators-energy", "integrators-phase", "contact-stacks", "sim-free-fall", "engines-settings"]
@@ -35,8 +35,9 @@ def test_words_lie_inside_and_never_on_each_other(name, columns):
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_the_finding_heads_it_and_both_axes_have_numbers(name):
-    figure = terminal_figure(name, 78, 20)
-    finding = build(name).get_suptitle()
+    page = build(name)
+    figure = in_cells(lambda: page, 78, 20)
+    finding = page.get_suptitle()
     assert figure.labels[0].text[:20] == finding.splitlines()[0][:20]
     numbers = [label for label in figure.labels if any(char.isdigit() for char in label.text)]
     assert len(numbers) >= 4
@@ -61,9 +62,10 @@ def test_every_word_can_be_read_on_what_is_drawn_under_it(name):
 
 @pytest.mark.parametrize("name", ["engines-speed", "integrators-order", "twins-following"])
 def test_no_axis_loses_its_name_on_a_small_screen(name):
-    shown = {label.text for label in terminal_figure(name, 76, 17).labels}
-    names = [label for axes in build(name).axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
+    page = build(name)
+    names = [label for axes in page.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
     assert names
+    shown = {label.text for label in in_cells(lambda: page, 76, 17).labels}
     for words in names:
         assert words.split(" (")[0].split("$")[0] in " ".join(shown), words
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 import zipfile
 from typing import TYPE_CHECKING, Any
 
@@ -92,17 +94,19 @@ def impatient() -> Iterator[Reader]:
 
 
 _BOMBS = {
-    "time": _notebook(_DOUBLE, "y = 1\n" * 150_000).replace(b"2 * x", b"y"),
-    "memory": b'{"nbformat": 4, "cells": [{"cell_type": "code", "metadata": {"k": ['
-    + b"{}," * 8_000_000
-    + b"{}]}}]}",
+    "time": lambda: _notebook(_DOUBLE, "y = 1\n" * 150_000).replace(b"2 * x", b"y"),
+    "memory": lambda: (
+        b'{"nbformat": 4, "cells": [{"cell_type": "code", "metadata": {"k": ['
+        + b"{}," * 8_000_000
+        + b"{}]}}]}"
+    ),
 }
 
 
 @pytest.mark.parametrize("bomb", _BOMBS)
 def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: Exercise) -> None:
     with pytest.raises(RefusedError) as caught:
-        strict.notebook(_BOMBS[bomb], doubling, "bomb.ipynb")
+        strict.notebook(_BOMBS[bomb](), doubling, "bomb.ipynb")
     assert caught.value.problem.code == "unreadable"
     assert "bomb.ipynb" in caught.value.problem.message
     assert strict.notebook(_notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
@@ -119,6 +123,13 @@ def test_the_wall_clock_ends_a_reader_that_uses_no_time(impatient: Reader, doubl
     assert process.poll() is not None
 
 
+def test_the_process_that_reads_loads_nothing_that_grades() -> None:
+    """Each bomb ends one, and the next took three times as long to start."""
+    code = "import course.grading.intake.reading, sys; print({'numpy', 'pytest'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
 def test_more_than_an_answer_may_be_is_not_taken(
     strict: Reader, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -133,7 +144,8 @@ def test_a_class_with_a_bomb_in_it_is_read_to_the_end(
 ) -> None:
     monkeypatch.setattr(students, "reader", strict)
     found = {}
-    for name, data in {"ada": _notebook(_DOUBLE), "bob": _BOMBS["memory"], "eve": _notebook(_DOUBLE)}.items():
+    files = {"ada": _notebook(_DOUBLE), "bob": _BOMBS["memory"](), "eve": _notebook(_DOUBLE)}
+    for name, data in files.items():
         (tmp_path / name).mkdir()
         (tmp_path / name / "doubling.ipynb").write_bytes(data)
         (entry,) = students.read_student(Student(name, Place(tmp_path / name)), [doubling], required=True)

@@ -1,14 +1,16 @@
 """On which line of a TOML text a value stands.
 
 ``tomllib`` throws positions away and msgspec names a value by its path (``$.task[2].points``). ``LineMap``
-joins the two: it walks the text once and remembers where each table, key and array item begins. It expects
-a text that ``tomllib`` accepted, so it needs to tell tokens apart and nothing more.
+joins the two: asked for the first time, it walks the text and remembers where each table, key and array item
+begins. A text without faults is not asked about. It expects one that ``tomllib`` accepted, so it needs to
+tell tokens apart and nothing more.
 """
 
 from __future__ import annotations
 
 import re
 import tomllib
+from functools import cached_property
 from typing import TypeAlias
 
 __all__ = ["LineMap", "parse_path", "syntax_error_line"]
@@ -59,9 +61,13 @@ class LineMap:
     def __init__(self, text: str, first_line: int = 1) -> None:
         self._text = text.replace("\r\n", "\n")
         self._first = first_line
-        self._lines: dict[Path, int] = {}
+        self._found: dict[Path, int] = {}
         self._arrays: dict[Path, int] = {}
+
+    @cached_property
+    def _lines(self) -> dict[Path, int]:
         self._read_document()
+        return self._found
 
     def line(self, path: Path | str) -> int:
         """The line on which the value at ``path`` begins, else that of the nearest thing around it."""
@@ -78,7 +84,7 @@ class LineMap:
         return self.line((*steps, key))
 
     def _note(self, path: Path, position: int) -> None:
-        self._lines.setdefault(path, self._first + self._text.count("\n", 0, position))
+        self._found.setdefault(path, self._first + self._text.count("\n", 0, position))
 
     def _read_document(self) -> None:
         table: Path = ()

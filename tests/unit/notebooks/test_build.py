@@ -122,8 +122,9 @@ def test_a_link_in_a_readme_becomes_the_command_that_opens_it(tmp_path: Path, ca
 
 def test_links_between_notebooks_lead_to_notebooks(catalog: Catalog) -> None:
     for layout in (FOLDERS, WORKSPACE):
-        lessons = [one for one in generate(catalog, layout=layout) if one.kind == "lesson"]
-        there = {str(one.path) for one in generate(catalog, layout=layout)}
+        made = list(generate(catalog, layout=layout))
+        lessons = [one for one in made if one.kind == "lesson"]
+        there = {str(one.path) for one in made}
         links = 0
         for one in lessons:
             for cell in cells(one.data, "markdown"):

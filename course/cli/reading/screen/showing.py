@@ -241,7 +241,7 @@ class LessonApp(FullScreenApp):
         if not self._opened:
             return
         place, book = self.page.place(), self.page.book
-        if place is None or book is None or not book.whole:
+        if place is None or book is None:
             return
         count = len(self.progress.script.blocks)
         last = book.layout.rows[self.page.end() - 1].block if self.page.end() else -1

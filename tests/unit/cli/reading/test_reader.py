@@ -12,6 +12,7 @@ from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.cli.frame.terminal.half_blocks import half_blocks
+from course.cli.reading.screen import showing
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.telling import fitting
 from course.progress.store import Store
@@ -253,6 +254,19 @@ def test_the_place_is_kept_to_the_line_at_another_width(catalog, tmp_path):
     assert seen["again"] == seen["place"]
     reading(catalog, back, store=store, size=(40, 20))
     assert seen["again"].block == seen["place"].block
+
+
+def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(catalog, tmp_path, monkeypatch):
+    monkeypatch.setattr(showing, "_SETTLED", 1e6)  # nothing is kept but by leaving
+    store = Store(tmp_path / "progress.sqlite")
+
+    async def journey(app, pilot):
+        await pilot.press("space", "space", "space")
+        app._lay_out(app.page.place())  # the rest of the lesson follows a moment later
+        assert not app.page.book.whole
+
+    app = reading(catalog, journey, store=store)
+    assert store.last("bookmark", LESSON).data["block"] == app.page.place().block > 0
 
 
 def test_links_search_contents_and_the_way_back(catalog):

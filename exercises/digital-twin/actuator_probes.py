@@ -60,9 +60,20 @@ def of_backlash(submission):
     if np.allclose(outputs, right, rtol=0, atol=1e-12):
         states = [kit.as_number(state, "state_next") for _, state in pairs]
         return None if np.allclose(states, outputs, rtol=0, atol=1e-12) else named("STATE_IS_NOT_OUTPUT")
+    if _off_centre(submission):
+        return named("SLOT_OFF_CENTRE")
     # What it covers of the way to the edge of the gap is neither none nor all: it is a lag.
     shares = [(y - s) / (r - s) for y, (_, s, r) in zip(outputs, _PLAY, strict=True) if abs(r - s) > 1e-9]
     return named("BACKLASH_RATE_DEPENDENT") if all(0 < share < 1 for share in shares) else None
+
+
+def _off_centre(submission):
+    """Whether a pin that is pushed far up stays as far behind each time, and pushed far down otherwise."""
+    ways = ((5.0, 1.0), (7.0, -3.0), (-5.0, -1.0), (-6.0, 2.0))
+    values = submission.call_each("backlash", [(x, 1.0, state) for x, state in ways])
+    ends = [kit.as_number(kit.as_tuple(value, ("y", "state_next"))[0], "y") for value in values]
+    up, far_up, down, far_down = (y - x for y, (x, _) in zip(ends, ways, strict=True))
+    return max(abs(up - far_up), abs(down - far_down)) < 1e-9 < abs(up + down)
 
 
 def _remembers(submission):
@@ -117,6 +128,15 @@ def of_drive(submission):
         and abs(end[1] - _TURN_ENDS[1]) > 1e-6
     ):
         return named("CHORD_WRONG_WAY")
+    way, right = np.subtract(end[:2], _TURN[0][:2]), np.subtract(_TURN_ENDS[:2], _TURN[0][:2])
+    parts = way / right
+    if (
+        abs(end[2] - _TURN_ENDS[2]) < 1e-9
+        and np.ptp(parts) < 1e-9
+        and parts[0] > 0
+        and abs(parts[0] - 1) > 1e-6
+    ):
+        return named("CHORD_WRONG_LENGTH")
     if not np.allclose(end, _TURN_ENDS, rtol=1e-9, atol=1e-12):
         return None
     return kit.attempt(lambda: _of_slow_turns(submission))

@@ -29,7 +29,7 @@ def test_encoder_counts(submission):
     """An encoder counts whole steps, over several turns and on both sides of zero"""
     far = np.linspace(-5000.0, 5000.0, 20) + 0.001  # 51,000 counts either way
     theta = np.concatenate([np.linspace(-9.0, 9.0, 401) + 0.001, far])
-    sensors.expect_counts(submission.call("encoder", theta, 64), theta, 64)
+    sensors.expect_counts(submission, submission.call("encoder", theta, 64), theta, 64)
 
 
 @pytest.mark.task("encoder")

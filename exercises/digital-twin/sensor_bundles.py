@@ -24,7 +24,7 @@ def angles_between_counts(rng, n, most, per_turn):
     return counts * 2 * math.pi / per_turn
 
 
-def expect_counts(counts, theta, counts_per_rev):
+def expect_counts(submission, counts, theta, counts_per_rev):
     """Counts are whole numbers, and those of floor throughout or of round throughout."""
     given = {"theta": theta, "counts_per_rev": counts_per_rev}
     if isinstance(counts, list):
@@ -45,7 +45,7 @@ def expect_counts(counts, theta, counts_per_rev):
         input=given,
         message="The counts are neither the angles rounded down to whole counts nor rounded to nearest.",
         help="counts = theta * counts_per_rev / (2 pi), rounded the same way on both sides of zero.",
-        diagnose=lambda: sensors.of_encoder(values, wanted),
+        diagnose=lambda: sensors.of_encoder(submission, values, theta, counts_per_rev),
     )
     kit.expect_true(
         whole,
@@ -118,7 +118,7 @@ def expect_white(submission, calls, rel, source):
             density / math.sqrt(dt),
             rel,
             source,
-            "Without a walk, the spread of the measured rate is not noise_density / sqrt(dt).",
+            "Without a walk, the std of measured - bias is not noise_density / sqrt(dt).",
             lambda: sensors.of_imu(submission),
             quantity="std of measured - bias",
             help="A noise density is per square root of hertz: how many samples are there in a second?",
@@ -194,7 +194,7 @@ def expect_gyroscope_draws(submission, seed, dt):
     )
     kit.expect_true(
         repeats,
-        "The noise and the bias do not come from the generator that is passed in.",
+        "The noise (measured - bias) or the bias does not depend on the generator, or not on it alone.",
         help="Draw both from rng and from nothing else.",
         diagnose=lambda: sensors.of_randomness(submission),
     )
@@ -314,29 +314,43 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         input=given,
         diagnose=ask,
     )
+    off = (wide - exact)[hits]
+    with np.errstate(all="ignore"):
+        missed = float(np.mean(wide[hits & (exact < r_max - 6 * sigma)] == r_max))
+        middle = float(np.median(off))
+    kit.expect_true(
+        missed == 0.0 and abs(middle) < 0.5 * sigma,
+        "Of one long wall, the readings are not about its distances.",
+        help="Read the same wall with sigma = 0 first, then add the noise, which goes either way.",
+        input=given,
+        diagnose=ask,
+    )
     kit.expect_close(
-        std((wide - exact)[hits]),
+        std(off),
         sigma,
         rel=0.1,
         source="six times the scatter of a std from the hits of one scan, 1800 or more",
         quantity="std of the noise",
         units="m",
         input=given,
-        message="The noise of the hits does not have the std sigma.",
+        message="The readings of hits do not scatter about the distances with the std sigma.",
         help="Add sigma times a standard normal number of its own to each hit.",
         diagnose=ask,
     )
     # Half a std from zero or from r_max, three in ten readings go beyond: 0.2 is sixteen stds away.
+    negative = bool(np.any(near < 0.0))
     kit.expect_true(
-        bool(np.all(near >= 0.0) and np.mean(near == 0.0) > 0.2),
-        "Very close to a wall, the noise makes readings negative.",
+        not negative and bool(np.mean(near == 0.0) > 0.2),
+        "Very close to a wall, the noise makes readings negative."
+        if negative
+        else "Very close to a wall, too few readings are 0.",
         help="A distance cannot be negative: apply np.maximum(..., 0.0) after the noise.",
         input=given,
         diagnose=ask,
     )
     kit.expect_true(
         bool(np.mean(far > r_max) > 0.2),
-        "Close to the maximum range, readings of hits are cut off at r_max.",
+        "Close to the maximum range, too few readings of hits lie beyond r_max.",
         help="Whether a beam hits is decided without noise; what the noise makes of the reading stays.",
         input=given,
         diagnose=ask,
@@ -350,7 +364,7 @@ def expect_scan_draws(submission, seed):
     scans = [kit.as_vector(v, 20, "ranges") for v in submission.call_each("lidar", calls)]
     kit.expect_true(
         np.array_equal(scans[0], scans[1]) and not np.any(scans[0] == scans[2]),
-        "The noise of the hits does not come from the generator that is passed in.",
+        "Some readings do not depend on the generator, or not on it alone.",
         help="Draw from rng and from nothing else.",
         diagnose=lambda: sensors.of_scan_draws(submission),
     )

@@ -16,7 +16,24 @@ _OVERFLOW = 2**16
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_encoder(counts, wanted):
+def of_encoder(submission, counts, theta, per_turn):
+    """The mistake behind counts (N,) of angles theta: in all of them, or in what some do to others."""
+    exact = theta * per_turn / (2 * math.pi)
+    floor, nearest = np.floor(exact), np.rint(exact)
+    wanted = floor if np.sum(counts == floor) >= np.sum(counts == nearest) else nearest
+    if found := of_counts(counts, wanted):
+        return found
+    few = np.flatnonzero(counts != wanted)[:: max(1, np.count_nonzero(counts != wanted) // 8)]
+    alone = [submission.call("encoder", theta[i : i + 1], per_turn) for i in few]
+    if any(kit.as_vector(count, 1, "counts")[0] != counts[i] for count, i in zip(alone, few, strict=True)):
+        return named("COUNTS_DEPEND_ON_OTHERS")
+    if np.all((counts == floor) | (counts == nearest)):
+        return named("ROUNDED_TWO_WAYS")
+    return named("WHOLE_TURNS_ONLY") if np.all(counts % per_turn == 0) and np.any(counts) else None
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_counts(counts, wanted):
     """What counts (N,) have in common with the wanted ones: a factor, if each is off by the same."""
     if not np.all(np.isfinite(counts)):
         return None
@@ -85,8 +102,10 @@ def _of_white(pairs):
     noise = [measured - bias for measured, bias in pairs[:2]]
     if all(np.ptp(part) < 1e-12 < abs(part[0]) for part in noise):
         return "WHITE_NOISE_SHARED"
-    if np.corrcoef(noise[0][1:], noise[0][:-1])[0, 1] > 0.5 if np.std(noise[0]) > 0 else False:
-        return "WHITE_NOISE_ACCUMULATES"
+    if np.std(noise[0]) > 0 and abs(np.corrcoef(noise[0][1:], noise[0][:-1])[0, 1]) > 0.1:
+        # A running sum goes ten times as far in a hundred steps as in one, a mean of neighbours does not.
+        far = np.std(noise[0][100:] - noise[0][:-100]) / np.std(np.diff(noise[0]))
+        return "WHITE_NOISE_ACCUMULATES" if 6.0 < far < 16.0 else "WHITE_NOISE_RELATED"
     powers = {
         0.0: "WHITE_NOISE_NOT_SCALED_BY_SQRT_DT",
         0.5: "WHITE_NOISE_TIMES_SQRT_DT",
@@ -265,6 +284,12 @@ def of_bias0(found, cases):
         ratio = np.median(np.array(lengths) / best)
         if not 1 / 3 < ratio < 3:  # within it a mean is hardly worse than the best one
             return named("BIAS0_TIME_TOO_SHORT" if ratio < 1 else "BIAS0_TIME_TOO_LONG")
+    less = [(case[0] - np.mean(case[0]), *case[1:]) for case in cases]
+    ends = [(case[0][::-1], *case[1:]) for case in cases]
+    for code, others in (("BIAS0_FROM_THE_MEAN", less), ("BIAS0_OF_THE_END", ends)):
+        lengths = [_samples_averaged(mean, case) for mean, case in zip(found, others, strict=True)]
+        if all(n and n < len(case[0]) / 2 for n, case in zip(lengths, others, strict=True)):
+            return named(code)
     signless = np.all(found >= 0) and np.median(np.abs(found / np.abs(right) - 1)) < 0.2
     return named("BIAS0_WITHOUT_SIGN") if signless else None
 

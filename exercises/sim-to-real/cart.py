@@ -114,7 +114,7 @@ def _attainable(command, values):
     variants = [
         {**cart, name: cart[name] * (1 + sign * eps)} for cart in carts for name in NAMES for sign in (1, -1)
     ]
-    v = _speeds(u, variants).reshape(len(u), len(carts), k, 2)
+    v = speeds(u, variants).reshape(len(u), len(carts), k, 2)
     slopes = (v[..., 0] - v[..., 1]) / (2 * eps)
     widths = np.full((len(carts), k + 1), math.inf)
     for i, cart in enumerate(carts):
@@ -129,7 +129,7 @@ def _attainable(command, values):
     return widths
 
 
-def _speeds(u, carts):
+def speeds(u, carts):
     """Speeds without noise of many carts under one command, (N, carts), m/s."""
     h, sub = H / 2, 2
     m, b, Fc, tau, latency = (np.array([cart[name] for cart in carts]) for name in NAMES)
@@ -139,14 +139,14 @@ def _speeds(u, carts):
     heard = np.diff([np.interp(fine - each, t, pushed) for each in latency], axis=1).T / h
     follow, drag, rub = 1 - np.exp(-h / tau), 1 / (1 + h * b / m), h * Fc / m
     v, f = np.zeros(len(m)), np.zeros(len(m))
-    speeds = np.empty((len(u), len(m)))
+    found = np.empty((len(u), len(m)))
     for i, command in enumerate(heard):
         if i % sub == 0:
-            speeds[i // sub] = v
+            found[i // sub] = v
         f = f + follow * (command - f)
         v = (v + h / m * f) * drag
         v = v - np.clip(v, -rub, rub)
-    return speeds
+    return found
 
 
 def stratified(n, rng):

@@ -97,7 +97,7 @@ def test_excitation_shows(submission):
 def test_excitation_shorter_and_weaker(submission):
     """Fifteen seconds at less force could measure every parameter too (no points here, three in the run)"""
     value = submission.call("design_excitation", 15.35, 2.5, np.random.default_rng(9))
-    judge.expect_shows(probes.command_of(value, 15.35, 2.5), [cart.SHEET])
+    judge.expect_shows(probes.command_of(value, 15.35, 2.5), [cart.SHEET], 2.5)
 
 
 @pytest.mark.task("identify")

@@ -6,6 +6,7 @@ several carts, gains by what they do when the estimate or the box is changed.
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -110,22 +111,28 @@ def gains_of(value):
 # -- design_excitation ----------------------------------------------------------------------------------
 
 
-def of_command(u):
-    """Why a command does not show everything. u: shape (N,), N."""
+def of_command(u, carts=(), u_max=cart.U_BENCH, enough=lambda u: False):
+    """Why a command does not show everything. u: shape (N,), N.
+
+    carts: those of which it does not
+    enough: whether another command, (N,), would do
+    """
     u = np.asarray(u, dtype=float)
-    if np.count_nonzero(np.diff(u)) <= 2:
-        return named("EXCITATION_CONSTANT")
-    if np.mean(u == 0.0) > 0.6:
-        return named("EXCITATION_RESTS")
-    if np.abs(u).max() < 2.5 * cart.SHEET["Fc"]:
-        return named("EXCITATION_TOO_WEAK")
+    peak = float(np.abs(u).max())
     power = np.abs(np.fft.rfft(u - u.mean())) ** 2
     frequency = np.fft.rfftfreq(len(u), cart.H)
-    if power[frequency < 0.3].sum() > 0.7 * power.sum():
-        return named("EXCITATION_TOO_SLOW")
-    if power[frequency > 4.0].sum() > 0.7 * power.sum():
-        return named("EXCITATION_TOO_FAST")
-    return named("EXCITATION_BLIND")
+    looks = (
+        ("EXCITATION_ZERO", lambda: peak == 0.0),
+        ("EXCITATION_RESTS", lambda: np.mean(u == 0.0) > 0.6),
+        ("EXCITATION_CONSTANT", lambda: np.count_nonzero(np.diff(u)) <= 2),
+        ("EXCITATION_TOO_WEAK", lambda: peak < 2.5 * cart.SHEET["Fc"]),
+        ("EXCITATION_NOT_FULL", lambda: peak < 0.9 * u_max and enough(u * u_max / peak)),
+        ("EXCITATION_TOO_SLOW", lambda: power[frequency < 0.3].sum() > 0.7 * power.sum()),
+        ("EXCITATION_TOO_FAST", lambda: power[frequency > 4.0].sum() > 0.7 * power.sum()),
+        ("EXCITATION_STANDS", lambda: len(carts) and np.mean(cart.speeds(u, carts) == 0, axis=0).max() > 0.6),
+        ("EXCITATION_BLIND", lambda: True),
+    )
+    return next(named(code) for code, seen in looks if seen())
 
 
 # -- identify -------------------------------------------------------------------------------------------
@@ -265,8 +272,6 @@ def of_gains(submission, estimate, box, gains, success):
         success: function of (kp, kd), on carts of this estimate.
     """
     kp, kd = gains
-    if success(kd, kp) > 1.2 * success(kp, kd):
-        return named("GAINS_SWAPPED")
     heavy, light = (_with(estimate, ("m", "b"), factor) for factor in (2.5, 0.4))
     late = _with(estimate, ("latency", "lag"), 2.2)
     loaded = {k: [_LOAD.get(k, 1.0) * end for end in ends] for k, ends in box.items()}
@@ -275,8 +280,6 @@ def of_gains(submission, estimate, box, gains, success):
     if other is None:
         return None
     same = [math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in other]
-    better = _better(gains, success)
-    ended_early = success(*better) > 1.03 * success(kp, kd)
     # One kp for most questions, with others better: the grid ends there, or the search never leaves it.
     stays = sum(math.isclose(kp, p, rel_tol=1e-6) for p, _ in other) >= 3
     prompt, sooner = {**estimate, "latency": [0.001] * 3}, _with(estimate, ("latency", "lag"), 0.4)
@@ -291,8 +294,23 @@ def of_gains(submission, estimate, box, gains, success):
             math.isclose(kp, p, rel_tol=1e-3) and math.isclose(kd, d, rel_tol=1e-3) for p, d in found
         )
 
-    failing = _of_failing(gains, estimate, box)
+    def swapped():
+        """Whether the right gains come in the other order, for this question and for two others."""
+        does = success(kd, kp) > max(0.9, 1.2 * success(kp, kd))
+        return does and all(
+            _is_best(d, p, *asked) for (p, d), asked in zip(other[:2], questions, strict=False)
+        )
+
+    @functools.cache
+    def failing():
+        return _of_failing(gains, estimate, box)
+
+    @functools.cache
+    def ended_early():
+        return success(*_better(gains, success)) > 1.03 * success(kp, kd)
+
     looks = (
+        ("GAINS_SWAPPED", swapped),
         (
             "KD_IS_RATIO",
             lambda: _are_ratios([gains, *other]) and _would_do(kp, kp * kd, gains, estimate, box, success),
@@ -301,16 +319,16 @@ def of_gains(submission, estimate, box, gains, success):
         (
             "ESTIMATE_IGNORED",
             lambda: (
-                failing != "NO_CART_SETTLES"
-                and all(same[:3])
+                all(same[:3])
                 and not same[3]
+                and failing() != "NO_CART_SETTLES"
                 and _never_changes(submission, estimate, box, gains)
             ),
         ),
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
-        ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early)),
+        ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early())),
         # Where nothing settles, gains are as good as any others, and what they depend on shows nothing.
-        (failing, lambda: failing == "NO_CART_SETTLES"),
+        ("NO_CART_SETTLES", lambda: failing() == "NO_CART_SETTLES"),
         (
             "GAINS_BY_FORMULA",
             lambda: same[2] and same[3] and not (same[0] or same[1]) and unmoved((sooner, box), *boxes),
@@ -322,10 +340,55 @@ def of_gains(submission, estimate, box, gains, success):
         ),
         # Gains that stay for heavy carts too are at the search's edge, which the box cannot move.
         ("RANDOMIZATION_IGNORED", lambda: same[3] and not same[0] and unmoved(*boxes)),
-        (failing, lambda: failing is not None),
-        ("SEARCH_ENDED_EARLY", lambda: ended_early),
+        ("FAILURES_LEFT_OUT", lambda: failing() is not None),
+        ("KD_FOLLOWS_KP", lambda: _follows([gains, *other], [estimate, *(asked for asked, _ in questions)])),
     )
-    return next((named(code) for code, seen in looks if seen()), None)
+    code = next((code for code, seen in looks if seen()), None) or _unread(submission, estimate, box, gains)
+    return named(code or "SEARCH_ENDED_EARLY") if code or ended_early() else None
+
+
+def _follows(pairs, estimates):
+    """Whether kd is the same in each answer, or in the same proportion to kp or to the root of kp m."""
+    kp, kd = np.array(pairs).T
+    m, b = (np.array([estimate[name][0] for estimate in estimates]) for name in ("m", "b"))
+    if np.ptp(kp) < 1e-3 * np.max(kp):
+        return False
+    root = np.sqrt(kp * m)
+    return any(np.ptp(x) < 1e-6 * np.max(np.abs(x)) for x in (kd, kd / kp, kd / root, (kd + b) / root))
+
+
+def _unread(submission, estimate, box, gains):
+    """What of the question makes no difference to the gains, or one that it must not make; a code or None.
+
+    What seems to make none is tried again the other way and further off, where no grid is too coarse.
+    """
+
+    def same(*asked):
+        found = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", list(asked))])
+        return [found is not None and pair == gains for pair in found or [None] * len(asked)]
+
+    def lows(change):
+        return estimate, {k: [change(*ends), ends[1]] for k, ends in box.items()}
+
+    def shifted(name, factor):
+        return estimate, {**box, name: [factor * end for end in box[name]]}
+
+    lag = {**estimate, "lag": [2.0 * x for x in estimate["lag"]]}, box
+    kept = same(lag, lag, shifted("m", 1.8), shifted("latency", 1.8), lows(lambda low, high: low / 3))
+    if kept[:2] == [False, False]:
+        return "LAG_READ" if all(same((estimate, box), (estimate, box))) else None
+    corner = {k: [high, high] for k, (_, high) in box.items()}
+    tries = (
+        ("RANGE_NOT_READ", kept[2], [shifted("m", f) for f in (0.25, 4.0)]),
+        ("RANGE_NOT_READ", kept[3], [shifted("latency", f) for f in (0.25, 4.0)]),
+        # The soonest or the slowest of all carts may be at one end, too: its gains are others.
+        (
+            "LOWS_NOT_READ",
+            kept[4] and not kept[2] and _is_best(*gains, estimate, corner),
+            [lows(lambda low, high: 0.9 * high)],
+        ),
+    )
+    return next((code for code, seen, again in tries if seen and all(same(*again))), None)
 
 
 def _of_failing(gains, estimate, box):
@@ -388,7 +451,7 @@ def _is_best(kp, kd, estimate, box):
     """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate."""
     factors = np.array(_AROUND).T
     mean = _settling((kp * factors[0], kd * factors[1]), estimate, box).mean(axis=0)
-    return bool(mean.min() > 0.85 * mean[0])
+    return bool(mean.min() > 0.85 * mean[0] and mean[0] < 3.0)
 
 
 def _settling(gains, estimate, box):

@@ -159,8 +159,8 @@ _EXCITATION = {
         ("EXCITATION_TOO_FAST", lambda t, rng: rng.uniform(-1, 1, len(t))),
         ("EXCITATION_TOO_FAST", lambda t, rng: rng.choice([-1.0, 1.0], len(t))),
         ("EXCITATION_CONSTANT", lambda t, rng: np.ones(len(t))),
-        ("EXCITATION_CONSTANT", lambda t, rng: np.where(t < 2.0, 1.0, 0.0)),
-        ("EXCITATION_CONSTANT", lambda t, rng: np.zeros(len(t))),
+        ("EXCITATION_RESTS", lambda t, rng: np.where(t < 2.0, 1.0, 0.0)),
+        ("EXCITATION_ZERO", lambda t, rng: np.zeros(len(t))),
     ),
     "active": (("EXCITATION_RESTS", _first(2.0)),),
 }

@@ -212,9 +212,9 @@ def tune(estimate, randomization):
     carts = {}
     for name in NAMES:
         low, high = np.log(randomization[name])
-        share = (rng.permutation(320) + 0.5) / 320  # spread evenly, in an order of its own
+        share = (rng.permutation(200) + 0.5) / 200  # spread evenly, in an order of its own
         carts[name] = estimate[name][0] * np.exp(low + share * (high - low))
-    few = {name: values[:80] for name, values in carts.items()}
+    few = {name: values[:60] for name, values in carts.items()}
 
     def best_of(carts, kp, ratio):
         kp, ratio = (x.ravel() for x in np.meshgrid(kp, ratio))
@@ -223,5 +223,5 @@ def tune(estimate, randomization):
 
     # Coarsely on a few carts, then finely about the best on all. kd/kp decides the damping, so search that.
     kp, ratio = best_of(few, np.geomspace(2, 40, 12), np.linspace(0.25, 0.7, 8))
-    kp, ratio = best_of(carts, kp * np.geomspace(0.8, 1.25, 7), ratio + np.linspace(-0.06, 0.06, 7))
+    kp, ratio = best_of(carts, kp * np.geomspace(0.8, 1.25, 5), ratio + np.linspace(-0.06, 0.06, 5))
     return {"kp": float(kp), "kd": float(kp * ratio)}

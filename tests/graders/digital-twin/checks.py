@@ -30,7 +30,7 @@ def test_encoder_turns(submission, rng):
     theta = sensors.angles_between_counts(rng, 600, 10 * per_turn, per_turn)
     # More counts than sixteen bits hold.
     theta = np.append(theta, sensors.angles_between_counts(rng, 40, 100_000, per_turn))
-    sensors.expect_counts(submission.call("encoder", theta, per_turn), theta, per_turn)
+    sensors.expect_counts(submission, submission.call("encoder", theta, per_turn), theta, per_turn)
 
 
 @pytest.mark.task("encoder")
@@ -39,7 +39,7 @@ def test_encoder_inputs(submission, rng):
     """The encoder leaves its angles alone, over a few turns and both ways"""
     theta = sensors.angles_between_counts(rng, 300, 70, 48)
     value = bundles.expect_clean(submission, "encoder", (theta, 48), ("theta", None))
-    sensors.expect_counts(value, theta, 48)
+    sensors.expect_counts(submission, value, theta, 48)
 
 
 # -- gyroscope ------------------------------------------------------------------------------------------

@@ -76,7 +76,8 @@ def test_excitation_other_bench(submission, rng):
     """On a bench with other limits the excitation stays within them and still shows everything"""
     seconds, u_max = _uneven(rng, 15.0, 18.0), float(rng.uniform(2.4, 2.8))
     value = submission.call("design_excitation", seconds, u_max, rng)
-    judge.expect_shows(probes.command_of(value, seconds, u_max), reference.realities(submission.seed)[1:2])
+    carts = reference.realities(submission.seed)[1:2]
+    judge.expect_shows(probes.command_of(value, seconds, u_max), carts, u_max)
 
 
 def _uneven(rng, low, high):

@@ -214,21 +214,44 @@ def test_the_room_of_the_checks_reads_as_the_model_solution_sees_it():
 @pytest.mark.parametrize("rounded", [np.floor, np.rint])
 def test_an_encoder_of_another_resolution_is_told_so_whatever_the_factor_is(factor, rounded):
     exact = (np.linspace(-9.0, 9.0, 401) + 0.001) * 640 / (2 * math.pi)
-    assert sensors.of_encoder(rounded(factor * exact), rounded(exact)).code == "COUNTS_OFF_BY_FACTOR"
+    assert sensors.of_counts(rounded(factor * exact), rounded(exact)).code == "COUNTS_OFF_BY_FACTOR"
 
 
 def test_an_encoder_is_told_nothing_of_a_factor_where_there_is_none():
     exact = (np.linspace(-9.0, 9.0, 401) + 0.001) * 64 / (2 * math.pi)
     wanted = np.floor(exact)
     for counts in (np.trunc(exact), np.abs(wanted), wanted % 64, np.diff(wanted, prepend=0.0), -wanted):
-        assert sensors.of_encoder(counts, wanted) is None
-    assert sensors.of_encoder(exact, wanted).code == "NOT_QUANTISED"
+        assert sensors.of_counts(counts, wanted) is None
+    assert sensors.of_counts(exact, wanted).code == "NOT_QUANTISED"
+
+
+def _summed(theta, per_turn):
+    exact = theta * per_turn / (2 * math.pi)
+    return np.cumsum(np.floor(np.append(exact[0], np.diff(exact))))
+
+
+@pytest.mark.parametrize(
+    ("code", "wrong"),
+    [
+        ("COUNTS_DEPEND_ON_OTHERS", _summed),
+        ("COUNTS_DEPEND_ON_OTHERS", lambda theta, n: right.encoder(theta, n) - right.encoder(theta, n)[0]),
+        (
+            "ROUNDED_TWO_WAYS",
+            lambda theta, n: np.where(theta > 0, np.rint(theta * 64 / 2 / math.pi), right.encoder(theta, 64)),
+        ),
+        ("WHOLE_TURNS_ONLY", lambda theta, n: theta // (2 * math.pi) * n),
+    ],
+)
+def test_counts_that_are_wrong_in_no_single_angle_are_told_so(code, wrong):
+    theta = np.linspace(-40.0, 40.0, 57) + 0.001
+    counts = np.array(wrong(theta, 64), dtype=float)
+    assert sensors.of_encoder(Fake("encoder", wrong), counts, theta, 64).code == code
 
 
 def test_counts_that_do_not_fit_into_sixteen_bits_are_told_so():
     wanted = np.floor(np.linspace(-50_000, 50_000, 41) + 0.3)
     counts = wanted.astype(np.int64).astype(np.int16).astype(float)
-    assert sensors.of_encoder(counts, wanted).code == "COUNTS_OVERFLOW"
+    assert sensors.of_counts(counts, wanted).code == "COUNTS_OVERFLOW"
 
 
 @pytest.mark.parametrize(
@@ -295,7 +318,7 @@ STEPS = [
         drive(lambda turn, h: (turn, 1.0, h) if abs(turn) < 0.01 else (turn, chord(turn), h + turn / 2)),
     ),
     ("STRAIGHT_WRONG", drive(lambda turn, h: (turn, 2.0 if turn == 0 else chord(turn), h + turn / 2))),
-    (None, drive(lambda turn, h: (turn, np.cos(turn), h + turn / 2))),
+    ("CHORD_WRONG_LENGTH", drive(lambda turn, h: (turn, np.cos(turn), h + turn / 2))),
     ("CHORD_WRONG_WAY", drive(lambda turn, h: (turn, chord(turn), h + turn / 3))),
     (None, drive(lambda turn, h: (turn, chord(turn) * (0.9 if 0 < turn < 0.5 else 1.0), h + turn / 2))),
 ]
@@ -438,12 +461,35 @@ COMMAND = [
     # As large as the friction that the probe asks about first: there it looks as if the target were not read.
     ("PUSHES_AWAY", lambda twin, target: twin["friction"] * target - 0.8 * (target - twin["speed"])),
     ("GAIN_TOO_LARGE", lambda twin, target: twin["friction"] * target + 30 * (target - twin["speed"])),
+    *(
+        ("DRIVE_LIMITED", lambda twin, target, most=most: np.clip(twin["friction"] * target, -most, most))
+        for most in (0.3, 1.0, 1.5, 3.0)
+    ),
+    ("DRIVE_LIMITED", lambda twin, target: min(twin["friction"] * target + target - twin["speed"], 2.0)),
+    (
+        "TARGET_SQUARED",
+        lambda twin, target: twin["friction"] * target * abs(target) + 0.8 * (target - twin["speed"]),
+    ),
+    ("BACKWARDS_NOT_DRIVEN", lambda twin, target: twin["friction"] * max(target, 0.0)),
+    (None, lambda twin, target: twin["friction"] * (target if target > 0 else 1.1 * target)),
 ]
 
 
-@pytest.mark.parametrize(("code", "wrong"), COMMAND, ids=[code for code, _ in COMMAND])
+def test_a_command_that_remembers_is_told_nothing_of_single_calls():
+    total = []
+
+    def summing(twin, target):
+        total.append(0.1 * (target - twin["speed"]))
+        return 0.5 * sum(total) + twin["friction"] * target
+
+    assert twins.of_command(Fake("command", summing)) is None
+
+
+@pytest.mark.parametrize(
+    ("code", "wrong"), COMMAND, ids=[f"{i}-{code}" for i, (code, _) in enumerate(COMMAND)]
+)
 def test_a_command_that_errs_is_told_its_mistake(code, wrong):
-    assert twins.of_command(Fake("command", wrong)).code == code
+    assert getattr(twins.of_command(Fake("command", wrong)), "code", None) == code
 
 
 @pytest.mark.parametrize("task", [task for task in table.rows if table.rows[task]])
@@ -600,3 +646,24 @@ def test_each_scan_of_the_drive_has_a_pose_of_its_own_time_in_both_odometries():
         travelled = np.hypot(np.diff(x), np.diff(y)) / np.diff(t)
         # A chord is shorter than its arc, here by one part in 10,000; encoders are read in whole counts.
         assert np.allclose(travelled, found[kind]["speed"][1:], rtol=1e-3, atol=1e-9)
+
+
+def test_without_latency_the_first_sample_counts_and_rounding_excuses_nothing():
+    def strict(x, dt, latency):
+        return np.where(dt * np.arange(len(x)) > latency, right.delay_line(x, dt, latency), 0.0)
+
+    x = np.array([2.0, -3.0, 1.0])
+    actuator_bundles.expect_delayed(Fake(), strict(x, 0.1, 0.2), x, 0.1, 0.2, [0.0, 0.0, 2.0])
+    with pytest.raises(kit.CheckFailed):
+        actuator_bundles.expect_new_signal(Fake("delay_line", strict), x, 0.1)
+
+
+def test_readings_that_miss_a_wall_are_not_blamed_on_the_noise():
+    def joined(pose, segments, angles, r_max, sigma, rng):
+        starts = np.asarray(segments)[:, 0]
+        walls = np.stack([starts, np.roll(starts, -1, axis=0)], axis=1)
+        return right.lidar(pose, walls, angles, r_max, sigma, rng)
+
+    with pytest.raises(kit.CheckFailed) as failed:
+        sensor_bundles.expect_scan_noise(Fake("lidar", joined), 8.0, 0.05, np.random.default_rng(1))
+    assert "readings are not about its distances" in failed.value.finding.message

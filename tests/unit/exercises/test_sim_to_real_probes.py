@@ -184,6 +184,76 @@ def test_gains_that_stay_the_same_are_told_why_only_as_far_as_it_is_seen(code, t
     assert found.code == code
 
 
+class _Answers:
+    """A submission whose tune is this function."""
+
+    def __init__(self, tune):
+        self._tune = tune
+
+    def call_each(self, name, calls):
+        return [self._tune(*args) for args in calls]
+
+
+def _kp(read):
+    """A tune whose gains follow what ``read`` makes of the estimate's values and the box."""
+
+    def tune(estimate, box):
+        kp = 5.0 * read({k: entry[0] for k, entry in estimate.items()}, box)
+        return {"kp": kp, "kd": 0.57 * kp}
+
+    return tune
+
+
+@pytest.mark.parametrize(
+    ("code", "read"),
+    [
+        ("RANGE_NOT_READ", lambda value, box: value["m"] * sum(box["m"]) + value["latency"]),
+        ("RANGE_NOT_READ", lambda value, box: value["latency"] * sum(box["latency"]) + value["m"]),
+        ("LOWS_NOT_READ", lambda value, box: value["m"] * box["m"][1] + value["latency"] * box["latency"][1]),
+        ("LAG_READ", lambda value, box: value["m"] * sum(box["m"]) + value["lag"] * sum(box["latency"])),
+        (None, lambda value, box: value["m"] * sum(box["m"]) + value["latency"] * sum(box["latency"])),
+        (
+            None,
+            lambda value, box: min(6.0, value["m"] * sum(box["m"]) / value["latency"] / sum(box["latency"])),
+        ),
+    ],
+)
+def test_what_makes_no_difference_to_the_gains_is_told(code, read):
+    tune, estimate = _kp(read), cart.with_intervals(cart.PUBLIC)
+    gains = probes.gains_of(tune(estimate, cart.MATCHED))
+    assert probes._unread(_Answers(tune), estimate, cart.MATCHED, gains) == code
+
+
+def test_gains_are_called_swapped_only_if_they_are_right_in_the_other_order_for_other_carts_too():
+    def clipped(estimate, box):
+        m = estimate["m"][0]
+        return {"kp": min(4.0, 9.3 * m), "kd": 4.5 * m}
+
+    estimate = cart.with_intervals(cart.PUBLIC)
+    success = lambda kp, kd: cart.public_success(kp, kd)[0]  # noqa: E731
+    gains = probes.gains_of(clipped(estimate, cart.MATCHED))
+    found = probes.of_gains(_Answers(clipped), estimate, cart.MATCHED, gains, success)
+    assert getattr(found, "code", None) != "GAINS_SWAPPED"
+
+
+@pytest.mark.parametrize(
+    ("code", "wave"),
+    [
+        ("EXCITATION_ZERO", lambda t: np.zeros(len(t))),
+        ("EXCITATION_RESTS", lambda t: np.where(t < 1, 3.0, 0.0) - np.where((t >= 1) & (t < 2), 3.0, 0.0)),
+        ("EXCITATION_CONSTANT", lambda t: np.where(t < 9, 3.0, -3.0)),
+        ("EXCITATION_NOT_FULL", lambda t: 0.4 * np.sign(np.sin(7 * t) + np.sin(2.3 * t)) * 3.0),
+        ("EXCITATION_TOO_SLOW", lambda t: 3.0 * np.sin(0.2 * np.pi * t)),
+        ("EXCITATION_STANDS", lambda t: 3.0 * np.exp(-(((t - 10.3) / 0.3) ** 2)) * np.cos(9 * t)),
+    ],
+)
+def test_a_command_is_told_what_is_seen_of_it(code, wave):
+    u = wave(np.arange(2000) / 100)
+    assert (
+        probes.of_command(u, [cart.PUBLIC], 3.0, lambda other: judge.shown(other, [cart.PUBLIC])).code == code
+    )
+
+
 def test_a_right_estimate_is_given_no_code():
     truths = [cart.PUBLIC, cart.SHEET]
     estimates = [_with()(truth) for truth in truths]

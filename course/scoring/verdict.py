@@ -166,22 +166,23 @@ def for_student(result: CheckResult) -> CheckResult:
 _NO_VALUE = {
     Status.ERROR: (
         "RAISED",
-        "`{}` raises an exception for an input that is not shown here.",
-        "Call it yourself with other inputs than the README's example: small, large and unusual ones.",
+        "`{}` raises an exception in a check whose details are not shown.",
+        "Call it yourself: more than once and, if it takes arguments, with others than the README's example, "
+        "small, large and unusual.",
     ),
     Status.TIMEOUT: (
         "TIMEOUT",
-        "`{}` had not answered when the time was up, for an input that is not shown here.",
+        "`{}` had not answered when the time was up, in a check whose details are not shown.",
         "Look for a loop whose condition never becomes false, or one that takes far more steps than asked.",
     ),
     Status.MEMORY: (
         "OUT_OF_MEMORY",
-        "`{}` asks for more memory than a check may use, for an input that is not shown here.",
+        "`{}` asks for more memory than a check may use, in one whose details are not shown.",
         "Look for a list or array that grows in a loop without end.",
     ),
     Status.CRASH: (
         "CRASHED",
-        "The Python process that ran `{}` ended, for an input that is not shown here.",
+        "The Python process that ran `{}` ended, in a check whose details are not shown.",
         "Look for exit(), os._exit(), or a recursion without an end.",
     ),
 }
@@ -201,7 +202,7 @@ def _unspoken(result: CheckResult) -> CheckResult:
             status=Status.FAIL,
             diagnosis="OTHER_FORM",
             message=f"What `{result.task}` returns has not the form that was asked for.",
-            help="Compare it with the README's contract, also for other inputs than those of its example.",
+            help="Compare it with the README's contract, for everything that it may be called with.",
         )
     if result.status not in _NO_VALUE:
         return result

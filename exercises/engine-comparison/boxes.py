@@ -96,6 +96,7 @@ class Box:
     margin: float = 0.0  # m: bodies touch this much too early
     restitution: float = 0.5  # at the wall; the floor does not bounce
     bounce_threshold: float = 0.0  # m/s: a slower impact does not bounce
+    bounce_most: float = math.inf  # m/s: no body leaves the wall faster than this
     contact: str = "nearest"  # of body and wall: "nearest", "sided" or "swept", see meets_wall
     jitter: float = 0.0  # relative, drawn anew in every run
     noise: np.random.Generator = field(
@@ -165,7 +166,8 @@ class Box:
                 side = self.meets_wall(before, x, reach)
                 if side * v < 0:  # it comes closer
                     bounces = abs(v) >= self.bounce_threshold
-                    x, v = side * reach, -self.restitution * v if bounces else 0.0
+                    speed = min(self.restitution * abs(v), self.bounce_most) if bounces else 0.0
+                    x, v = side * reach, side * speed
             rows.append((x, v))
         return rows
 
@@ -247,10 +249,11 @@ ANVIL = Box(
     step=velocity_verlet, restitution=0.6, bounce_threshold=1.5, contact="swept",
 )  # fmt: skip
 
-#: Slows everything down, creeps, grips the diagonal too well, and keeps a margin.
+#: Slows everything down, fast impacts most, creeps, grips the diagonal too well, and keeps a margin.
 BALSA = Box(
     dt=1 / 60, omega=2.0, mass=0.5, g=9.81, mu=0.6, radius=0.15, wall_thickness=0.04,
-    damping=1.6, cone=square_pyramid, grip=0.6, creep=0.004, margin=0.0005, restitution=0.4, contact="sided",
+    damping=1.6, cone=square_pyramid, grip=0.6, creep=0.004, margin=0.0005, restitution=0.4,
+    bounce_most=1.5, contact="sided",
 )  # fmt: skip
 
 #: Accurate without contact; soft and weak on the diagonal with it; never twice the same.

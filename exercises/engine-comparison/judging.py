@@ -9,6 +9,7 @@ from course.grading import kit
 
 bench = kit.companion("engine-comparison", "bench")
 probes = kit.companion("engine-comparison", "probes")
+probing = kit.companion("engine-comparison", "probing")
 
 #: What a wrong value under each key means, without values.
 MESSAGES = {
@@ -53,8 +54,8 @@ def expect_key(found: list[Any], key: str, spared: int) -> None:
             "help": HELP[key],
             "diagnose": lambda: probes.of_key(key, judged),
         }
-        if key in probes.TOLERANCES:
-            rel, abs_, units, source = probes.TOLERANCES[key]
+        if key in probing.TOLERANCES:
+            rel, abs_, units, source = probing.TOLERANCES[key]
             kit.expect_close(
                 value, truth, rel=rel, abs=abs_, source=source, quantity=key, units=units, **words
             )

@@ -26,14 +26,22 @@ _KEPT: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
 
 
 def entries(submission: Any) -> list[dict[str, Any]]:
-    """What ``engine_facts()`` returned: a list of dicts with the five keys. It is asked once.
+    """What ``engine_facts()`` returned: a list of dicts with the five keys. It is asked once, and once again.
 
     Raises:
         CheckFailed: it is no such list.
     """
     if submission not in _KEPT:
-        _KEPT[submission] = submission.call(TASK)
-    listed = kit.as_list(_KEPT[submission], "the list of facts")
+        _KEPT[submission] = submission.call_each(TASK, [(), ()])
+    listed, again = (kit.as_list(told, "the list of facts") for told in _KEPT[submission])
+    if len(again) != len(listed):
+        kit.fail(
+            "A second call of engine_facts returns another number of entries.",
+            help="Make a new list in every call: one that is kept outside of the function goes on growing.",
+            diagnose=named("GROWS_WITH_EACH_CALL"),
+            expected=len(listed),
+            actual=len(again),
+        )
     return [kit.as_record(entry, KEYS, "an entry") for entry in listed]
 
 
@@ -58,6 +66,13 @@ def expect_complete(listed: list[dict[str, Any]]) -> None:
                 help=f"The engines are {', '.join(ENGINES)}; the fields are {', '.join(FIELDS)}.",
                 actual=[engine, field],
             )
+    if len(set(pairs)) == 1 < len(pairs):
+        kit.fail(
+            "All entries are about the same engine and the same field.",
+            help="There are four engines and five fields: twenty entries, one for each pair.",
+            diagnose=named("ENTRIES_ALL_ONE"),
+            actual={"/".join(pairs[0]): len(pairs)},
+        )
     for pair in ((engine, field) for engine in ENGINES for field in FIELDS):
         if pairs.count(pair) != 1:
             missing = pairs.count(pair) == 0

@@ -36,6 +36,28 @@ def two_verlet_steps(a, x, v, h):
     return boxes.velocity_verlet(a, x, v, 0.812 * h)
 
 
+def two_euler_steps(a, x, v, h):
+    """Semi-implicit Euler over 0.65 h and then the rest: less of a gap, with stable steps soon beyond it."""
+    for part in (0.65 * h, 0.35 * h):
+        x = x + part * v
+        v = v + part * a(x, v)
+    return x, v
+
+
+def three_kutta_steps(a, x, v, h):
+    """Kutta's third order, three times a third of h: stable for longer than other explicit engines here."""
+    for _ in range(3):
+        x, v = kutta(a, x, v, h / 3)
+    return x, v
+
+
+def kutta(a, x, v, h):
+    dx1, dv1 = v, a(x, v)
+    dx2, dv2 = v + h / 2 * dv1, a(x + h / 2 * dx1, v + h / 2 * dv1)
+    dx3, dv3 = v + h * (2 * dv2 - dv1), a(x + h * (2 * dx2 - dx1), v + h * (2 * dv2 - dv1))
+    return x + h / 6 * (dx1 + 4 * dx2 + dx3), v + h / 6 * (dv1 + 4 * dv2 + dv3)
+
+
 def stiffer_than_told(a, x, v, h):
     """Keeps area, and at no step the energy that a spring of the told omega has."""
     v = v + 9 * h * a(x, v)
@@ -50,11 +72,15 @@ def grows_slowly(a, x, v, h):
 
 
 KNOWN = {"anvil": boxes.ANVIL, "balsa": boxes.BALSA, "cork": boxes.CORK}
-#: Where the largest stable step is zero, infinite, or followed by larger ones that are stable again.
+#: Where the largest stable step is zero, infinite, followed by larger ones that are stable again, or large.
 ENDS = {
     "an engine that is never stable": dataclasses.replace(boxes.BALSA, step=explicit_euler, damping=0.0),
     "an engine that is never unstable": dataclasses.replace(boxes.BALSA, step=implicit_euler, mass=0.8),
     "an engine that is stable again": dataclasses.replace(boxes.ANVIL, step=two_verlet_steps),
+    "an engine that is stable again soon": dataclasses.replace(boxes.ANVIL, step=two_euler_steps),
+    "an engine of third order": dataclasses.replace(
+        boxes.ANVIL, step=three_kutta_steps, dt=1 / 600, wall_thickness=0.08, contact="sided"
+    ),
 }
 
 #: More engines for single keys: what forgives a small difference does not forgive these.
@@ -114,7 +140,9 @@ def _numbers(key, known, ends):
     cases = known + ends if key in _OF_ENDS else known
     numbers = [-4e3 if _raised(case) else _number(key, case.measured(key)) for case in cases]
     if key == "symplectic":
-        numbers.append(float(all(map(_took_one_half, cases))))
+        numbers.append(float(min(map(_columns_at_one_half, cases))))
+    if key in _AT_DT:
+        numbers.append(float(all(_at_dt(key, case) for case in cases)))
     if key == "deterministic":
         numbers.append(float(max(map(bench.repeated, cases))))
     return tuple(numbers)
@@ -134,11 +162,31 @@ def _number(key, value):
     return round(math.asinh(number / least) / equal * kit.SAME, 9)
 
 
-def _took_one_half(case):
-    """Whether a single step of the spring was taken at h omega = 0.5."""
-    return any(
-        scene == "spring" and n == 1 and math.isclose(h * case.box.omega, 0.5, rel_tol=1e-6)
-        for scene, _, _, h, n, _ in case.runs
+def _columns_at_one_half(case):
+    """From how many starts a single step of the spring was taken at h omega = 0.5; two are enough."""
+    starts = {
+        (q0, v0)
+        for scene, q0, v0, h, n, _ in case.runs
+        if scene == "spring" and n == 1 and math.isclose(h * case.box.omega, 0.5, rel_tol=1e-6)
+    }
+    return min(2, len(starts))
+
+
+#: Which runs were made for a key that is defined at dt: (scene, whether a run counts).
+_AT_DT = {
+    "friction_anisotropy": ("floor", lambda v0, force: any(force)),
+    "rest_penetration": ("floor", lambda v0, force: not any(force)),
+    "tunnelling_speed": ("wall", lambda v0, force: abs(v0[0]) > 2.5),
+}
+
+
+def _at_dt(key, case):
+    """Whether every run that was made for the key had steps of dt."""
+    where, counts = _AT_DT[key]
+    return all(
+        math.isclose(h, case.box.dt, rel_tol=1e-6)
+        for scene, _, v0, h, _, force in case.runs
+        if scene == where and counts(v0, force)
     )
 
 
@@ -150,7 +198,8 @@ _KEYS = ("order", "noise_db", "symplectic", "limit")
 
 def _choices():
     """Small reports and requirements, made of few values, so that limits are met exactly, values are
-    missing, None, zero or False, and any slip in a requirement or in the choice shows somewhere."""
+    missing, None, zero or False, equal numbers are of different types, costs zero or nearly the same, two
+    requirements about one key, and any slip in a requirement or in the choice shows somewhere."""
     rng = np.random.default_rng(27)
     values = {
         "order": (0, 1, 2, 4, None),
@@ -158,26 +207,41 @@ def _choices():
         "symplectic": (True, False),
         "limit": (0.0, 0.5, 1.5, math.inf),
     }
+    prices = ([1.0, 1.5, 1.7, 4.0, 9.0], [0.0, 1.5, 1.7, 4.0, 9.0], [2.0, 2.0 + 1e-9, 2.3, 2.32, 9.0])
     asked = []
-    for _ in range(100):
-        costs = rng.permutation([1.0, 1.5, 1.7, 4.0, 9.0]).tolist()
+    for number in range(150):
+        costs = rng.permutation(prices[number % 3]).tolist()
         reports = {}
         for name, cost in zip(rng.permutation(_NAMES).tolist(), costs, strict=True):
-            kept = [key for key in _KEYS if key == "symplectic" or rng.random() < 0.85]
-            picked = {key: values[key][int(rng.integers(len(values[key])))] for key in kept}
+            kept = [key for key in _KEYS if rng.random() < 0.85]
+            picked = {key: _another(values[key][int(rng.integers(len(values[key])))]) for key in kept}
             reports[name] = {**picked, "cost": cost}
         needs = []
         for key in rng.permutation(_KEYS)[: int(rng.choice([0, 1, 1, 2, 2, 3]))].tolist():
             known = [value for value in values[key] if value is not None]
             ops = ("==",) if key == "symplectic" else ("<=", ">=", "==")
             op, value = ops[int(rng.integers(len(ops)))], known[int(rng.integers(len(known)))]
+            if key in ("order", "symplectic") and rng.random() < 0.5:
+                value = float(value)  # True and 2 equal 1.0 and 2.0
             needs.append({"key": key, "op": op, "value": value})
+        if needs and number % 5 == 0:
+            # Two about one key, of which either may come first.
+            needs.insert(0 if number % 10 else len(needs), {**needs[0], "op": ">=", "value": 0})
         asked.append((reports, needs))
+    close = {"kifo": {"limit": 1.5, "cost": 1.0}, "zaru": {"limit": 0.5, "cost": 2.0}}
+    close["ode"] = {"limit": 2.5, "cost": 3.0}
+    for op, past in (("<=", 0.0), (">=", 2.0), ("==", 0.0), ("==", 2.0)):
+        asked.append((close, [{"key": "limit", "op": op, "value": math.nextafter(1.5, past)}]))
     dear = [
         ({name: {**report, "cost": 1e9 * report["cost"]} for name, report in reports.items()}, needs)
         for reports, needs in asked[:10]
     ]
     return [*asked, *dear]
+
+
+def _another(value):
+    """An equal number, and of those with decimals another object, as in a student's process."""
+    return float(repr(value)) if isinstance(value, float) else value
 
 
 QUESTIONS = {"choose_engine": _choices(), "engine_facts": []}

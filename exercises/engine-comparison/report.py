@@ -11,7 +11,7 @@ from course.grading import kit
 bench = kit.companion("engine-comparison", "bench")
 boxes = kit.companion("engine-comparison", "boxes")
 measured = kit.companion("engine-comparison", "measured")
-probes = kit.companion("engine-comparison", "probes")
+probing = kit.companion("engine-comparison", "probing")
 
 THREE = {"anvil": boxes.ANVIL, "balsa": boxes.BALSA, "cork": boxes.CORK}
 
@@ -64,11 +64,11 @@ def _number(value):
 def _right(key, case):
     value = case.measured(key)
     if isinstance(value, bool | None):
-        return value is not None and key not in probes.TOLERANCES and value == case.truth[key]
+        return value is not None and key not in probing.TOLERANCES and value == case.truth[key]
     number = _number(value)
     if number is None:
         return False
-    return bool(probes.right(key, bench.Case(case.name, case.box, case.truth, report={key: number})))
+    return bool(probing.right(key, bench.Case(case.name, case.box, case.truth, report={key: number})))
 
 
 def _shown(value):

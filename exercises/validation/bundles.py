@@ -240,7 +240,7 @@ def _expect_intervals(report, right, shown):
         source="the search for the lag with one run or another left out",
         quantity="lag_s interval",
         message="The interval of `lag_s` has the wrong ends.",
-        diagnose=lambda: probes.of_lag_interval(report["lag_s"], right),
+        diagnose=lambda: probes.of_lag_interval(report["lag_s"], _half(report), right),
         **words,
     )
 
@@ -301,6 +301,34 @@ def expect_margins(submission, case, right):
             ),
         )
         expect_accepted(report, not expected, shown)
+
+
+def expect_edges(submission, rng):
+    """Ends that lie exactly on their margins are inside.
+
+    Every error is the same binary fraction, so no rule for a mean makes another number of it, and no run left
+    out changes it: both ends are the number itself.
+    """
+    off = float(rng.choice([-1, 1]) * rng.choice([0.125, 0.25, 0.5]))
+    recorded = [twins.record(rng, f"edge {i}", rng.uniform(5, 7), 0.02, 0.02) for i in range(3)]
+    sim, real = twins.simulated(recorded), twins.measured(recorded)
+    for ours, theirs in zip(sim["runs"], real["runs"], strict=True):
+        theirs["y"] = np.round(64 * ours["y"]) / 64
+        ours |= {"y": theirs["y"] + off, "sigma": np.ones(len(theirs["y"]))}
+    exact = {"rmse_max": abs(off), "bias_max": abs(off), "coverage_min": 1.0, "coverage_max": 1.0}
+    for name, limit in exact.items():
+        spec = LENIENT | {name: limit}
+        report = kit.as_record(submission.call("validate", sim, real, spec), KEYS, "the report")
+        shown = {"every error": off, "spec": spec}
+        kit.expect_equal(
+            reasons_of(report),
+            [],
+            message="An interval that ends exactly on its margin is refused.",
+            help="An end on the margin is inside: refuse where lo < least or hi > most.",
+            input=shown,
+            diagnose=named("MARGIN_EXCLUDED"),
+        )
+        expect_accepted(report, True, shown)
 
 
 def _specs(right):

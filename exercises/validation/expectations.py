@@ -187,8 +187,10 @@ def expect_energies(submission, q, v, energy):
         if np.shape(q) != (d,) or np.shape(v) != (d,):
             kit.fail(
                 "Your code calls energy with something other than one position and one velocity.",
-                help="Loop over the samples: energy(q[i], v[i]).",
-                diagnose=probes.named("WHOLE_ARRAYS"),
+                help=f"Call energy(q[i], v[i]): two arrays of shape ({d},) here.",
+                diagnose=probes.named(
+                    "WHOLE_ARRAYS" if max(np.size(q), np.size(v)) > d else "ENERGY_OF_ONE_SHAPE"
+                ),
                 expected=f"energy(q_i, v_i), both of shape ({d},)",
                 actual=[f"shape {np.shape(a)}" for a in (q, v)],
             )
@@ -266,7 +268,8 @@ def expect_folds(submission, data, k):
         source=EXACT,
         quantity="RMSE of the folds",
         input=shown,
-        message="The folds are right but their scores are wrong.",
+        message="The scores are not those of the folds, in the order of the list.",
         help="Pool the errors of all runs of a fold, then take one RMSE; fold by fold, in order.",
+        diagnose=lambda: folds.of_order(scores),
     )
     expect_left_alone(inspected, [None, None, given], [None, None, "runs"])

@@ -32,7 +32,7 @@ def expect_width(submission, rng, scale, offset):
         quantity="mean width over true width",
         input=shown,
         message="The intervals are not as wide as the scatter of the mean requires.",
-        help="Resample blocks of neighbours, not single errors, and take quantiles of the statistic.",
+        help="The ends are quantiles of the statistic over resamples that are made of blocks of neighbours.",
         diagnose=lambda: probes.of_interval(submission, 1),
     )
     expect_centred(submission, ends, np.mean(series, axis=1), shown)

@@ -127,6 +127,7 @@ def of_resamples(found):
         ("RESAMPLE_SIZE", not whole),
         ("NOT_OF_THE_SERIES", not all(np.isin(samples, found.e).all() for samples in drawn)),
         # Of errors drawn with replacement a third is missing in a resample.
+        ("REPEATS_AN_END", _repeated_ends(drawn, n) >= _MOST_REPEATED),
         ("DRAWN_WITHOUT_REPLACEMENT", all(len(np.unique(samples)) > 0.9 * n for samples in drawn)),
         ("DRAWN_ONCE", all(np.array_equal(samples, drawn[0]) for samples in drawn)),
         # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
@@ -137,6 +138,19 @@ def of_resamples(found):
         ("OTHER_NUMBER_OF_RESAMPLES", len(drawn) != _BOOT or len(found.asked) > _BOOT + 2),
     ]
     return next((code for code, fits in looks if fits), None)
+
+
+#: Of some five hundred places where one block ends and another begins, one in 62,500 has the same end of the
+#: series on both sides, and one in 250 the same sample; of blocks that are filled up with the last sample of
+#: the series, one in twenty repeats it.
+_MOST_REPEATED = 5
+
+
+def _repeated_ends(drawn, n):
+    """How much oftener the first or last sample of the series follows itself than all others do together."""
+    twice = np.concatenate([np.empty(0), *(samples[1:][np.diff(samples) == 0] for samples in drawn)])
+    ends = int(np.sum(np.isin(twice, (0, n - 1))))
+    return 2 * ends - len(twice)
 
 
 def _length_of_blocks(drawn):
@@ -175,7 +189,18 @@ def of_ends(found):
         return "STATISTIC_IGNORED"
     if any(_quantiles(ends + whole, values, low, high) for _, low, high in levels):
         return "NOT_CENTRED"
-    return None
+    return "WIDTH_SCALED" if _scaled(ends, values, whole) else None
+
+
+def _scaled(ends, values, whole):
+    """Whether the ends lie about the statistic, or the middle of the values, like the right ones, but much
+    nearer or farther."""
+    right = np.quantile(values, [_ALPHA / 2, 1 - _ALPHA / 2])
+    for centre in (whole, np.mean(values), np.median(values), np.mean(right)):
+        low, high = (ends - centre) / (right - centre)
+        if low > 0 and abs(low / high - 1) < 0.02 and not 0.8 < low < 1.25:
+            return True
+    return False
 
 
 def of_chance(submission):
@@ -306,6 +331,11 @@ class Folds:
         if len(used) != k or not covered or max(sizes) - min(sizes) > 1:
             return "FOLDS_UNEVEN"
         return None if all(fit == everything - set(asked) for fit, asked in used) else "TRAINS_ON_TOO_LITTLE"
+
+    def of_order(self, scores):
+        """Whether wrong scores are the right ones in another order."""
+        right = [math.sqrt(np.mean(np.concatenate(fold) ** 2)) for fold in self.residuals()]
+        return named("FOLDS_IN_OTHER_ORDER") if np.allclose(np.sort(scores), np.sort(right), 1e-9) else None
 
     def residuals(self):
         """For each fold in the order of the list, the errors of its runs, one array each."""

@@ -31,6 +31,7 @@ class Facts:
         steps: the times between samples, s, of each run.
         means: of each measure, the mean of what it is in each run alone.
         averages: means of the runs' own lags, each with half the width that its interval would have.
+        alone: half the width of the lag's interval, with each run alone in the place of all but one.
     """
 
     used: list[str]
@@ -39,6 +40,7 @@ class Facts:
     steps: list[float]
     means: dict[str, float]
     averages: list[list[float]]
+    alone: float
 
     @property
     def dt(self):
@@ -137,9 +139,16 @@ def _whole(value, right):
     return any(abs(value / step - round(value / step)) < 1e-6 for step in right.steps)
 
 
-def of_lag_interval(value, right):
-    """Why the interval of a lag is wrong, where the lag itself and the other intervals are right."""
-    return named("LAG_WHOLE_SAMPLES" if _whole(value, right) else "LAG_OF_PARTS")
+def of_lag_interval(value, half, right):
+    """Why the interval of a lag is wrong, where the lag itself and the other intervals are right.
+
+    half: half the width that was given.
+    """
+    if _whole(value, right):
+        return named("LAG_WHOLE_SAMPLES")
+    if right.alone and abs(half / right.alone - 1) < 0.03:
+        return named("LAGS_OF_SINGLE_RUNS")
+    return named("LAG_OF_PARTS")
 
 
 def of_reasons(judged):

@@ -53,6 +53,9 @@ def _intervals():
     below = np.array([0.5, 0.0, 1.0, 2.0, -1.0, 0.25, 0.0, 0.5, 0.0, 3.0, -0.5, 0.0, 0.75])
     above = np.array([0.25, 1.0, 0.0, 0.5, 2.0, -0.5, 0.5, 0.0, 0.0, 0.25, 1.5, 0.5, -0.25])
     yield y, y - below, y + np.maximum(above, -below)
+    low = np.round(3 * np.sin(np.arange(60) ** 1.3), 2)
+    yield low + np.abs(low) / 3, low, low + np.abs(low) / 3  # on the upper end, by numbers that are rounded
+    yield y + 1e-9, y - np.maximum(below, 0.1), y  # hardly outside
     yield np.array([1.0, 1.2, 5.0]), np.zeros(3), np.full(3, 2.0)
     yield np.array([0.0, 1.0, 9.0]), np.array([5.0, 6.0, 7.0]), np.array([6.0, 7.0, 8.0])
 

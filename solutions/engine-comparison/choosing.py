@@ -40,12 +40,16 @@ def names(rng, count):
 
 
 def retold(rng, questions):
-    """Questions (reports, needs, answer) with other names, another order, and costs in another currency."""
-    return [_retold(rng, *question) for question in questions]
+    """Questions (reports, needs, answer) with other names, another order, and costs in another currency.
+
+    A name stays the same in all of them: whoever keeps answers by names is asked again.
+    """
+    known = list(dict.fromkeys(name for reports, *_ in questions for name in reports))
+    other = dict(zip(known, names(rng, len(known)), strict=True))
+    return [_retold(rng, other, *question) for question in questions]
 
 
-def _retold(rng, reports, needs, answer):
-    other = dict(zip(reports, names(rng, len(reports)), strict=True))
+def _retold(rng, other, reports, needs, answer):
     rate = float(rng.uniform(0.5, 3.0))
     shuffled = [str(name) for name in rng.permutation(list(reports))]
     return (
@@ -76,10 +80,40 @@ def _nearly(report, need):
     return math.isclose(report[need["key"]], need["value"], rel_tol=0.02)
 
 
-def _no_number_equal(report, need):
-    """Two equal numbers are seldom one object."""
+def _within_rounding(report, need):
     value = report.get(need["key"])
-    return meets(report, need) and not (need["op"] == "==" and isinstance(value, float))
+    return meets(report, need) or (value is not None and math.isclose(value, need["value"]))
+
+
+def _within_rounding_of_limits(report, need):
+    return meets(report, need) if need["op"] == "==" else _within_rounding(report, need)
+
+
+def _missing_equals_nothing(report, need):
+    if _missing(report, need):
+        return need["op"] == "==" and not need["value"]
+    return meets(report, need)
+
+
+def _of_one_type(report, need):
+    alike = type(report.get(need["key"])) is type(need["value"])
+    return meets(report, need) and (need["op"] != "==" or alike)
+
+
+def _as_truths(report, need):
+    if need["op"] != "==" or _missing(report, need):
+        return meets(report, need)
+    return bool(report[need["key"]]) == bool(need["value"])
+
+
+def _finite(report, need):
+    return meets(report, need) and math.isfinite(report[need["key"]])
+
+
+def _no_number_equal(report, need):
+    """Two equal numbers are seldom one object, and never if they are of different types."""
+    value = report.get(need["key"])
+    return _of_one_type(report, need) and not (need["op"] == "==" and isinstance(value, float))
 
 
 def _with_operators(**others):
@@ -99,10 +133,14 @@ METS = {
         lambda report, need: need["key"] not in report or meets(report, need),
         lambda report, need: (need["key"] in report and report[need["key"]] is None) or meets(report, need),
         _missing_is_zero,
+        _missing_equals_nothing,
     ),
+    "INFINITE_TAKEN_FOR_MISSING": (_finite,),
     "ZERO_TAKEN_FOR_MISSING": (lambda report, need: bool(report.get(need["key"])) and meets(report, need),),
     "STRICT_COMPARISON": (_strictly,),
-    "EQUALITY_ROUGH": (_nearly,),
+    "EQUALITY_ROUGH": (_nearly, _within_rounding, _within_rounding_of_limits),
+    "EQUALITY_BY_TYPE": (_of_one_type,),
+    "EQUALITY_OF_TRUTH": (_as_truths,),
     "EQUALITY_BY_IDENTITY": (_no_number_equal,),
     "OPERATOR_CONFUSED": (
         _with_operators(le=">=", ge="<="),
@@ -137,6 +175,32 @@ def _some(answers):
 def _capped(most):
     def choice(reports, needs, met=meets):
         return choose({name: r for name, r in reports.items() if r["cost"] < most}, needs, met=met)
+
+    return choice
+
+
+def _priced(form, last=False):
+    """Costs as ``form`` makes them; of equal ones the first, or the last."""
+
+    def choice(reports, needs, met=meets):
+        names = reversed(list(reports)) if last else reports
+        return choose({n: {**reports[n], "cost": form(reports[n]["cost"])} for n in names}, needs, met=met)
+
+    return choice
+
+
+def _free_is_none(reports, needs, met=meets):
+    best = None
+    for name, report in reports.items():
+        cheaper = best is None or not reports[best]["cost"] or report["cost"] < reports[best]["cost"]
+        if cheaper and all(met(report, need) for need in needs):
+            best = name
+    return best
+
+
+def _one_for_each_key(which):
+    def choice(reports, needs, met=meets):
+        return choose(reports, list({need["key"]: need for need in needs[::which]}.values()), met=met)
 
     return choice
 
@@ -180,12 +244,23 @@ CHOICES = {
         lambda reports, needs, met=meets: choose(dict(reversed(reports.items())), needs, met=met, cost=0.0),
     ),
     "COST_CAPPED": tuple(_capped(10.0**power) for power in range(2, 9)),
+    "COST_ROUGH": tuple(
+        _priced(lambda cost, digits=digits: round(cost, digits), last)
+        for digits in (None, 0, 1, 2, 3, 6, -1)
+        for last in (False, True)
+    )
+    + tuple(_priced(int, last) for last in (False, True)),
+    "COST_OF_NOTHING": (
+        _free_is_none,
+        _priced(lambda cost: cost or math.inf),
+    ),
     "DEPENDS_ON_NAMES": (_alphabetical,),
     "ANY_INSTEAD_OF_ALL": (
         lambda reports, needs, met=meets: choose(reports, needs, met=met, enough=any),
         lambda reports, needs, met=meets: choose(reports, needs, met=met, enough=_some),
         _most_met,
     ),
+    "ONE_FOR_EACH_KEY": (_one_for_each_key(1), _one_for_each_key(-1)),
     "FIRST_REQUIREMENT_ONLY": (_one_of(slice(1)), _one_of(slice(-1, None))),
     "NEVER_CHOOSES": (lambda reports, needs, met=meets: None,),
     "NOTHING_FITS": (

@@ -109,6 +109,10 @@ def _to_the_coarsest(y):
     return np.linalg.norm(y[0] - y[1]), np.linalg.norm(y[0] - y[2])
 
 
+def _to_the_finest(y):
+    return np.linalg.norm(y[0] - y[2]), np.linalg.norm(y[1] - y[2])
+
+
 def _upside_down(y):
     return np.linalg.norm(y[1] - y[2]), np.linalg.norm(y[0] - y[1])
 
@@ -130,6 +134,11 @@ _ORDER = (
     ("ORDER_STEPS_NOT_HALVED", _order((16, 48, 144))),
     ("ORDER_OF_OTHER_DIFFERENCES", _order(gaps=_to_the_coarsest)),
     ("ORDER_OF_OTHER_DIFFERENCES", _order(gaps=lambda y: _to_the_coarsest(y)[::-1])),
+    *(
+        ("ORDER_NOT_THREE", _of("order", lambda p, _, other=other: other if p == 3 else p))
+        for other in (2, 4)
+    ),
+    ("ORDER_AGAINST_FINEST", _order(gaps=_to_the_finest)),
     ("ORDER_ROUNDED_DOWN", _order(whole=_down)),
     ("ORDER_ROUNDED_DOWN", _order((32, 64, 128), whole=_down)),
     ("ORDER_ROUNDED_DOWN", _order(whole=math.ceil)),

@@ -30,6 +30,7 @@ def facts(recorded, sim, real, lates, mass):
         "steps": [float(s["t"][1] - s["t"][0]) for s, _ in pairs],
         "means": {key: float(np.mean([run[key] for run in alone])) for key in MEASURES} if several else {},
         "averages": [_average(alone, np.array(w)) for w in (n**0, counts)] if several else [],
+        "alone": half([run["lag_s"] for run in alone]) if several else 0.0,
     }
     if several:
         without = [_measure(pairs[:i] + pairs[i + 1 :], lags) for i in n]

@@ -120,10 +120,18 @@ def _questions(seed):
         "plain": [
             *telling[:8],
             choices.at_the_limit(rng, truths),
+            choices.beyond_the_limit(rng, truths),
+            choices.other_types(rng, truths),
             choices.priced_high(rng, telling[0]),
+            choices.priced_alike(rng, telling[1]),
+            choices.priced_at_nothing(rng, telling[2]),
             *choices.questions(rng, truths, 1, choices.all_count),
         ],
-        "gaps": [*(choices.with_gaps(rng, q) for q in telling[8:]), choices.beyond_reach(rng, truths)],
+        "gaps": [
+            *(choices.with_gaps(rng, q) for q in telling[8:]),
+            choices.beyond_reach(rng, truths),
+            choices.nothing_told(rng, truths),
+        ],
         "renamed": [*right.retold(rng, real), *choices.famous(telling[:4])],
     }
 
@@ -268,13 +276,13 @@ def _expect_step(engine, value):
     own = facts.STEPS[engine]
     if value is None and None in own:
         return
-    close = value is not None and any(
-        step is not None and math.isclose(kit.as_number(value, "a default step"), step, rel_tol=0.005)
-        for step in own
+    number = None if value is None else kit.as_number(value, "a default step")
+    close = number is not None and any(
+        step is not None and math.isclose(number, step, rel_tol=0.005) for step in own
     )
     if not close:
         in_ms = any(
-            step is not None and value is not None and math.isclose(value, 1000 * step, rel_tol=0.005)
+            step is not None and number is not None and math.isclose(number, 1000 * step, rel_tol=0.005)
             for step in own
         )
         slip = "STEP_OF_A_HABIT" if own == (None,) else "STEP_IN_MILLISECONDS" if in_ms else None

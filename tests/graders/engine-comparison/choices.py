@@ -94,6 +94,41 @@ def at_the_limit(rng, truths):
     return reports, needs, choosing.choose(reports, needs)
 
 
+def beyond_the_limit(rng, truths):
+    """A question like it whose limits leave the engine out by as little as numbers allow."""
+    reports, (atmost, atleast, *_), _ = at_the_limit(rng, truths)
+    value, op = atmost["value"], str(rng.choice(["<=", ">="]))
+    past = math.nextafter(value, 0.0 if op == "<=" else math.inf)
+    needs = [need(atmost["key"], op, past), need(atmost["key"], atleast["op"] if op == "<=" else "<=", value)]
+    return reports, needs, choosing.choose(reports, needs)
+
+
+def other_types(rng, truths):
+    """A question whose values are equal to those of the reports and of other types, twice about one key."""
+    reports = reports_of(rng, truths)
+    needs = [
+        need("symplectic", "==", int(rng.integers(2))),
+        need("order", ">=", 1.0),
+        need("order", "==", 2.0),
+    ]
+    return reports, needs, choosing.choose(reports, needs)
+
+
+def priced_alike(rng, question):
+    """The same question with costs that differ in their tenth digit, or that are far below one."""
+    reports, needs, answer = question
+    size, base = (1.0, 7.0) if rng.random() < 0.5 else (1e-3, 0.0)
+    near = {name: {**r, "cost": base + size * 1e-9 * r["cost"]} for name, r in reports.items()}
+    return near, needs, answer
+
+
+def priced_at_nothing(rng, question):
+    """The same question with the right one for free, and the first of its reports."""
+    reports, needs, answer = question
+    free = {answer: {**reports[answer], "cost": 0.0}}
+    return free | {name: r for name, r in reports.items() if name != answer}, needs, answer
+
+
 def priced_high(rng, question):
     """The same question with costs beyond any number that a search might start from."""
     reports, needs, answer = question
@@ -116,6 +151,15 @@ def beyond_reach(rng, truths):
     """A question that no engine meets, though each requirement alone is met by some."""
     reports = reports_of(rng, truths)
     return reports, [need("order", ">=", 4), need("symplectic", "==", True)], None
+
+
+def nothing_told(rng, truths):
+    """A question about a key that some reports lack, and that is None in the others; zero is asked for."""
+    reports = {
+        name: r | ({"noise_db": None} if rng.random() < 0.5 else {})
+        for name, r in reports_of(rng, truths).items()
+    }
+    return reports, [need("noise_db", "==", rng.choice([0, 0.0, False]).item())], None
 
 
 #: Further questions about the engines as measured: requirements, and the right name.

@@ -74,6 +74,12 @@ USERS = {
                "robocasa", "aloha"),
 }  # fmt: skip
 
+#: Parts of names that hold one of the above by chance, and run on another engine.
+NOT_USERS = {
+    "bullet": ("omnigibson",),
+    "mujoco": ("isaac",),
+}
+
 #: Names of the Gazebo that does not run on ODE.
 NEW_GAZEBO = ("gazebo sim", "gz sim", "gz-sim", "ignition", "gazebo harmonic", "gazebo fortress",
               "gazebo garden", "gazebo ionic", "gazebo jetty")  # fmt: skip
@@ -108,6 +114,8 @@ def plain(text: str) -> str:
 def right_user(engine: str, name: str) -> bool:
     """Whether a project is known to run on the engine."""
     if engine == "ode" and plain(name) == "gazebo":
+        return False
+    if any(part in plain(name) for part in NOT_USERS.get(engine, ())):
         return False
     return any(part in plain(name) for part in USERS[engine])
 

@@ -23,7 +23,7 @@ choosing = kit.companion("engine-comparison", "choosing")
 judging = kit.companion("engine-comparison", "judging")
 listing = kit.companion("engine-comparison", "listing")
 measured = kit.companion("engine-comparison", "measured")
-probes = kit.companion("engine-comparison", "probes")
+probing = kit.companion("engine-comparison", "probing")
 questions = kit.companion("engine-comparison", "questions")
 lab = kit.reference("engine-comparison", "lab")
 instrument = kit.reference("engine-comparison", "instrument")
@@ -48,9 +48,11 @@ class Fake:
 
 
 def cases_of(report):
-    """The three known engines with what ``report(truth)`` makes of their right reports."""
+    """The three known engines with what ``report(truth)`` makes of their right reports, after a run of a body
+    at rest."""
+    rest = ("free", (0.0,), (0.0,), 0.1, 1, (0.0,))
     return [
-        bench.Case(name, box, boxes.TRUTH[name], report=report(dict(boxes.TRUTH[name])))
+        bench.Case(name, box, boxes.TRUTH[name], runs=[rest], report=report(dict(boxes.TRUTH[name])))
         for name, box in THREE.items()
     ]
 
@@ -194,7 +196,7 @@ def test_a_value_of_the_wrong_kind_is_a_finding_and_costs_its_own_key_only(bad):
     judging.expect_key(found, "linear_damping", 0)
 
 
-@pytest.mark.parametrize("key", list(probes.TOLERANCES))
+@pytest.mark.parametrize("key", list(probing.TOLERANCES))
 def test_a_number_that_is_nan_or_off_is_not_accepted(key):
     for wrong in (math.nan, -1.0, 1e9):
         with pytest.raises(kit.CheckFailed):
@@ -242,7 +244,9 @@ def test_only_runs_made_twice_in_a_row_count_as_compared(runs):
 def test_the_limits_of_the_engines_at_their_ends_are_what_the_instrument_finds():
     limits = [instrument.max_stable_step(box) for box in questions.ENDS.values()]
     assert limits[:2] == [0.0, math.inf]
-    assert limits[2] * boxes.ANVIL.omega == pytest.approx(2.2195, rel=1e-4)
+    in_turns = [limit * boxes.ANVIL.omega for limit in limits[2:]]
+    assert in_turns == pytest.approx([2.2195, 2.3781, 5.1962], rel=1e-4)  # as checks.py has them
+    assert instrument.tunnelling_speed([*questions.ENDS.values()][-1]) == pytest.approx(168.0)
 
 
 def test_three_of_the_drawn_engines_are_made_like_the_three_at_home():

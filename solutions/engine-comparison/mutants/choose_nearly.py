@@ -1,0 +1,11 @@
+"""Wrong: limits are met within a relative 1e-9."""
+
+
+def choose_engine(reports, requirements):
+    def meets(value, r):
+        return value is not None and (
+            _OPERATORS[r["op"]](value, r["value"]) or math.isclose(value, r["value"])
+        )
+
+    fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
+    return min(fitting, key=lambda name: reports[name]["cost"], default=None)

@@ -12,6 +12,24 @@ __all__ = ["calls_between", "may_remember", "reached_from"]
 #: Largest source that is parsed here, in bytes, because this process has no limits: it takes a third of a
 #: second and 90 MB at most. The longest file of the course has 27,000.
 _LONGEST = 100_000
+#: Built-in functions and methods that change nothing of what they are given.
+_READERS = {
+    "abs",
+    "all",
+    "any",
+    "dict",
+    "enumerate",
+    "float",
+    "int",
+    "isinstance",
+    "len",
+    "list",
+    "max",
+    "min",
+}
+_READERS |= {"range", "reversed", "round", "set", "sorted", "str", "sum", "tuple", "zip"}
+_VIEWS = {"copy", "get", "items", "keys", "values"}
+_LIBRARIES = {"math", "np", "numpy"}
 
 
 def calls_between(source: bytes, tasks: frozenset[str]) -> dict[str, tuple[str, ...]]:
@@ -42,23 +60,27 @@ def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str
 def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
     """The tasks whose functions could keep something from one call to the next, directly or through helpers.
 
-    The others have nowhere to keep it: no variable of the module but plain numbers and texts, no default
-    argument that can change, no decorator, no attribute that is set, no class.
+    The others have nowhere to keep it: no variable of the module but numbers, texts and tables that are only
+    read, no default argument that can change, no decorator, no attribute that is set, no class.
     """
     if len(source) > _LONGEST:
         return frozenset()
     defined = _defined(source)
-    keeps = {node: _keeps(node) for node in dict.fromkeys(defined.values())}
+    statements = dict.fromkeys(defined.values())
+    handed_on = {name for node in statements for name in _handed_on(node)}
+    keeps = {node: _keeps(node, handed_on) for node in statements}
     reach = _reach(defined, tasks)
     return frozenset(task for task in reach if any(keeps[defined[name]] for name in {task} | reach[task]))
 
 
-def _keeps(node: ast.stmt) -> bool:
+def _keeps(node: ast.stmt, handed_on: set[str]) -> bool:
     """Whether something that a definition binds can change between two calls."""
     if isinstance(node, ast.Import | ast.ImportFrom):
         return False
     if isinstance(node, ast.Assign | ast.AnnAssign):
-        return node.value is not None and not _is_fixed(node.value)
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        bound = {part.id for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)}
+        return node.value is not None and not _is_fixed(node.value) and bool(bound & handed_on)
     if not isinstance(node, ast.FunctionDef) or node.decorator_list:
         return True
     defaults = [*node.args.defaults, *(default for default in node.args.kw_defaults if default)]
@@ -67,6 +89,36 @@ def _keeps(node: ast.stmt) -> bool:
         or (isinstance(child, ast.Attribute) and isinstance(child.ctx, ast.Store))
         for child in ast.walk(node)
     )
+
+
+def _handed_on(node: ast.stmt) -> set[str]:
+    """Names whose values a statement may change, or hand to what may: all that it does not merely read."""
+    read = {id(part) for child in ast.walk(node) for part in _merely_read(child)}
+    names = (
+        child for child in ast.walk(node) if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load)
+    )
+    return {name.id for name in names if id(name) not in read}
+
+
+def _merely_read(node: ast.AST) -> list[ast.expr]:
+    """The parts of an expression that it only reads."""
+    read: list[ast.expr] = []
+    match node:
+        case ast.Subscript(value=table, ctx=ast.Load()):
+            read = [table]
+        case ast.Call(func=ast.Name(id=name) as called):
+            read = [called, *(node.args if name in _READERS else [])]
+        case ast.Call(func=ast.Attribute(value=ast.Name(id=owner) as holder, attr=method)):
+            # numpy changes an array only where it is told to write into it.
+            read = node.args if owner in _LIBRARIES and not node.keywords else []
+            read = [*read, holder] if method in _VIEWS else read
+        case ast.For(iter=table) | ast.comprehension(iter=table):
+            read = [table]
+        case ast.Compare():
+            read = [node.left, *node.comparators]
+        case ast.BinOp():
+            read = [node.left, node.right]
+    return read
 
 
 def _is_fixed(value: ast.expr) -> bool:

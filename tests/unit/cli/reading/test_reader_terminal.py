@@ -28,6 +28,8 @@ ROOT = Path(__file__).resolve().parents[4]
 LESSON = "numerical-integration"
 #: However slow the machine is: what is waited for comes within this, in s, or never.
 NEVER = 90.0
+#: Once nothing has come for so long, a screen is complete, in s: it is drawn in a few hundredths.
+SETTLED = 0.5
 
 
 class Terminal:
@@ -78,6 +80,15 @@ class Terminal:
             new += data
         pytest.fail(f"{words} did not come; what came ended with {self.said[-600:]!r}")
 
+    def screen(self, *words: str) -> str:
+        """As ``wait``, and what follows until nothing more does: a screen comes in pieces."""
+        new = self.wait(*words)
+        while select.select([self._ours], [], [], SETTLED)[0]:
+            data = os.read(self._ours, 1 << 16)
+            self.said += data
+            new += data.decode("utf-8", "replace")
+        return new
+
     def end(self) -> int:
         """Until the program has ended; its exit code."""
         until = time.monotonic() + NEVER
@@ -119,7 +130,7 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(workspace, ter
     first.wait("min left")
     for _ in range(30):  # to the first prediction
         first.keys(" ")
-        if "Enter predict" in first.wait("min left", "Enter predict", "the end"):
+        if "Enter predict" in first.screen("min left", "Enter predict", "the end"):
             break
     first.keys("\r")
     first.wait("keep it and open")

@@ -105,7 +105,7 @@ def _error_finding(failure: StudentFailure) -> Finding:
     if failure.type == "NotImplementedError":
         return Finding(
             message="This function is not written yet: it still raises NotImplementedError.",
-            help="Replace the `raise` line by your code; the docstring above it says what to return.",
+            help="Replace the `raise` line with your code; the docstring above it says what to return.",
             diagnosis="NOT_IMPLEMENTED",
         )
     places: Places = failure.places or Places()

@@ -57,7 +57,7 @@ class Student:
             if "Enter predict" in keys:
                 self.predict()
             # Where a message hides the keys, the mark at the question says as much.
-            elif "Were you?" in screen and ("were you 1" in keys or "▸ You said" in screen):
+            elif "Were you right?" in screen and ("were you 1" in keys or "▸ You said" in screen):
                 self.terminal.keys("2")
                 self.terminal.wait_for_other(screen)
                 self.done.append("judged")
@@ -65,7 +65,7 @@ class Student:
                 self.do_task(self.left.pop(0))
             elif "r run" in keys and self.done.count("ran") < 2:
                 self.run()
-            elif "Enter puts its file" in screen or "Were you?" in screen:
+            elif "Enter puts its file" in screen or "Were you right?" in screen:
                 self.terminal.keys("Tab")  # a cell above it is at hand
                 self.terminal.wait_for_other(screen)
             elif "You have read this lesson." in screen:

@@ -14,6 +14,7 @@ from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
 from course.sandbox.runs.film import Film, ffmpeg
 from course.sandbox.scene.loading import question
+from course.sandbox.scene.predicting import NO_GUESS, guess_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -127,13 +128,10 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
         answer = console.ask(f"Your guess in {asked.unit} (Enter for none): ")
         if not answer:
             return None
-        try:
-            guess = float(answer.replace(",", "."))
-        except ValueError:
-            guess = math.nan
-        if math.isfinite(guess):
+        guess = guess_of(answer, asked.unit)
+        if guess is not None:
             return guess
-        console.line("Not a number.")
+        console.line(NO_GUESS)
 
 
 # -- seen ------------------------------------------------------------------------------------------------

@@ -111,14 +111,14 @@ def _show(
         console.block(_loop(before.source), "python", indent=2)
         console.blank()
         show_verdict(console, example, before.verdict, whole=False, brief=True)
-    if not console.pause("The mended line:"):
+    if not console.pause("Next: the mended line."):
         return
     console.blank()
     console.heading("2. The one line, mended")
     console.block("\n".join(change), "diff", indent=2)
     console.blank()
     show_verdict(console, example, after.verdict)
-    if not console.pause("Both motions:"):
+    if not console.pause("Next: both motions."):
         return
     console.blank()
     console.heading("3. What the mistake hid")

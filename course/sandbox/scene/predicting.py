@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
     from course.sandbox.scene.model import Prediction
 
-__all__ = ["Comparison", "compare"]
+__all__ = ["NO_GUESS", "Comparison", "compare", "guess_of"]
+
+#: What is said of a text that holds none.
+NO_GUESS = "Not a number: try something like 2.5 or -1e3, in the unit of the question."
 
 
 class Comparison(msgspec.Struct, frozen=True, kw_only=True):
@@ -41,6 +44,15 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     agree: bool
     verdict: str
     why: str
+
+
+def guess_of(text: str, unit: str) -> float | None:
+    """The number in a typed text, with comma or point, with its unit or without; None if there is none."""
+    try:
+        value = float(text.strip().removesuffix(unit).replace(",", "."))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
 
 
 def compare(

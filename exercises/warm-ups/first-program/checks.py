@@ -12,7 +12,7 @@ ROUNDING = "closed form: only rounding is allowed"
 @pytest.mark.task("gap")
 @pytest.mark.points(1)
 def test_gap_is_a_number(submission):
-    """The distance of two balls at a sample is a number, and the right one"""
+    """The distance between two balls at one sample"""
     first, second = [[0.0, 1.0], [1.5, 1.0]], [[5.0, -2.0], [3.0, -2.0]]
     for k, expected in ((0, 5.0), (1, 1.5)):
         kit.expect_close(
@@ -54,7 +54,7 @@ def test_run_begins_at_the_start(submission):
         4,
         name="the run",
         input={"n": 3},
-        message="Three steps do not give four samples.",
+        message="A run of three steps does not have four samples.",
         help="Count the start, and the state after each step.",
     )
 
@@ -86,7 +86,7 @@ def test_landing_is_where_the_ground_is(submission):
 @pytest.mark.task("after_contact")
 @pytest.mark.points(1)
 def test_balls_bounce(submission):
-    """Equal balls that meet head-on do not go on as they were"""
+    """Equal balls that meet head-on bounce off each other"""
     for before, after in (((2.0, -2.0), [-2.0, 2.0]), ((3.0, 1.0), [1.0, 3.0])):
         kit.expect_array(
             submission.call("after_contact", *before),
@@ -132,7 +132,7 @@ def test_error_is_taken_at_one_moment(submission):
             quantity="error",
             units="m",
             input={"omega": omega, "samples": n + 1},
-            message="Positions that are exact are said to have an error.",
+            message="Exact positions get an error that is not zero.",
             help=f"The first of the {n + 1} positions belongs to t = 0. To which time does the last belong?",
         )
     kit.expect_close(

@@ -11,7 +11,7 @@ from course.errors import ContentError, UsageError
 from course.sandbox.runs.running import run
 from course.sandbox.scene.expression import evaluate
 from course.sandbox.scene.loading import FOLDER, choose, question, read_scene, scene_ids, values_of
-from course.sandbox.scene.predicting import compare
+from course.sandbox.scene.predicting import compare, guess_of
 from course.sandbox.scene.settings import SETTINGS
 from course.sandbox.scene.wording import fill, used
 from course.sandbox.views.story import Experiment
@@ -246,3 +246,11 @@ def test_a_list_has_the_numbers_of_the_file() -> None:
     assert question(choose("incline")).startswith(
         "The slope is 30 degrees steep, and the friction of the pair is 0.4."
     )
+
+
+@pytest.mark.parametrize(
+    ("typed", "guess"),
+    [("0.42", 0.42), ("0,42 m", 0.42), (" 2e1m ", 20.0), ("42 cm", None), ("m", None), ("inf m", None)],
+)
+def test_a_guess_is_a_number_with_its_unit_or_without(typed: str, guess: float | None) -> None:
+    assert guess_of(typed, "m") == guess

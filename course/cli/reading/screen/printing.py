@@ -294,7 +294,7 @@ class ScreenPrinter(FancyPrinter):
         if said.judged:
             facts.append(("You were", judged[said.judged]))
         else:
-            facts.append(("Were you?", "1 right   2 nearly   3 wrong"))
+            facts.append(("Were you right?", "1 right   2 nearly   3 wrong"))
         grid = Table.grid(padding=(0, 2, 0, 0))
         grid.add_column(no_wrap=True)
         grid.add_column(overflow="fold", ratio=1)

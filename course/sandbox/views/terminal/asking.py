@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -13,6 +12,7 @@ from textual.containers import VerticalScroll
 from textual.widgets import Input, Static
 
 from course.full_screen import Overlay, TextOverlay
+from course.sandbox.scene.predicting import NO_GUESS, guess_of
 from course.sandbox.views.terminal.words import KEYS, clean
 
 if TYPE_CHECKING:
@@ -20,19 +20,10 @@ if TYPE_CHECKING:
 
     from course.sandbox.scene.model import Scene
 
-__all__ = ["Page", "PageOverlay", "QuestionOverlay", "comparison", "guess_of", "help_pages"]
+__all__ = ["Page", "PageOverlay", "QuestionOverlay", "comparison", "help_pages"]
 
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
-
-
-def guess_of(text: str) -> float | None:
-    """The number in a typed text, with comma or point; None if it is not a number."""
-    try:
-        value = float(text.strip().replace(",", "."))
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
 
 
 class QuestionOverlay(Overlay[float]):
@@ -65,9 +56,9 @@ class QuestionOverlay(Overlay[float]):
         if not event.value.strip():
             self.close(None)
             return
-        guess = guess_of(event.value)
+        guess = guess_of(event.value, self._unit)
         if guess is None:
-            self.query_one("#wrong", Static).update("Not a number: try something like 2.5 or -1e3.")
+            self.query_one("#wrong", Static).update(NO_GUESS)
             return
         self.close(guess)
 

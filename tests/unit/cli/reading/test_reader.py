@@ -161,7 +161,7 @@ def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tm
         app._chosen(f"block:{cell.index}")
         await pilot.pause(0.2)
         assert app.page.item.kind == "cell"
-        assert "Were you?" in screen(app)
+        assert "Were you right?" in screen(app)
         assert "1 right, 2 nearly, 3 wrong   r run" in screen(app)
         await pilot.press("2")
         assert app.progress.prediction(question).judged == "nearly"

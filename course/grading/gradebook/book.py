@@ -47,6 +47,7 @@ from course.scoring.verdict import Verdict, finite
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
 __all__ = ["Gradebook"]
@@ -207,11 +208,14 @@ class Gradebook:
         newest = self._db.execute(f"SELECT ifnull(max(number), 0) FROM {table}").fetchone()
         return int(newest[0]) + 1
 
-    def confirm(self, key: Key) -> bool:
+    def confirm(self, key: Key, moving: AbstractContextManager[None] | None = None) -> bool:
         """Whether this very submission was graded; if so, make that the newest result of its student again.
 
         A student who hands in an earlier version again gets the score of that version. A result of other
         graders than the key's counts too, so that nothing is graded again without need.
+
+        Args:
+            moving: entered while another result becomes the newest.
         """
         number = self._find(key)
         if number is None:
@@ -222,7 +226,7 @@ class Gradebook:
                 (key.student, key.exercise),
             ).fetchone()[0]
         if newest != number:
-            with self._transaction():
+            with moving or contextlib.nullcontext(), self._transaction():
                 self._db.execute(
                     "UPDATE results SET number = ?1, row_sha256 = row_digest('results', ?1, run, student,"
                     " exercise, submission_sha256, grader_version, seed, graded_at, verdict, verdict_sha256)"

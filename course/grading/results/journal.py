@@ -15,8 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from course.grading.gradebook.book import Gradebook
+    from course.grading.gradebook.records import Key
+    from course.grading.results.effective import Effective
 
-__all__ = ["Recording", "ScoreChange", "counting", "recorded"]
+__all__ = ["Recording", "ScoreChange", "counted", "counting", "recorded", "replacing"]
 
 Scores = dict[tuple[str, str], float | None]
 
@@ -62,3 +64,31 @@ def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
     new = [(one.student, one.exercise, one.after) for one in told.moved]
     texts = (msgspec.json.encode(old).decode(), msgspec.json.encode(new).decode())
     book.note(Decision("", "", kind, "", "", reason, *texts))
+
+
+@contextlib.contextmanager
+def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
+    """Note in the journal if the result that this block puts in the place of another changes what counts."""
+    before = next(view.all(key.student, key.exercise), None)
+    yield
+    after = next(view.all(key.student, key.exercise), None)
+    if before is None or after is None:
+        return
+    if (before.verdict.state, before.score) != (after.verdict.state, after.score):
+        told = counted(before), counted(after)
+        book.note(Decision("", "", "resume", key.student, key.exercise, "another submission", *told))
+
+
+def counted(counts: Effective | None, file: str = "") -> str:
+    """What counts for a student's exercise, as a decision about it keeps it.
+
+    Args:
+        file: the file that the instructor chose, if any.
+    """
+    if counts is None:
+        return msgspec.json.encode({"state": "missing", "score": None}).decode()
+    told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score}
+    told |= {"submission": counts.result.key.submission_sha256}
+    if counts.verdict.error is not None:
+        told["reason"] = counts.verdict.error.code
+    return msgspec.json.encode(told | ({"file": file} if file else {})).decode()

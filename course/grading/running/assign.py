@@ -19,6 +19,7 @@ from course.grading.intake.archives import RefusedError
 from course.grading.intake.students import Entry, submission_from
 from course.grading.intake.triage import Found
 from course.grading.results.effective import Results
+from course.grading.results.journal import counted
 from course.grading.running.batch import grade_all
 from course.grading.running.snapshot import Snapshot, frozen, kept
 from course.scoring.judging.terms import Terms
@@ -227,17 +228,7 @@ def _recorded(results: Results, one: Assignment, graded: Graded, version: str, r
         SubmittedAt(one.student, one.exercise, entry.sha256, source, at) for source, at in one.times
     )
     after = next(Results(book).all(one.student, one.exercise))
-    told = _told(before), _told(after, one.name)
+    told = counted(before), counted(after, one.name)
     book.note(Decision("", "", "assign", one.student, one.exercise, reason, *told))
     book.set_found(one.student, one.exercise, None)
     return Assigned(one, before, after)
-
-
-def _told(counts: Effective | None, file: str = "") -> str:
-    if counts is None:
-        return msgspec.json.encode({"state": "missing", "score": None}).decode()
-    told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score}
-    told |= {"submission": counts.result.key.submission_sha256}
-    if counts.verdict.error is not None:
-        told["reason"] = counts.verdict.error.code
-    return msgspec.json.encode(told | ({"file": file} if file else {})).decode()

@@ -20,6 +20,7 @@ from course.grading.intake.students import Entry, read_quiz, read_student, witne
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Results
+from course.grading.results.journal import replacing
 from course.grading.running.batch import grade_all
 from course.grading.running.folder import BOOK, begin, export_all, remember, taken_back
 from course.grading.running.snapshot import Snapshot, among_graders, frozen, kept
@@ -31,6 +32,7 @@ from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     from course.catalog.load import Catalog
@@ -119,7 +121,8 @@ def grade_class(
     ):
         run = _Run(members.students, graders, folder, options, book)
         for result, files in run.results(grade):
-            book.add(result, files)
+            with run.replacing(result.key):
+                book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
             report(run.view.of(result), run.done, len(members.students))
         run.note_times()
@@ -245,7 +248,14 @@ class _Run:
         """Whether it was graded before, or an assigned file still takes the place of a missing one."""
         if entry.submission is None and (entry.student, entry.exercise.id) in self._assigned:
             return True
-        return self._book.confirm(self._key(entry))
+        return self._confirmed(self._key(entry))
+
+    def _confirmed(self, key: Key) -> bool:
+        return self._book.confirm(key, self.replacing(key))
+
+    def replacing(self, key: Key) -> AbstractContextManager[None]:
+        """Where a result takes the place of another: only a resumed run finds one."""
+        return replacing(self._book, self.view, key) if self._options.resume else contextlib.nullcontext()
 
     def _note_found(self, entry: Entry) -> None:
         about = (entry.student, entry.exercise.id)
@@ -278,7 +288,7 @@ class _Run:
                 continue
             key = Key(student.name, QUIZ, record_sha256(record), version, self.summary.seed)
             self._witnessed(witnesses(student, QUIZ, key.submission_sha256, path))
-            if self._options.resume and self._book.confirm(key):
+            if self._options.resume and self._confirmed(key):
                 self.summary.already += 1
             else:
                 yield Result(key, verdict), {QUIZ_RECORD: _as_json(record)}

@@ -62,7 +62,9 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     (change,) = log["changes"]
     assert (change["kind"], change["student"], change["reason"]) == ("assign", "bob", "by mail")
     assert change["who"]
-    assert "by mail" in course("grade", "log", "out", "bob").out
+    logged = course("grade", "log", "out", "bob").out
+    assert "by mail" in logged
+    assert "0, no_file -> 10, hw.py" in logged
     assert "by mail" in course("grade", "explain", "out", "bob", "doubling").out
     for words, code in (
         (("bob",), "usage"), (("bob", "x.py", "--accept-names"), "usage"),
@@ -91,6 +93,7 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) ->
     assert (change["kind"], change["reason"], change["before"]) == (
         "late", "the rules", '[["ada","doubling",10.0]]',
     )  # fmt: skip
+    assert "ada doubling 10 -> ada doubling 9" in course("grade", "log", "out").out
 
 
 def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course, here: Path) -> None:

@@ -127,6 +127,13 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     assert graded == ["student-001"]
     assert (summary.already, summary.seed) == (3, 5)
     assert scores(tmp_path / "out")["student-001"] == 6
+    (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution)
+    grade_class(tmp_path / "class", tmp_path / "out", catalog, again, lambda *_: None)
+    with open_results(tmp_path / "out") as results:
+        noted = results.book.journal()
+    assert [(it.kind, it.student) for it in noted] == [("resume", "student-001")] * 2
+    told = [[json.loads(text)["score"] for text in (it.before, it.after)] for it in noted]
+    assert told == [[10, 6], [6, 10]]
 
 
 def test_a_grader_that_dies_costs_no_other_submission(

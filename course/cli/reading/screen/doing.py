@@ -53,6 +53,8 @@ class TasksApp(CellsApp):
             return "done in a workspace   Space on   ? keys"
         if not self._practice.of(item.target).file:
             return "Enter start it   Space on   ? keys"
+        if busy := self._practice.of(item.target).busy:  # in a low window its own line may be out of sight
+            return f"{busy} ...   Space on   ? keys"
         hint = "h hint   " if hint_is_named(self._practice.of(item.target)) else ""
         return f"r check   e edit   {hint}Space on   ? keys"
 

@@ -17,7 +17,6 @@ from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import Row, is_right, matching
 from course.scoring.explain.words import FILE as WORDS
 from course.scoring.failures import CheckFailed, StudentFailure
-from course.scoring.judging.repeating import depends_on_the_past
 from course.scoring.verdict import CheckResult, Finding, Status
 
 if TYPE_CHECKING:
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from course.scoring.explain import Diagnosis, Table, Words
+    from course.scoring.judging.repeating import Again
     from course.scoring.remote import Heard, RemoteSubmission
 
 __all__ = ["CASCADE", "Explainer", "answer_numbers", "answers", "tasks_asked"]
@@ -69,13 +69,13 @@ class Explainer:
         remote: RemoteSubmission,
         source: bytes,
         heard: Mapping[str, Past] = types.MappingProxyType({}),
-        anew: Callable[[], RemoteSubmission] | None = None,
+        again: Again | None = None,
     ) -> None:
         """Put the story of each task into the results of its failed checks.
 
         Args:
             heard: of failed checks, the CPU time they took, s, and the calls that were listened to.
-            anew: loads the submission in another worker.
+            again: asks the submission again, in workers of its own.
         """
         wrong = {
             result.task for result in results.values() if result.status not in {Status.PASS, Status.SKIP}
@@ -91,7 +91,7 @@ class Explainer:
             said = {} if gone else self._answer_sums(task, remote, names)
             culprit = next((name for name in callers.get(task, ()) if name in wrong), None)
             past = [heard[check.id] for check in checks if check.id in heard]
-            kept = bool(anew and not gone and culprit is None and _kept(past, task, anew))
+            kept = bool(again and not gone and culprit is None and _kept(past, task, again))
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
                 part = [check for check in checks if self._parts.get(check.id, task) == name]
                 story = self._story(
@@ -125,7 +125,7 @@ class Explainer:
         return () if is_right(self._table, name, sums) else matching(self._table, name, sums)
 
 
-def _kept(past: list[Past], task: str, anew: Callable[[], RemoteSubmission]) -> bool:
+def _kept(past: list[Past], task: str, again: Again) -> bool:
     """Whether calls of failed checks, of those that took least, give something else in another order."""
     calls: list[Heard] = []
     total = 0.0
@@ -133,7 +133,7 @@ def _kept(past: list[Past], task: str, anew: Callable[[], RemoteSubmission]) -> 
         total += took
         if total <= _PATIENCE:
             calls += heard
-    return bool(calls) and depends_on_the_past(calls, task, anew, _PATIENCE)
+    return bool(calls) and again.depends_on_the_past(calls, task, _PATIENCE)
 
 
 def tasks_asked(questions: ModuleType) -> frozenset[str]:

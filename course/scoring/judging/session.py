@@ -27,6 +27,7 @@ from course.scoring.checks.companions import companion
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.judging.explaining import Explainer
 from course.scoring.judging.outcomes import found, load_problem, no_functions, result, skipped, unjudged
+from course.scoring.judging.repeating import Again
 from course.scoring.judging.submission import Submission
 from course.scoring.judging.terms import Terms
 from course.scoring.places import Places
@@ -229,9 +230,8 @@ class GradingSession:
             results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
         if self._explainer is not None and self._failed:
             source = submission.files[self.exercise.module]
-            self._explainer.explain(
-                results, self._failed, remote, source, self._heard, lambda: self._load(submission)
-            )
+            with Again(lambda: self._load(submission)) as again:
+                self._explainer.explain(results, self._failed, remote, source, self._heard, again)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:

@@ -8,6 +8,7 @@ different sums, except by a chance of one in millions. The answers cannot be rec
 
 from __future__ import annotations
 
+import array
 import math
 import zlib
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
 __all__ = ["SAME", "SUMS", "Answers", "fingerprint", "in_range", "numbers_of", "read"]
 
@@ -45,7 +46,10 @@ def fingerprint(answers: Answers) -> tuple[float, ...]:
 
 def numbers_of(answers: Answers) -> np.ndarray[Any, Any]:
     """All the numbers of plain values, in order: equal values have the same ones."""
-    return np.fromiter((x for answer in answers for x in _numbers(answer)), float, -1)
+    numbers = array.array("d")
+    for answer in answers:
+        _put(numbers, answer)
+    return np.array(numbers)
 
 
 def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
@@ -71,30 +75,53 @@ def in_range(value: float) -> float:
     return -1.0 if math.isnan(number) else max(-_LARGEST, min(number, _LARGEST))
 
 
-def _numbers(value: Any, depth: int = 8) -> Iterator[float]:
+def _put(numbers: array.array[float], value: Any, depth: int = 8) -> None:
     if isinstance(value, dict) and value.keys() == {"raised"}:
-        yield _RAISED
+        numbers.append(_RAISED)
     elif isinstance(value, np.ndarray):
-        yield from _array(value, depth)
+        _put_array(numbers, value, depth)
     elif isinstance(value, list | tuple) and depth:
-        yield float(len(value))
-        for item in value:
-            yield from _numbers(item, depth - 1)
+        numbers.append(float(len(value)))
+        if set(map(type, value)) == {float}:
+            _put_floats(numbers, np.array(value))
+        else:
+            for item in value:
+                _put(numbers, item, depth - 1)
     elif isinstance(value, dict) and depth:
-        yield float(len(value))
+        numbers.append(float(len(value)))
         for key in sorted(value, key=str):  # the order of insertion does not matter
-            yield from _numbers(value[key], depth - 1)
+            _put(numbers, value[key], depth - 1)
     else:
-        yield _number(value)
+        numbers.append(_number(value))
 
 
-def _array(value: np.ndarray[Any, Any], depth: int) -> Iterator[float]:
+def _put_array(numbers: array.array[float], value: np.ndarray[Any, Any], depth: int) -> None:
     if value.ndim == 0:
-        yield _number(value.item())
+        numbers.append(_number(value.item()))
+    elif value.dtype.kind in "fiu" and value.ndim <= depth:
+        _put_floats(numbers, _with_lengths(value.astype(float)))
     elif depth:
-        yield float(len(value))
+        numbers.append(float(len(value)))
         for row in value:
-            yield from _array(row, depth - 1) if isinstance(row, np.ndarray) else _numbers(row.item())
+            if isinstance(row, np.ndarray):
+                _put_array(numbers, row, depth - 1)
+            else:
+                _put(numbers, row.item())
+
+
+def _with_lengths(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """An array as a vector, the length of each row before the row."""
+    rows, width = value[..., np.newaxis], 1
+    for axis in reversed(range(value.ndim)):
+        outer, length = value.shape[:axis], value.shape[axis]
+        lengths = np.full((*outer, 1), float(length))
+        rows = np.concatenate([lengths, rows.reshape(*outer, length * width)], axis=-1)
+        width = rows.shape[-1]
+    return rows
+
+
+def _put_floats(numbers: array.array[float], value: np.ndarray[Any, Any]) -> None:
+    numbers.frombytes(np.nan_to_num(value, nan=_NAN, posinf=_INFINITE, neginf=-_INFINITE).tobytes())
 
 
 def _number(value: Any) -> float:

@@ -7,6 +7,7 @@ None for them. ``COURSE_CONTENT=DIR`` selects another course altogether, laid ou
 
 from __future__ import annotations
 
+import functools
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,7 @@ from course.ids import WARM_UPS
 __all__ = ["ENVIRONMENT_VARIABLE", "Content", "chosen", "content"]
 
 ENVIRONMENT_VARIABLE = "COURSE_CONTENT"
+_PACKAGE = Path(__file__).resolve().parent.parent
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +90,7 @@ def content() -> Content:
     named = os.environ.get(ENVIRONMENT_VARIABLE)
     if named:
         return chosen(Path(named))
-    package = Path(__file__).resolve().parent.parent
-    return _installed(package)
+    return _installed(_PACKAGE)
 
 
 def chosen(folder: Path) -> Content:
@@ -115,6 +116,7 @@ def chosen(folder: Path) -> Content:
     )
 
 
+@functools.cache
 def _installed(package: Path) -> Content:
     """The course that came with the package at ``package``.
 

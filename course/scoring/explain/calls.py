@@ -54,7 +54,8 @@ def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str
         names: which ones to examine; None for all, which takes time proportional to the square of their
             number.
     """
-    return _reach(_defined(source), names)
+    defined = _defined(source)
+    return _reach(defined, _parts(defined), names)
 
 
 def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
@@ -66,14 +67,14 @@ def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
     if len(source) > _LONGEST:
         return frozenset()
     defined = _defined(source)
-    statements = dict.fromkeys(defined.values())
-    handed_on = {name for node in statements for name in _handed_on(node)}
-    keeps = {node: _keeps(node, handed_on) for node in statements}
-    reach = _reach(defined, tasks)
+    parts = _parts(defined)
+    handed_on = set().union(*map(_handed_on, parts.values()))
+    keeps = {node: _keeps(node, inside, handed_on) for node, inside in parts.items()}
+    reach = _reach(defined, parts, tasks)
     return frozenset(task for task in reach if any(keeps[defined[name]] for name in {task} | reach[task]))
 
 
-def _keeps(node: ast.stmt, handed_on: set[str]) -> bool:
+def _keeps(node: ast.stmt, inside: list[ast.AST], handed_on: set[str]) -> bool:
     """Whether something that a definition binds can change between two calls."""
     if isinstance(node, ast.Import | ast.ImportFrom):
         return False
@@ -87,16 +88,14 @@ def _keeps(node: ast.stmt, handed_on: set[str]) -> bool:
     return not all(map(_is_fixed, defaults)) or any(
         isinstance(child, ast.Global)
         or (isinstance(child, ast.Attribute) and isinstance(child.ctx, ast.Store))
-        for child in ast.walk(node)
+        for child in inside
     )
 
 
-def _handed_on(node: ast.stmt) -> set[str]:
+def _handed_on(inside: list[ast.AST]) -> set[str]:
     """Names whose values a statement may change, or hand to what may: all that it does not merely read."""
-    read = {id(part) for child in ast.walk(node) for part in _merely_read(child)}
-    names = (
-        child for child in ast.walk(node) if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load)
-    )
+    read = {id(part) for child in inside for part in _merely_read(child)}
+    names = (child for child in inside if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load))
     return {name.id for name in names if id(name) not in read}
 
 
@@ -155,15 +154,21 @@ def _defined(source: bytes) -> dict[str, ast.stmt]:
     return defined
 
 
-def _reach(defined: dict[str, ast.stmt], names: frozenset[str] | None) -> dict[str, frozenset[str]]:
+def _parts(defined: dict[str, ast.stmt]) -> dict[ast.stmt, list[ast.AST]]:
+    """All nodes of each statement."""
+    return {node: list(ast.walk(node)) for node in dict.fromkeys(defined.values())}
+
+
+def _reach(
+    defined: dict[str, ast.stmt], parts: dict[ast.stmt, list[ast.AST]], names: frozenset[str] | None
+) -> dict[str, frozenset[str]]:
     # By statement: one may bind thousands of names.
-    uses = {node: _names(node) & defined.keys() for node in dict.fromkeys(defined.values())}
+    uses = {
+        node: {child.id for child in inside if isinstance(child, ast.Name)} & defined.keys()
+        for node, inside in parts.items()
+    }
     wanted = defined if names is None else names & defined.keys()
     return {name: frozenset(_reached(name, defined, uses)) for name in wanted}
-
-
-def _names(node: ast.AST) -> set[str]:
-    return {child.id for child in ast.walk(node) if isinstance(child, ast.Name)}
 
 
 def _reached(name: str, defined: dict[str, ast.stmt], uses: dict[ast.stmt, set[str]]) -> set[str]:

@@ -181,9 +181,10 @@ def session_of() -> Iterator[Any]:
 def verdicts(session: GradingSession, task: str, plan: tuple[str, str, str]) -> Iterator[Verdict]:
     """Of the checks of a task, on a solution spoilt there."""
     source = spoilt(solution_path(CATALOG, session.exercise).read_text("utf-8"), task, *plan)
-    for check in session.checks:
-        if check.task == task:
-            yield session.grade(Submission({session.exercise.module: source.encode()}), only=[check.id])
+    checks = [check.id for check in session.checks if check.task == task]
+    # What counts calls is loaded anew for each check, so that each of them sees the spoilt ones.
+    for only in [[check] for check in checks] if plan[2] == "later" else [checks]:
+        yield session.grade(Submission({session.exercise.module: source.encode()}), only=only)
 
 
 def cases() -> Iterator[Any]:

@@ -32,7 +32,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
         MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
             cannot be written.
     """
-    selection = select(results, options, usable=_has_canvas_id)
+    selection = select(results, options, usable=_has_canvas_id, needs="canvas_id or sis_user_id")
     missing = [name for name in selection.exercises if name not in options.assignments]
     if missing:
         raise UsageError(
@@ -76,7 +76,7 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
         MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
             cannot be written.
     """
-    selection = select(results, options, usable=_has_moodle_key)
+    selection = select(results, options, usable=_has_moodle_key, needs="moodle_key")
     check_zeros(selection, options)
     headings = ["moodle_key", "name", *(results.title(name) for name in selection.exercises)]
     rows = []

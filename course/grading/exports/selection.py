@@ -95,12 +95,14 @@ def select(
     results: Results,
     options: ExportOptions,
     usable: Callable[[Person], bool] | None = None,
+    needs: str = "",
 ) -> Selection:
     """Select the content of an export.
 
     Args:
         usable: whether a row of the roster has the key this format finds people by; without it a roster is
             not needed.
+        needs: the columns of our own roster that have this key, in words.
 
     Raises:
         NotFoundError: no such exercise.
@@ -126,10 +128,11 @@ def select(
     if results.roster is not None:
         people, unmatched = results.roster.match(results.students(), results.downloads)
         if usable is not None:
-            unmatched += [student for student, person in people.items() if not usable(person)]
+            keyless = [student for student, person in people.items() if not usable(person)]
+            unmatched |= dict.fromkeys(keyless, f"No usable {needs}")
             people = {student: person for student, person in people.items() if usable(person)}
         if unmatched and not options.partial:
-            raise _unmatched(sorted(unmatched))
+            raise _unmatched(results, unmatched, needs)
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     return Selection(results, exercises, people, written, options.missing == "zero")
@@ -170,12 +173,22 @@ def is_part(results: Results, options: ExportOptions) -> bool:
     return options.partial and bool(results.unmatched(results.students()))
 
 
-def _unmatched(students: list[str]) -> MissingCapabilityError:
-    listed = ", ".join(repr(student) for student in students[:_SHOWN])
-    more = f" and {len(students) - _SHOWN} more" if len(students) > _SHOWN else ""
+def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapabilityError:
+    assert results.roster is not None
+    by_reason: dict[str, list[str]] = {}
+    for student, reason in sorted(why.items()):
+        by_reason.setdefault(reason, []).append(repr(student))
+    listed = " ".join(
+        f"{reason}: {', '.join(names[:_SHOWN])}"
+        + (f" and {len(names) - _SHOWN} more." if names[_SHOWN:] else ".")
+        for reason, names in by_reason.items()
+    )
+    key = f" and {needs}" if needs else ""
+    about = f"{len(why)} of {len(results.students())} students"
     return MissingCapabilityError(
-        f"The roster has no usable row of their own for {len(students)} students: {listed}{more}. "
-        "Nothing was written.",
-        help="Complete the roster, or add --partial to leave them out.",
+        f"{results.roster.called} has no usable row for {about}. {listed} "
+        f"{results.roster.compared(why, results.downloads)} Nothing was written.",
+        help="Correct it, or give a CSV file of your own with the columns student (the name in the gradebook)"
+        f"{key}. --partial leaves these students out.",
         code="unmatched_students",
     )

@@ -46,7 +46,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
             help="Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'.",
             code="needs_roster",
         )
-    selection = select(results, options, usable=lambda person: bool(person.moodle_key))
+    selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs="moodle_key")
     if len(selection.exercises) != 1:
         raise UsageError(
             f"A worksheet is about one assignment, and this is about {len(selection.exercises)} exercises.",

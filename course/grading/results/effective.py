@@ -225,7 +225,7 @@ class Results:
 
     def unmatched(self, students: Iterable[str]) -> list[str]:
         """Students without exactly one row of the roster; none if there is no roster."""
-        return self.roster.match(students, self.downloads)[1] if self.roster else []
+        return list(self.roster.match(students, self.downloads)[1]) if self.roster else []
 
     # -- parts ----------------------------------------------------------------------------------------
 

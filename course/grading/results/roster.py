@@ -11,8 +11,9 @@ A roster is a CSV file with a heading row, of one of four kinds, known by the he
     Gradescope's        First Name and Last Name, or Name; SID, Email, and Role if there is one
 
 A student is found by ``student``, or, for a class downloaded from a platform, by that platform's own number.
-A name is used only where there is no number, and only if one student alone has it; ambiguous students are
-listed.
+A name is used only where there is no number, and only if one student alone has it. A plain folder may be
+called after any of a student's ids, login, address or name, if that is in one row alone. Ambiguous students
+are listed.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.errors import UsageError
+from course.printable import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,9 +40,26 @@ if TYPE_CHECKING:
 __all__ = ["COLUMNS", "Person", "Roster", "moodle_key", "read_roster", "read_text"]
 
 COLUMNS = (
-    "student", "name", "email", "canvas_id", "sis_user_id", "section", "moodle_key", "extension_days",
+    "student", "name", "email", "login", "canvas_id", "sis_user_id", "section", "moodle_key",
+    "extension_days",
 )  # fmt: skip
 _MAX_BYTES = 20 << 20
+#: The columns that a plain folder may be called after, and where each of a download's keys is looked for.
+_FOLDER = ("student", "canvas_id", "sis_user_id", "login", "moodle_key", "email", "name")
+_DOWNLOAD = {
+    "canvas": ("canvas_id",),
+    "gradescope": ("sis_user_id", "student", "email"),
+    "moodle": ("moodle_key", "name"),
+}
+#: The headings of the platforms' files, by our column.
+_CANVAS = {"name": "Student", "canvas_id": "ID", "sis_user_id": "SIS User ID", "login": "SIS Login ID"}
+_MOODLE = {
+    "moodle_key": "Identifier", "name": "Full name", "email": "Email address",
+    "sis_user_id": "ID number", "login": "Username",
+}  # fmt: skip
+_GRADESCOPE = {"sis_user_id": "SID", "email": "Email", "name": "Name"}
+#: Columns of a file that are named: a Canvas gradebook has one for each assignment.
+_NAMED = 8
 
 
 class Person(msgspec.Struct, frozen=True):
@@ -54,6 +73,7 @@ class Person(msgspec.Struct, frozen=True):
     section: str = ""
     moodle_key: str = ""
     extension_days: float = 0.0
+    login: str = ""
 
 
 @dataclass
@@ -62,53 +82,91 @@ class Roster:
 
     Attributes:
         people: the rows, in the order of the file.
+        file: where it was read; empty if it is the one in a gradebook.
+        headings: of that file, if it is known.
+        columns: the heading of each of our columns that it has.
     """
 
     people: tuple[Person, ...]
+    file: str = ""
+    headings: tuple[str, ...] = ()
+    columns: dict[str, str] = field(default_factory=dict)
     _by: dict[tuple[str, str], list[Person]] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
+        if not self.columns:
+            known = (name for name in _FOLDER if any(getattr(row, name) for row in self.people))
+            self.columns = {name: name for name in known}
         for person in self.people:
-            for kind, value in (
-                ("student", _composed(person.student)),
-                ("canvas", person.canvas_id),
-                ("moodle", person.moodle_key),
-                ("email", person.email.casefold()),
-                ("sid", person.sis_user_id),
-                ("name", _folded(person.name)),
-            ):
-                if value:
-                    self._by.setdefault((kind, value), []).append(person)
+            keys = {(column, _key(column, getattr(person, column))) for column in _FOLDER}
+            last, comma, first = person.name.partition(",")
+            if comma:  # Canvas sorts by "Lovelace, Ada"
+                keys.add(("name", _key("name", f"{first} {last}")))
+            for key in keys:
+                if key[1]:
+                    self._by.setdefault(key, []).append(person)
 
     def find(self, student: str, download: PlatformIdentity | None = None) -> Person | None:
         """The one row about a student of the gradebook; None if there is none, or more than one."""
-        for kind, value in _keys(student, download):
-            found = self._by.get((kind, value), []) if value else []
-            if found:
-                return found[0] if len(found) == 1 else None
-        return None
+        found = self._rows(student, download)
+        return found[0] if len(found) == 1 else None
+
+    def _rows(self, student: str, download: PlatformIdentity | None) -> list[Person]:
+        """The rows that may be about a student of the gradebook."""
+        if found := self._by.get(("student", _key("student", student)), []):
+            return found
+        if download is None:
+            rows = [row for name in _FOLDER for row in self._by.get((name, _key(name, student)), [])]
+            return list(dict.fromkeys(rows))
+        for column, value in _keys(download):
+            if found := self._by.get((column, _key(column, value)), []):
+                return found
+        return []
 
     def match(
         self, students: Iterable[str], downloads: Mapping[str, PlatformIdentity]
-    ) -> tuple[dict[str, Person], list[str]]:
-        """Rows for students of a gradebook, and the students without exactly one of their own."""
+    ) -> tuple[dict[str, Person], dict[str, str]]:
+        """Rows for students of a gradebook, and why others have none of their own, ordered by student."""
         found: dict[str, Person] = {}
-        unmatched: list[str] = []
+        unmatched: dict[str, str] = {}
         for student in students:
-            person = self.find(student, downloads.get(student))
-            if person is None:
-                unmatched.append(student)
+            rows = self._rows(student, downloads.get(student))
+            if len(rows) == 1:
+                found[student] = rows[0]
             else:
-                found[student] = person
+                unmatched[student] = f"In {len(rows)} rows" if rows else "In no row"
         claims: dict[str, list[str]] = {}
         for student, person in found.items():
             claims.setdefault(person.student, []).append(student)
         for claimants in claims.values():
             if len(claimants) > 1:  # two folders, one row: we must not guess which of them counts
-                unmatched += claimants
                 for student in claimants:
+                    others = ", ".join(repr(other) for other in claimants if other != student)
+                    unmatched[student] = f"In one row with {others}"
                     del found[student]
-        return found, sorted(unmatched)
+        return found, dict(sorted(unmatched.items()))
+
+    @property
+    def called(self) -> str:
+        """The roster at the beginning of a sentence: its file, if that is known."""
+        return self.file or "The roster in the gradebook"
+
+    def compared(self, students: Iterable[str], downloads: Mapping[str, PlatformIdentity]) -> str:
+        """The columns there are, and in which of them these students were looked for, as sentences."""
+        headings = self.headings or tuple(self.columns.values())
+        more = f" and {len(headings) - _NAMED} more" if headings[_NAMED:] else ""
+        told = [f"{self.called} has the columns {', '.join(headings[:_NAMED])}{more}."]
+        sources = {downloads[name].source if name in downloads else "" for name in students}
+        for source in sorted(sources):
+            columns = _DOWNLOAD.get(source, _FOLDER)
+            tried = ", ".join(self.columns[name] for name in columns if name in self.columns)
+            what = f"The {source.capitalize()} id of a submission" if source else "The name of a folder"
+            told.append(
+                f"{what} was looked for in {tried}; it has to be in exactly one row."
+                if tried
+                else f"{what} is in none of these."
+            )
+        return one_line(" ".join(told))
 
     def dump(self) -> str:
         """The roster as text for the gradebook."""
@@ -120,16 +178,18 @@ class Roster:
         return cls(msgspec.json.decode(text, type=tuple[Person, ...]))
 
 
-def _keys(student: str, download: PlatformIdentity | None) -> list[tuple[str, str]]:
-    keys = [("student", _composed(student))]
-    if download is not None and download.source == "canvas":
-        keys += [("canvas", download.key)]
-    if download is not None and download.source == "gradescope":
-        keys += [("sid", download.sid), ("student", _composed(download.sid))]
-        keys += [("email", download.email.casefold())]
-    if download is not None and download.source == "moodle":
-        keys += [("moodle", download.key), ("name", _folded(download.name))]
-    return keys
+def _keys(download: PlatformIdentity) -> list[tuple[str, str]]:
+    """The columns in which a download's student is looked for, the surest first, and what for."""
+    if download.source == "gradescope":
+        return list(zip(_DOWNLOAD["gradescope"], (download.sid, download.sid, download.email), strict=True))
+    return list(zip(_DOWNLOAD.get(download.source, ()), (download.key, download.name), strict=False))
+
+
+def _key(column: str, value: str) -> str:
+    """A cell for comparison."""
+    if column == "name":
+        return _folded(value)
+    return value.casefold() if column in {"email", "login"} else _composed(value)
 
 
 def _composed(name: str) -> str:
@@ -155,13 +215,14 @@ def read_roster(path: Path) -> Roster:
     try:
         headings = [str(name).strip() for name in reader.fieldnames or ()]
         reader.fieldnames = headings
-        kind = _kind(path, headings)
+        kind, columns = _kind(path, headings)
         rows = (_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values())))
         people = tuple(person for row, line in rows if (person := kind(path, line, row)) is not None)
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num}: {error}") from None
     _check_unique(path, people)
-    return Roster(people)
+    there = {name: heading for name, heading in columns.items() if heading in headings}
+    return Roster(people, path.name, tuple(headings), there)
 
 
 def read_text(path: Path) -> str:
@@ -185,23 +246,26 @@ def read_text(path: Path) -> str:
 Kind = Callable[[Path, int, dict[str, str]], "Person | None"]
 
 
-def _kind(path: Path, headings: list[str]) -> Kind:
-    """The kind of roster that has these headings."""
+def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
+    """The kind of roster that has these headings, and its headings by our column."""
     found = set(headings)
     if {"Identifier", "Full name"} <= found or {"Identifier", "Grade"} <= found:
-        return _from_moodle
+        return _from_moodle, _MOODLE
     if {"Student", "ID"} <= found or {"LastName", "FirstName", "ID"} <= found:
-        return _from_canvas
+        return _from_canvas, _CANVAS if "Student" in found else {**_CANVAS, "name": "LastName"}
     if {"First Name", "Last Name", "Email"} <= found or {"Name", "Email"} <= found:
-        return _from_gradescope
+        return _from_gradescope, _GRADESCOPE if "Name" in found else {**_GRADESCOPE, "name": "First Name"}
     if "student" not in found:
-        raise _wrong(path, "its first row has no heading 'student', and is not that of a platform's file")
+        listed = ", ".join(headings)
+        raise _wrong(
+            path, f"its first row has no heading 'student', and {listed} are not those of a platform's file"
+        )
     if len(found) < len(headings):
         raise _wrong(path, "two columns have one heading")
     unknown = sorted(found - set(COLUMNS))
     if unknown:
         raise _wrong(path, f"the heading {unknown[0]!r} is not one of {', '.join(COLUMNS)}")
-    return _from_ours
+    return _from_ours, {name: name for name in COLUMNS}
 
 
 def _some(value: object) -> bool:
@@ -250,6 +314,7 @@ def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
         canvas_id=key,
         sis_user_id=cells.get("SIS User ID", ""),
         section=cells.get("Section", ""),
+        login=cells.get("SIS Login ID", ""),
     )
 
 
@@ -261,7 +326,14 @@ def _from_moodle(path: Path, line: int, row: dict[str, str]) -> Person:
         raise _wrong(path, f"line {line}: Identifier {cells['Identifier']!r} ends in no number")
     # Graded anonymously, a download calls its folders as the worksheet calls its rows.
     name = cells.get("Full name", "").replace("_", "") or cells["Identifier"].removesuffix(key).strip()
-    return Person(student=f"{name}_{key}", name=name, email=cells.get("Email address", ""), moodle_key=key)
+    return Person(
+        student=f"{name}_{key}",
+        name=name,
+        email=cells.get("Email address", ""),
+        sis_user_id=cells.get("ID number", ""),
+        moodle_key=key,
+        login=cells.get("Username", ""),
+    )
 
 
 def moodle_key(identifier: str) -> str | None:

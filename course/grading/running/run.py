@@ -128,7 +128,7 @@ def grade_class(
         run.note_times()
         summary = run.summary
         summary.unrecognised = members.unrecognised
-        results = Results(book)
+        results = Results(book, options.roster)
         summary.count(results)
         summary.unsettled = len(book.found())
         if options.resume:

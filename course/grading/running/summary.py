@@ -36,7 +36,8 @@ class Summary:
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
         missing: enrolled students who handed in nothing at all; empty without a roster.
-        strangers: students who handed in something and have no row in the roster.
+        strangers: students who handed in something and have no row of their own in the roster.
+        compared: the columns of the roster in which these were looked for, as sentences.
         unrecognised: files in the class folder with an unknown owner, one sentence each.
         unjudged: how often a check broke on a submission's result: (exercise, check, where).
         graders: digest of the snapshot that judged.
@@ -52,6 +53,7 @@ class Summary:
     not_submitted: int = 0
     missing: list[str] = field(default_factory=list)
     strangers: list[str] = field(default_factory=list)
+    compared: str = ""
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
@@ -74,6 +76,8 @@ class Summary:
         """Count everything in a gradebook."""
         self.missing = results.absent()
         self.strangers = results.unmatched(results.students())
+        if results.roster is not None and self.strangers:
+            self.compared = results.roster.compared(self.strangers, results.downloads)
         for effective in results.all():
             verdict = effective.verdict
             if effective.missing:

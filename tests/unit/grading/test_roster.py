@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from course.errors import UsageError
+from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Override, PlatformIdentity
@@ -204,6 +204,75 @@ CANVAS_FORMS = {
 }  # fmt: skip
 
 
+#: Roster -> what a plain folder may be called for the first student of it.
+FOLDERS = {
+    "canvas": (CANVAS, ["101", "S1", "ada", "Lovelace, Ada", "ada  LOVELACE"]),
+    "moodle": (
+        MOODLE.replace("Email address", "Username,ID number,Email address").replace("ada@", "AL,M1,ada@")
+        .replace("bob@", ",,bob@").replace("grace@", ",,grace@"),
+        ["101", "al", "M1", "Ada@x.org", "Ada Lovelace"],
+    ),
+    "gradescope": (GRADESCOPE, ["S1", "ada@x.org", "Ada Lovelace"]),
+    "ours": (OURS, ["ada", "ADA@x.org", "Ada Lovelace"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", FOLDERS)
+def test_a_plain_folder_is_found_by_whatever_is_in_one_row_alone(tmp_path: Path, kind: str) -> None:
+    text, names = FOLDERS[kind]
+    (tmp_path / "roster.csv").write_text(text, "utf-8")
+    found = read_roster(tmp_path / "roster.csv")
+    assert {name: found.find(name) for name in names} == dict.fromkeys(names, found.people[0])
+    assert [found.find(name) for name in ("Lovel", "lovelace", "x.org", "")] == [None] * 4
+
+
+def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path: Path) -> None:
+    text = "student,name,login\n1,Ada Lovelace,al\n2,Ada Lovelace,ada\n3,ada,x\n4,al,5\n"
+    (tmp_path / "roster.csv").write_text(text, "utf-8")
+    found = read_roster(tmp_path / "roster.csv")
+    assert [found.find(name) for name in ("Ada Lovelace", "ada", "al")] == [None] * 3
+    assert found.find("5") == found.people[3]
+    matched, why = found.match(["3", "x", "ada", "eve"], {})
+    assert (matched, why) == (
+        {}, {"3": "In one row with 'x'", "ada": "In 2 rows", "eve": "In no row", "x": "In one row with '3'"},
+    )  # fmt: skip
+
+
+def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catalog: Catalog) -> None:
+    submissions, roster = made(tmp_path, "folders")
+    roster.write_text(CANVAS, "utf-8")
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
+    (submissions / "grace").rename(submissions / "hopper")
+    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    tried = (
+        "roster.csv has the columns Student, ID, SIS User ID, SIS Login ID, Section, Doubling (4711), "
+        "Current Score. The name of a folder was looked for in ID, SIS User ID, SIS Login ID, Student; it has "
+        "to be in exactly one row."
+    )
+    assert (summary.strangers, summary.compared) == (["hopper"], tried)
+    assert summary.missing == ["oneilbob_102", "hoppergrace_103"]
+    asked = ExportOptions(assignments={"doubling": "4711"})
+    with open_results(tmp_path / "out") as results:
+        results.roster = read_roster(roster)
+        with pytest.raises(MissingCapabilityError) as stopped:
+            export(results, "canvas", tmp_path, None, asked)
+    assert stopped.value.message == (
+        f"roster.csv has no usable row for 1 of 4 students. In no row: 'hopper'. {tried} Nothing was written."
+    )
+    assert "the columns student (the name in the gradebook) and canvas_id" in stopped.value.help
+
+
+def test_a_download_is_told_which_of_its_keys_was_looked_for(tmp_path: Path) -> None:
+    (tmp_path / "roster.csv").write_text(MOODLE, "utf-8")
+    found = read_roster(tmp_path / "roster.csv")
+    downloads = {"Eve_7": PlatformIdentity("moodle", "7", "Eve"), "101": PlatformIdentity("canvas", "101")}
+    assert found.compared(["Eve_7"], downloads).endswith(
+        "The Moodle id of a submission was looked for in Identifier, Full name; it has to be in exactly one "
+        "row."
+    )
+    assert "The Canvas id of a submission is in none of these." in found.compared(["101"], downloads)
+
+
 @pytest.mark.parametrize("delimiter", [",", ";"])
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 @pytest.mark.parametrize("form", CANVAS_FORMS)
@@ -219,7 +288,7 @@ def test_every_form_of_canvas_gradebook_is_read(
     with path.open("w", encoding=encoding, newline="") as handle:
         csv.writer(handle, delimiter=delimiter).writerows(CANVAS_FORMS[form])
     assert read_roster(path).people == (
-        Person("lovelaceada_101", "Lovelace, Ada", canvas_id="101", section="A"),
+        Person("lovelaceada_101", "Lovelace, Ada", canvas_id="101", section="A", login="ada"),
     )
 
 
@@ -232,7 +301,7 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
     path = tmp_path / "roster.csv"
     path.write_text(CANVAS, "utf-8-sig")
     assert read_roster(path).people[0] == Person(
-        "lovelaceada_101", "Lovelace, Ada", canvas_id="101", sis_user_id="S1", section="A"
+        "lovelaceada_101", "Lovelace, Ada", canvas_id="101", sis_user_id="S1", section="A", login="ada"
     )
     path.write_text(MOODLE, "utf-8")
     found = read_roster(path)

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 
-__all__ = ["one_line", "printable", "steady", "unheeded"]
+__all__ = ["command", "one_line", "printable", "steady", "unheeded"]
 
 _UNUSUAL = re.compile(r"[^ -~]")
 _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
@@ -17,6 +18,11 @@ _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
 _STEERING = re.compile(
     r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]"
 )
+
+
+def command(*words: object) -> str:
+    """A command of the course as a sentence names it, ready to be pasted."""
+    return f"`{shlex.join(['course', *map(str, words)])}`"
 
 
 def one_line(text: str, limit: int | None = None) -> str:

@@ -18,7 +18,7 @@ from course.grading.exports.lines import grade_line
 from course.grading.exports.selection import ExportOptions, select
 from course.grading.results.effective import Results
 from course.grading.results.roster import read_roster
-from course.printable import one_line
+from course.printable import command, one_line
 from course.scoring.numbers import LARGEST_SEED
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def export(
         options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet)
         written = _from_gradebook(console, out, format, output, people, options)
     if written is not None:
-        _show(console, format, written)
+        _show(console, format, written, out)
     return 0
 
 
@@ -165,7 +165,7 @@ def _autograder(
     return write_autograder(target, catalog, chosen, seed=drawn, timeout=timeout, asked=bool(exercises))
 
 
-def _show(console: Console, name: str, written: Written) -> None:
+def _show(console: Console, name: str, written: Written, out: Path | None) -> None:
     if console.json:
         from course.cli.grade.replies import GradeExport
 
@@ -184,7 +184,10 @@ def _show(console: Console, name: str, written: Written) -> None:
         console.line((f"Wrote {path}.", "bold"))
     for label, listed in (
         ("Left out, not in the roster", written.unmatched),
-        ("Without a score, a fault of the grader; run `course grade rerun`", written.without_grade),
+        (
+            f"Without a score, a fault of the grader; run {command('grade', 'rerun', out)}",
+            written.without_grade,
+        ),
     ):
         if listed:
             console.line(f"{label}: {len(listed)}")

@@ -84,11 +84,12 @@ class FoundFile(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
-    """Work that could not be graded by its name; ``reason`` is the code of the problem."""
+    """Work that could not be graded; ``reason`` is the code of the problem, ``message`` says it in words."""
 
     student: str
     exercise: str
     reason: str
+    message: str
     files: tuple[FoundFile, ...]
 
 

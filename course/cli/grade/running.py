@@ -28,7 +28,7 @@ from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
-from course.printable import one_line
+from course.printable import command, one_line
 from course.scoring.judging.terms import Terms
 from course.scoring.numbers import LARGEST_SEED, format_points
 
@@ -300,7 +300,9 @@ def _show_summary(
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
     _show_people(console, summary)
     if summary.unsettled:
-        console.note(f"`course grade assign {out}` lists what there is for {summary.unsettled} of them.")
+        console.note(
+            f"{command('grade', 'assign', out)} lists what there is for them, and how to settle each."
+        )
     _show_unjudged(console, list(_unjudged(summary)))
     _show_edited(console, summary, changes, out)
     if summary.already:

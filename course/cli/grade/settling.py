@@ -20,7 +20,7 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Decision
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results.effective import Results
-from course.printable import one_line
+from course.printable import command, one_line
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def assign(
         console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1]))
     else:
         _show_assigned(console, done, dry_run=dry_run)
-        _show_unsettled(console, left)
+        _show_unsettled(console, left, out)
     return 0
 
 
@@ -121,7 +121,13 @@ def _unsettled_one(item: Unsettled) -> UnsettledOne:
     files = tuple(
         FoundFile(file=one.name, defines=one.defines, proposed=one.proposed) for one in item.found.candidates
     )
-    return UnsettledOne(student=item.student, exercise=item.exercise, reason=item.found.reason, files=files)
+    return UnsettledOne(
+        student=item.student,
+        exercise=item.exercise,
+        reason=item.found.reason,
+        message=item.message,
+        files=files,
+    )
 
 
 def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
@@ -136,20 +142,33 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
 
 
-def _show_unsettled(console: Console, left: list[Unsettled]) -> None:
+def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
     for item in left[:_SHOWN]:
-        console.item(f"{one_line(item.student)} {item.exercise}", item.found.reason)
+        about = f"{one_line(item.student)} {item.exercise}"
+        told = (
+            item.found.reason if item.found.candidates else f"{item.found.reason}: {one_line(item.message)}"
+        )
+        console.item(about, told)
         for one in item.found.candidates:
             defines = f"defines {', '.join(one.defines)}" if one.defines else "defines none of the functions"
             console.item(one.name, defines + ("; proposed" if one.proposed else ""), indent=4)
     if len(left) > _SHOWN:
         console.line(f"and {len(left) - _SHOWN} more; --json lists them all.", indent=2)
     proposed = sum(any(one.proposed for one in item.found.candidates) for item in left)
-    console.line((f"{len(left)} to settle; {proposed} with a match.", "bold"))
+    with_match = f"; {proposed} with a match" if proposed else ""
+    console.line((f"{len(left)} to settle{with_match}.", "bold"))
     if proposed:
         console.note(
-            "--accept-names accepts the matches; with --dry-run it only shows the scores they would get."
+            f"{command('grade', 'assign', out, '--accept-names')} accepts the matches; with --dry-run it "
+            "only shows the scores they would get."
         )
+    for item in [one for one in left if not any(file.proposed for file in one.found.candidates)][:1]:
+        student = one_line(item.student)
+        given = command("grade", "override", out, student, item.exercise, "--score", 0, "--reason", "TEXT")
+        other = command(
+            "grade", "assign", out, student, "FILE", "--exercise", item.exercise, "--reason", "TEXT"
+        )
+        console.note(f"{given} gives a score by hand; {other} grades another file.")
 
 
 def log(
@@ -213,7 +232,7 @@ def salvage(
     if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.folder import export_all
+    from course.grading.running.folder import export_all, open_results
     from course.isolation.launch import private_folder, remove_tree
 
     console = current()
@@ -257,5 +276,8 @@ def salvage(
         (f"{len(told.lost)} known to be lost." if told.lost else "Nothing is known to be lost.", "bold")
     )
     if not dry_run:
-        console.note(f"Written: {to}. `course grade run ... --out {to} --resume` grades what is missing.")
+        with open_results(to) as results:
+            folder = results.book.run_options().get("folder", "SUBMISSIONS")
+        rest = command("grade", "run", folder, "--out", to, "--resume")
+        console.note(f"Written: {to}. {rest} grades what is missing.")
     return code

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
+from course.printable import command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -151,17 +152,14 @@ def check_zeros(selection: Selection, options: ExportOptions) -> None:
     unseen = [
         f"{item.student!r} {item.exercise} ({item.verdict.error.code if item.verdict.error else 'no reason'})"
         for item in selection.results.all()
-        if item.exercise in selection.exercises
-        and item.student not in left_out
-        and item.verdict.state == "ungradable"
-        and item.override is None
+        if item.unsettled and item.exercise in selection.exercises and item.student not in left_out
     ]
     if unseen:
         listed = ", ".join(unseen[:_SHOWN]) + (f" and {len(unseen) - _SHOWN} more" if unseen[_SHOWN:] else "")
         raise MissingCapabilityError(
             f"{len(unseen)} could not be graded and would get 0: {listed}. Nothing was written.",
-            help="`course grade assign OUT` lists what there is for them; give a score with `course grade"
-            " override`, or add --accept-zeros.",
+            help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
+            " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
         )
 

@@ -24,6 +24,7 @@ import sqlite3
 from typing import TYPE_CHECKING, Any
 
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.printable import command
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,10 +49,6 @@ __all__ = [
 FORMAT_VERSION = 4
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
-_DAMAGED = (
-    "`course grade salvage` writes the intact rows of it and its backups to a new folder; this file was not"
-    " changed."
-)
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
 #: The tables of formats 1 to 3. Since then each has a last column: the digest of its row.
@@ -177,6 +174,14 @@ def row_into(table: str, how: str = "INSERT") -> str:
     return f"{how} INTO {table} VALUES ({cells}, row_digest('{table}', {cells}))"
 
 
+def _rescue(path: Path) -> str:
+    out = path.parent
+    salvage = command("grade", "salvage", out, "--to", f"{out}-salvaged")
+    return (
+        f"{salvage} writes the intact rows of it and its backups to a new folder; this file was not changed."
+    )
+
+
 @contextlib.contextmanager
 def explained(path: Path) -> Iterator[None]:
     """SQLite's errors as sentences.
@@ -193,7 +198,7 @@ def explained(path: Path) -> Iterator[None]:
     except sqlite3.DatabaseError as error:
         raise IntegrityError(
             f"{path} is damaged: {error}.",
-            help=_DAMAGED,
+            help=_rescue(path),
         ) from None
 
 
@@ -209,7 +214,7 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
         )
     # SQLITE_ERROR: a table or a column that our statements name is not there.
     if kind in {sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}:
-        return IntegrityError(f"{path} is damaged: {error}.", help=_DAMAGED)
+        return IntegrityError(f"{path} is damaged: {error}.", help=_rescue(path))
     if kind == sqlite3.SQLITE_FULL:
         message, fix = f"The disk is full: {path} cannot grow.", "Make room, then go on with --resume."
         code = "disk_full"
@@ -314,7 +319,9 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
     sealed = _SEALED if version < 4 else (*_SEALED, *_SEALED_SINCE_4)
     if kept is not None and kept[0] != _digest(db, sealed):
-        raise IntegrityError(f"{path} is damaged: its content is not what the course wrote.", help=_DAMAGED)
+        raise IntegrityError(
+            f"{path} is damaged: its content is not what the course wrote.", help=_rescue(path)
+        )
     if version < 4 and writing:
         db.executescript(
             f"BEGIN EXCLUSIVE; {_TO_4} {_SINCE_4} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"

@@ -77,6 +77,11 @@ class Effective:
         return self.verdict.state == MISSING and self.override is None
 
     @property
+    def unsettled(self) -> bool:
+        """Whether it is a zero that no instructor has decided on: not gradable, and no score by hand."""
+        return self.verdict.state == "ungradable" and self.override is None
+
+    @property
     def raw_score(self) -> float | None:
         """The checks' score, before lateness and overrides."""
         return None if self.verdict.state in {"grader_error", MISSING} else self.verdict.score
@@ -90,6 +95,7 @@ class Results:
         roster: a class list; None takes the gradebook's own.
 
     Attributes:
+        folder: of the grading run.
         course: its id and version.
         seed: of the run's hidden inputs.
         policy: the late policy in force, if any.
@@ -100,6 +106,7 @@ class Results:
 
     def __init__(self, book: Gradebook, roster: Roster | None = None) -> None:
         self.book = book
+        self.folder = book.path.parent
         meta = book.meta()
         self.course = CourseRef(meta.get("course", ""), meta.get("version", ""))
         self.seed = int(meta.get("seed", 0))

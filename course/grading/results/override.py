@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import Override
+from course.printable import command
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
@@ -56,9 +57,10 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
     _maximum(results, student, exercise)
     found = next((item for item in results.all(student, exercise)), None)
     if found is None or found.override is None:
+        explain = command("grade", "explain", results.folder, student, exercise)
         raise NotFoundError(
             f"There is no override for {student!r} and {exercise}.",
-            help="`course grade explain` shows what counts.",
+            help=f"{explain} shows what counts.",
             code="no_override",
         )
     results.book.add_override(Override(student, exercise, None, reason.strip()), _told(found))

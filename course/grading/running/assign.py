@@ -22,6 +22,7 @@ from course.grading.results.effective import Results
 from course.grading.results.journal import counted
 from course.grading.running.batch import grade_all
 from course.grading.running.snapshot import Snapshot, frozen, kept
+from course.printable import command
 from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
@@ -40,11 +41,12 @@ _MAX_REASON = 2000
 
 @dataclass(frozen=True)
 class Unsettled:
-    """A submission that was not found by its name, and the candidate files."""
+    """A submission that could not be graded, why, and the candidate files."""
 
     student: str
     exercise: str
     found: Found
+    message: str
 
 
 @dataclass(frozen=True)
@@ -75,12 +77,15 @@ class Assigned:
 
 def unsettled(results: Results) -> list[Unsettled]:
     """The unsettled cases, ordered by student and exercise; a score by hand settles one."""
-    open_still = []
-    for (student, exercise), listed in results.book.found().items():
-        counts = next(results.all(student, exercise), None)
-        if counts is None or (counts.override is None and counts.verdict.state == "ungradable"):
-            open_still.append(Unsettled(student, exercise, msgspec.json.decode(listed, type=Found)))
-    return open_still
+    listed = {about: msgspec.json.decode(text, type=Found) for about, text in results.book.found().items()}
+    return [
+        Unsettled(
+            item.student, item.exercise, listed.get((item.student, item.exercise), Found(error.code, ())),
+            error.message,
+        )
+        for item in results.all()
+        if item.unsettled and (error := item.verdict.error) is not None
+    ]  # fmt: skip
 
 
 def proposals(results: Results) -> list[Assignment]:
@@ -142,10 +147,10 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
                     return Assignment(
                         student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times
                     )
-    return Assignment(student, exercise, file, *_on_disk(file), times)
+    return Assignment(student, exercise, file, *_on_disk(file, results.folder), times)
 
 
-def _on_disk(file: str) -> tuple[Path, str]:
+def _on_disk(file: str, out: Path) -> tuple[Path, str]:
     """A path, cut in two where it leads into an archive."""
     path = Path(file)
     if os.path.lexists(path):
@@ -155,7 +160,7 @@ def _on_disk(file: str) -> tuple[Path, str]:
             return above, path.relative_to(above).as_posix()
     raise NotFoundError(
         f"There is no file {file}.",
-        help="Name it as `course grade assign OUT` lists it, or by its path.",
+        help=f"Name it as {command('grade', 'assign', out)} lists it, or by its path.",
         code="file_not_found",
     )
 

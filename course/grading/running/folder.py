@@ -138,7 +138,9 @@ def previewed(out: Path) -> Iterator[Results]:
     try:
         shutil.copyfile(path, folder / path.name)
         with Gradebook(folder / path.name, writing=True) as book:
-            yield Results(book)
+            results = Results(book)
+            results.folder = out
+            yield results
     finally:
         remove_tree(folder)
 

@@ -130,7 +130,6 @@ def grade_class(
         summary.unrecognised = members.unrecognised
         results = Results(book, options.roster)
         summary.count(results)
-        summary.unsettled = len(book.found())
         if options.resume:
             summary.edited = edited_since(results, catalog)
         export_all(out, results)

@@ -41,7 +41,7 @@ class Summary:
         unrecognised: files in the class folder with an unknown owner, one sentence each.
         unjudged: how often a check broke on a submission's result: (exercise, check, where).
         graders: digest of the snapshot that judged.
-        unsettled: ungraded entries with files that may be meant for them.
+        unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
         elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
@@ -85,6 +85,7 @@ class Summary:
             settled = effective.override is not None  # a score by hand counts, even without a grading
             self.states["graded" if settled else verdict.state] += 1
             self.passed += effective.passed
+            self.unsettled += effective.unsettled
             if verdict.isolation:
                 self.levels[verdict.isolation] += 1
             for check in verdict.checks:

@@ -246,8 +246,8 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
     summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
     tried = (
         "roster.csv has the columns Student, ID, SIS User ID, SIS Login ID, Section, Doubling (4711), "
-        "Current Score. The name of a folder was looked for in ID, SIS User ID, SIS Login ID, Student; it has "
-        "to be in exactly one row."
+        "Current Score. The name of a folder was looked for in ID, SIS User ID, SIS Login ID, Student; it "
+        "has to be in exactly one row."
     )
     assert (summary.strangers, summary.compared) == (["hopper"], tried)
     assert summary.missing == ["oneilbob_102", "hoppergrace_103"]

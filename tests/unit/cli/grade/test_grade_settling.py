@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import shutil
 from typing import TYPE_CHECKING
@@ -9,11 +10,17 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.grading.running import batch
+from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
+
+    from course.grading.intake.students import Entry
+    from course.grading.running.batch import Graded
+    from course.scoring.judging.terms import Terms
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
@@ -45,8 +52,13 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert listed["unsettled"] == [
         {
             "student": "bob", "exercise": "doubling", "reason": "no_file",
+            "message": "There is no doubling.py for doubling. There is hw.py (defines double, doublings).",
             "files": [{"file": "hw.py", "defines": ["double", "doublings"], "proposed": True}],
-        }
+        },
+        {
+            "student": "cy", "exercise": "doubling", "reason": "no_file",
+            "message": "There is no doubling.py for doubling.", "files": [],
+        },
     ]  # fmt: skip
     assert "hw.py: defines double, doublings; proposed" in course("grade", "assign", "out").out
     tried = course("grade", "assign", "out", "--accept-names", "--dry-run", "--json").json
@@ -73,6 +85,54 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
         (("cy", "nowhere.py", "--reason", "x"), "file_not_found"),
     ):  # fmt: skip
         assert course("grade", "assign", "out", *words, "--json").json["error"]["code"] == code
+
+
+def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(
+    course, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A syntax error stopped the export, while `grade assign` said that there was nothing to settle."""
+    broken = Problem("syntax_error", "doubling.py, line 1: Python cannot read this file.", "Look there.")
+
+    def ada_cannot_be_read(entries: Iterable[Entry], terms: Terms, graders: int) -> Iterator[Graded]:
+        hers = (
+            (dataclasses.replace(one, problem=broken) if one.student == "ada" else one) for one in entries
+        )
+        return right(hers, terms)
+
+    monkeypatch.setattr(batch, "grade_all", ada_cannot_be_read)
+    graded = course("grade", "run", "class", "--out", "my grades", "--exercise", "doubling", "--json")
+    assert json.loads(graded.out.splitlines()[-1])["unsettled"] == 3
+    listed = course("grade", "assign", "my grades", "--json").json["unsettled"]
+    assert [(one["student"], one["reason"], one["files"] != []) for one in listed] == [
+        ("ada", "syntax_error", False), ("bob", "no_file", True), ("cy", "no_file", False),
+    ]  # fmt: skip
+    shown = course("grade", "assign", "my grades").out
+    assert "ada doubling: syntax_error: doubling.py, line 1" in shown
+    assert "3 to settle; 1 with a match." in shown
+    assert "`course grade assign 'my grades' --accept-names` accepts" in shown
+    assert "`course grade override 'my grades' ada doubling --score 0 --reason TEXT` gives" in shown
+    stopped = course("grade", "export", "my grades", "--format", "gradescope", "--json")
+    error = stopped.json["error"]
+    assert (stopped.code, error["code"]) == (4, "unseen_zeros")
+    assert "3 could not be graded and would get 0: 'ada' doubling (syntax_error), 'bob'" in error["message"]
+    assert error["help"].startswith("`course grade assign 'my grades'` lists them")
+    for student in ("ada", "cy"):
+        course("grade", "override", "my grades", student, "doubling", "--score", "0", "--reason", "seen")
+    course("grade", "assign", "my grades", "--accept-names")
+    assert course("grade", "assign", "my grades", "--json").json["unsettled"] == []
+    assert course("grade", "export", "my grades", "--format", "gradescope").code == 0
+
+
+def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
+    missing = course("grade", "assign", "out", "cy", "nowhere.py", "--reason", "x", "--dry-run", "--json")
+    assert missing.json["error"]["help"] == "Name it as `course grade assign out` lists it, or by its path."
+    lifted = course("grade", "override", "out", "ada", "doubling", "--lift", "--json")
+    assert lifted.json["error"]["help"] == "`course grade explain out ada doubling` shows what counts."
+    (here / "out" / "gradebook.sqlite").write_bytes(b"x" * 4096)
+    damaged = course("grade", "log", "out", "--json").json["error"]["help"]
+    assert damaged.startswith("`course grade salvage out --to out-salvaged` writes the intact rows")
+    saved = course("grade", "salvage", "out", "--to", "saved")
+    assert f"`course grade run {here / 'class'} --out saved --resume` grades what is missing" in saved.out
 
 
 def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) -> None:

@@ -43,7 +43,7 @@ _CHECKS = '''
     @pytest.mark.task("a")
     @pytest.mark.points(1)
     def test_passes(submission, own):
-        """It passes
+        """It passes (no points here, two in the grading run)
         and this is no part of the title."""
         submission.log.append(id(own))
 

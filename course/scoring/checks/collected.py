@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +34,8 @@ _BLOCKED = (
     "cacheprovider", "capture", "doctest", "faulthandler", "junitxml", "logging", "nose", "pastebin",
     "setuponly", "setupplan", "stepwise", "terminal", "threadexception", "unraisableexception", "warnings",
 )  # fmt: skip
+#: An author's note after a title. It is true at home only, so every page shows the points themselves.
+_HOME_ONLY = re.compile(r" \(no points here[^)]*\)$")
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class Check:
 
     Attributes:
         id: the function's name without ``test_``.
-        title: first line of its docstring.
+        title: first line of its docstring, without a note on points.
         requires: ids of the checks that must have passed before.
     """
 
@@ -198,7 +201,7 @@ def _check_of(item: pytest.Item, visibility: Visibility) -> Check:
         raise _fault(item, "it lacks a mark", "Mark it @pytest.mark.task(...) and @pytest.mark.points(...).")
     return Check(
         id=item.name.removeprefix("test_"),
-        title=title[0].strip(),
+        title=_HOME_ONLY.sub("", title[0].strip()),
         task=str(marks["task"].args[0]),
         points=float(marks["points"].args[0]),
         visibility=visibility,

@@ -6,7 +6,6 @@ ones, and the summary is last, where the eye is when a terminal has finished scr
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from course.cli.frame.terminal.console import STATUS_STYLE, Console
@@ -32,8 +31,6 @@ _SHORT = 2
 #: Columns of a usual window.
 _USUAL = 80
 _UNWRITTEN = "NOT_IMPLEMENTED"
-#: What a title says for where its check is shown alone; here a mark and one line below say it for all.
-_UNSCORED = re.compile(r" \(no points here[^)]*\)$")
 
 
 def show_verdict(
@@ -238,7 +235,7 @@ class _Page:
         if self._hidden or not self._scored or check.max_points:
             return check.title
         self._unscored = True
-        return f"{_UNSCORED.sub('', check.title)} *"
+        return f"{check.title} *"
 
     def close(self) -> None:
         """Say once what the mark means, and how to see what was kept back."""

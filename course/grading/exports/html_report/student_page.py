@@ -126,7 +126,10 @@ def _state_of(check: CheckResult, quiz: bool) -> tuple[str, str]:
 
 def _share_of(check: CheckResult) -> str:
     kept_back = ", hidden check" if check.visibility is Visibility.HIDDEN else ""
-    return f"{number(check.points)} of {number(check.max_points)} points{kept_back}"
+    points = (
+        f"{number(check.points)} of {number(check.max_points)} points" if check.max_points else "no points"
+    )
+    return f"{points}{kept_back}"
 
 
 def _numbers(check: CheckResult) -> list[tuple[str, str]]:

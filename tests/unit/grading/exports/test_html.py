@@ -261,6 +261,17 @@ def test_the_list_of_students_has_the_scores_of_the_table(out: Path) -> None:
     assert by_name["broken"][2] == "none fault of the grader"
 
 
+def test_each_check_on_a_page_has_its_points_of_the_run(tmp_path: Path) -> None:
+    checks = (check("free", points=0.0), check("paid", hidden=True, points=2.0))
+    with make_book(tmp_path, {"ada": verdict(*checks)}):
+        pass
+    with open_results(tmp_path, writing=True):
+        pass
+    words = " ".join(read_page(tmp_path / "students" / "1.html").pieces)
+    assert "The title of free no points" in words
+    assert "The title of paid 2 of 2 points, hidden check" in words
+
+
 def test_a_page_has_the_score_that_counts_and_why(out: Path) -> None:
     found = places(out)
     late = " ".join(read_page(out / found["late"]).pieces)

@@ -1,8 +1,10 @@
-"""A change of a student's result, as a terminal shows it."""
+"""A change of a student's result, and what was kept about it, as a terminal shows them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from course.printable import one_line
 from course.scoring.numbers import format_points
@@ -11,7 +13,10 @@ if TYPE_CHECKING:
     from course.cli.frame.terminal.console import Console
     from course.grading.running.rerun import Change
 
-__all__ = ["points", "show_change"]
+__all__ = ["in_words", "points", "show_change"]
+
+#: Characters of what a decision keeps, and scores of a class, that one line names.
+_SHOWN, _FEW = 200, 5
 
 
 def show_change(console: Console, change: Change) -> None:
@@ -34,3 +39,20 @@ def show_change(console: Console, change: Change) -> None:
 def points(score: float | None) -> str:
     """A score in words; None is none."""
     return "no score" if score is None else format_points(score)
+
+
+def in_words(text: str) -> str:
+    """What counted, as a decision keeps it, for a person: a score, and why there was none."""
+    try:
+        kept = msgspec.json.decode(text)
+    except msgspec.DecodeError:
+        kept = text
+    if isinstance(kept, dict):
+        score = kept.get("score")
+        why = kept.get("reason") or (kept.get("state") if score is None else "")
+        words = (points(score), str(why or ""), str(kept.get("file", "")))
+        return one_line(", ".join(filter(None, words)))
+    if isinstance(kept, list):  # of a class: student, exercise, score
+        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in kept[:_FEW]]
+        return one_line("; ".join(shown + ["..."] * (len(kept) > _FEW)))
+    return one_line(str(kept)[:_SHOWN])

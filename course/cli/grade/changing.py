@@ -14,7 +14,7 @@ from course.cli.frame.here import load_catalog
 from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.changes import points as _points
 from course.cli.grade.changes import show_change
-from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, levels
+from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, Share, levels
 from course.cli.grade.running import score_of
 from course.errors import UsageError
 from course.grading.exports.cells import write_bytes
@@ -294,9 +294,7 @@ def similar(
     exercise: Exercises = None,
     # Right solutions that were written differently share 0.39 at most (those of this course, by weight); a
     # copy whose names were changed shares 1.
-    share: Annotated[
-        float, typer.Option("--share", min=0.0, max=1.0, help="Show pairs with at least this much in common.")
-    ] = 0.6,
+    share: Share = 0.6,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Page; OUT/similar.html if left out."),

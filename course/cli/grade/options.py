@@ -13,7 +13,7 @@ from course.grading.intake.downloads import LAYOUTS
 
 __all__ = [
     "Against", "Exercises", "Isolation", "Jobs", "Layout", "LocalCluster", "Missing", "Out", "Protection",
-    "Reason", "RosterFile", "Scheduler", "levels", "one_of",
+    "Reason", "RosterFile", "Scheduler", "Share", "levels", "one_of",
 ]  # fmt: skip
 
 _LEVELS = {"auto": (None, "L2"), "strict": ("L3", "L3"), "process": ("L1", "L1")}
@@ -29,6 +29,20 @@ def levels(isolation: str) -> tuple[str | None, str]:
 def one_of(name: str, *values: str, help: str | None = None) -> Any:  # noqa: A002 - the option's name
     """An option that takes one of these values, which the shell completes."""
     return typer.Option(name, metavar="|".join(values), autocompletion=choice_of(*values), help=help)
+
+
+def _share(text: str | float) -> float:
+    """A part of a whole, as 0.6 or as 60%."""
+    number, percent, rest = str(text).strip().partition("%")
+    try:
+        share = float(number) / (100 if percent else 1)
+    except ValueError:
+        share = -1.0
+    if rest or not 0 <= share <= 1:
+        raise UsageError(
+            f"--share is {text!r}.", help="It takes a number from 0 to 1, or a percentage: 0.6 or 60%."
+        )
+    return share
 
 
 Against = Annotated[
@@ -82,4 +96,13 @@ RosterFile = Annotated[
 Scheduler = Annotated[
     str | None,
     typer.Option("--scheduler", metavar="ADDRESS", help="On the Dask cluster whose scheduler is there."),
+]
+Share = Annotated[
+    float,
+    typer.Option(
+        "--share",
+        metavar="SHARE",
+        parser=_share,
+        help="Show pairs with at least this much in common, such as 0.6 or 60%.",
+    ),
 ]

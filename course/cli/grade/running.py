@@ -13,7 +13,7 @@ from course import extras
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.here import load_catalog
 from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import show_change
+from course.cli.grade.changes import in_words, show_change
 from course.cli.grade.options import (
     Jobs,
     Layout,
@@ -361,7 +361,8 @@ def _show_result(
     for note in verdict.warnings:
         console.item("note", one_line(note), width=10)
     for decision in decisions:
-        words = f"{decision.at}, {decision.who}: {one_line(decision.reason)}; before: {decision.before}"
+        before = in_words(decision.before)
+        words = f"{decision.at}, {decision.who}: {one_line(decision.reason)}; before: {before}"
         console.item(decision.kind, one_line(words), width=10)
     if verdict.error is not None:
         console.item("reason", f"{verdict.error.code}: {one_line(verdict.error.message)}", width=10)
@@ -372,7 +373,8 @@ def _show_result(
         show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
     else:
         for check in verdict.checks:
-            console.item(check.status.value, check.title, width=10)
+            worth = f"  [{format_points(check.points)}/{format_points(check.max_points)} points]"
+            console.item(check.status.value, check.title, (worth, "dim"), width=10)
 
 
 def score_of(found: Effective) -> str:

@@ -6,13 +6,12 @@ from functools import partial
 from pathlib import Path  # noqa: TC003 - typer reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
-import msgspec
 import typer
 
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.here import load_catalog
 from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import points
+from course.cli.grade.changes import in_words
 from course.cli.grade.options import Isolation, Jobs, Out, levels
 from course.errors import UsageError
 from course.grading.gradebook.backup import back_up
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["assign", "log", "salvage"]
 
 _SHOWN = 200
-#: Scores of a class that one line of the log names.
-_FEW = 5
 
 
 def assign(
@@ -196,27 +193,10 @@ def log(
         about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))
         words = f"{decision.at}, {decision.who}, {about or 'the class'}: {one_line(decision.reason)}"
         console.item(decision.kind, words, width=10)
-        before, after = _in_words(decision.before), _in_words(decision.after)
+        before, after = in_words(decision.before), in_words(decision.after)
         if before != after:
             console.line(f"{before} -> {after}", indent=12)
     return 0
-
-
-def _in_words(text: str) -> str:
-    """What counted, as a decision keeps it, for a person: a score, and why there was none."""
-    try:
-        kept = msgspec.json.decode(text)
-    except msgspec.DecodeError:
-        kept = text
-    if isinstance(kept, dict):
-        score = kept.get("score")
-        why = kept.get("reason") or (kept.get("state") if score is None else "")
-        words = (points(score), str(why or ""), str(kept.get("file", "")))
-        return one_line(", ".join(filter(None, words)))
-    if isinstance(kept, list):  # of a class: student, exercise, score
-        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in kept[:_FEW]]
-        return one_line("; ".join(shown + ["..."] * (len(kept) > _FEW)))
-    return one_line(str(kept)[:_SHOWN])
 
 
 def salvage(

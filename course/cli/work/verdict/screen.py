@@ -214,9 +214,10 @@ class _Page:
 
     def check(self, check: CheckResult) -> None:
         """One check: its title, and everything about it if it did not pass."""
-        aside = "" if check.status in {"pass", "skip"} and not self._hidden else f"  [{check.id}]"
-        if self._hidden and check.visibility == "hidden":
-            aside = f"  [{check.id}, hidden]"
+        aside = "" if check.status in {"pass", "skip"} else f"  [{check.id}]"
+        if self._hidden:
+            hidden = ", hidden" if check.visibility == "hidden" else ""
+            aside = f"  [{check.id}{hidden}, {_points([check]) if check.max_points else 'no points'}]"
         self._label(check.status, self._title(check), aside)
         if check.status == "pass":
             if self._verbose:

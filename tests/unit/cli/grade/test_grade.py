@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import re
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -63,7 +64,7 @@ def test_explain_shows_hidden_values_to_the_instructor(graded: Path) -> None:
     done = process("grade", "explain", graded, "=bob", "doubling")
     assert done.returncode == 0, done.stderr
     assert "6 of 10" in done.stdout
-    assert "double_of_negative, hidden" in done.stdout
+    assert re.search(r"double_of_negative, hidden, 0/\d points\]", done.stdout)
     assert "-34.5" in done.stdout
     assert "I saw -17.25" in done.stdout
 

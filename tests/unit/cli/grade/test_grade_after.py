@@ -15,6 +15,7 @@ import pytest
 
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import PlatformIdentity, SubmittedAt
+from course.grading.similar.compare import Similar
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 
@@ -203,6 +204,26 @@ def test_likeness_is_shown_and_written_as_a_page(course, out: Path) -> None:
     assert "pairs among 4 submissions" in ran.out
     assert (out / "similar.html").read_text().startswith("<!DOCTYPE html>")
     assert course("grade", "similar", "out", "--json").json["schema"] == "course.grade-similar/1"
+
+
+@pytest.mark.parametrize("text", ["0.25", "25%", " 25 % "])
+def test_a_share_is_a_part_of_one_or_a_percentage(course, out: Path, monkeypatch, text: str) -> None:
+    asked: list[float] = []
+
+    def compare(*_: object, at_least: float) -> Similar:
+        asked.append(at_least)
+        return Similar()
+
+    monkeypatch.setattr("course.grading.similar.compare.compare", compare)
+    assert course("grade", "similar", "out", "--share", text).code == 0
+    assert course("grade", "similar", "out").code == 0
+    assert asked == [0.25, 0.6]
+
+
+@pytest.mark.parametrize("text", ["60", "101%", "-1", "nan", "0.6%%", "", "much"])
+def test_a_share_that_is_neither_is_refused_with_both_forms(course, out: Path, text: str) -> None:
+    error = course("grade", "similar", "out", f"--share={text}", "--json").json["error"]
+    assert (error["code"], "0.6 or 60%" in error["help"]) == ("usage", True)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="how root gives up its rights is Linux's")

@@ -77,7 +77,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     logged = course("grade", "log", "out", "bob").out
     assert "by mail" in logged
     assert "0, no_file -> 10, hw.py" in logged
-    assert "by mail" in course("grade", "explain", "out", "bob", "doubling").out
+    assert "by mail; before: 0, no_file" in course("grade", "explain", "out", "bob", "doubling").out
     for words, code in (
         (("bob",), "usage"), (("bob", "x.py", "--accept-names"), "usage"),
         (("bob", "class/bob/hw.py"), "no_reason"),

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from course.grading.results.journal import ScoreChange
     from course.grading.results.roster import Roster
     from course.grading.running.rerun import Regraded
+    from course.grading.similar.compare import Similar
 
 __all__ = ["late", "override", "rerun", "similar"]
 
@@ -305,7 +306,7 @@ def similar(
     Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
-    from course.cli.grade.replies import GradeSimilar, SimilarPair
+    from course.cli.grade.replies import GradeSimilar, SimilarGroup, SimilarPair
     from course.grading.running.folder import open_results
     from course.grading.similar.compare import compare
 
@@ -323,21 +324,37 @@ def similar(
             )
             for pair in found.pairs
         )  # fmt: skip
+        groups = tuple(
+            SimilarGroup(exercise=one.exercise, members=one.members, share=round(one.share, 4))
+            for one in found.groups
+        )
         console.emit(
             GradeSimilar(
-                compared=found.compared, pairs=pairs, unreadable=tuple(found.unreadable), page=str(target)
+                compared=found.compared, pairs=pairs, groups=groups, unreadable=tuple(found.unreadable),
+                page=str(target),
             )
-        )
+        )  # fmt: skip
         return 0
+    _show_similar(console, found)
+    console.note(f"Side by side: {target}")
+    return 0
+
+
+def _show_similar(console: Console, found: Similar) -> None:
+    for group in found.groups[:20]:
+        names = ", ".join(map(one_line, group.members[:8]))
+        names += f" and {len(group.members) - 8} more" if group.members[8:] else ""
+        words = f"{group.exercise}, weakest pair {group.share:.0%}: {names}"
+        console.item(f"group of {len(group.members)}", words)
+    if found.groups[20:]:
+        console.line(f"and {len(found.groups) - 20} more groups", indent=2)
     for pair in found.pairs[:20]:
         both = f"{pair.first.label} and {pair.second.label}"
         console.item(f"{pair.share:.0%}", f"{both}, {pair.exercise}, {pair.lines} lines alike", width=5)
     if len(found.pairs) > 20:
-        console.line(f"and {len(found.pairs) - 20} more", indent=2)
+        console.line(f"and {len(found.pairs) - 20} more pairs", indent=2)
     console.line((f"{len(found.pairs)} pairs among {found.compared} submissions.", "bold"))
     if found.left_out:
         console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
     if found.unreadable:
-        console.note(f"{len(found.unreadable)} are not Python or exceed 200 kB, and were not compared.")
-    console.note(f"Side by side: {target}")
-    return 0
+        console.note(f"{len(found.unreadable)} not compared: not Python, or over 200 kB.")

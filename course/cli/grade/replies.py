@@ -22,6 +22,7 @@ __all__ = [
     "GradeSimilar",
     "GradeSummary",
     "LateOne",
+    "SimilarGroup",
     "SimilarPair",
     "UnsettledOne",
 ]
@@ -162,10 +163,19 @@ class SimilarPair(msgspec.Struct, frozen=True, kw_only=True):
     lines: int
 
 
+class SimilarGroup(msgspec.Struct, frozen=True, kw_only=True):
+    """Submissions of one exercise that hang together by pairs; ``share`` is that of the weakest pair."""
+
+    exercise: str
+    members: tuple[str, ...]
+    share: float
+
+
 class GradeSimilar(Envelope, tag="course.grade-similar/1", frozen=True, kw_only=True):
-    """Pairs, the most alike first; the page shows them side by side."""
+    """Pairs, the most alike first, and groups, the largest first; the page shows the pairs side by side."""
 
     compared: int
     pairs: tuple[SimilarPair, ...]
+    groups: tuple[SimilarGroup, ...]
     unreadable: tuple[str, ...]
     page: str

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.grading.results.effective import Results
 
-__all__ = ["Document", "Pair", "Similar", "compare"]
+__all__ = ["Document", "Group", "Pair", "Similar", "compare"]
 
 #: A fingerprint in more submissions than this proposes no pairs; it counts in those that others propose.
 _COMMON = 40
@@ -67,18 +67,34 @@ class Pair:
     lines: int
 
 
+@dataclass(frozen=True)
+class Group:
+    """Three or more submissions of one exercise that hang together by pairs.
+
+    Attributes:
+        members: the students, by name; each is in a pair with another, not with all.
+        share: of the weakest pair among them.
+    """
+
+    exercise: str
+    members: tuple[str, ...]
+    share: float
+
+
 @dataclass
 class Similar:
     """The result of a comparison.
 
     Attributes:
         pairs: the most alike first, at most ``MAX_PAIRS``.
+        groups: the largest first, made from all pairs.
         compared: number of submissions.
         unreadable: "student exercise" of each file that is not Python, or is too long to compare.
         left_out: pairs beyond ``MAX_PAIRS``.
     """
 
     pairs: list[Pair] = field(default_factory=list)
+    groups: list[Group] = field(default_factory=list)
     compared: int = 0
     unreadable: list[str] = field(default_factory=list)
     left_out: int = 0
@@ -117,9 +133,33 @@ def compare(results: Results, catalog: Catalog, exercises: tuple[str, ...], *, a
             ignored = set(stub.marks) if stub else set()
             found.pairs += _pairs(name, documents, ignored, at_least)
     found.pairs.sort(key=lambda pair: (-pair.share, -pair.lines, pair.exercise, pair.first.label))
+    found.groups = _groups(found.pairs)
     found.left_out = max(0, len(found.pairs) - MAX_PAIRS)
     del found.pairs[MAX_PAIRS:]
     return found
+
+
+def _groups(pairs: list[Pair]) -> list[Group]:
+    """The connected pairs. The course's own code connects nobody: many students have read the same page."""
+    head: dict[tuple[str, str], tuple[str, str]] = {}  # each student leads to another one, up to the group's
+
+    def group_of(student: tuple[str, str]) -> tuple[str, str]:
+        while head.setdefault(student, student) != student:
+            head[student] = student = head[head[student]]
+        return student
+
+    linked = [pair for pair in pairs if not (pair.first.own or pair.second.own)]
+    for pair in linked:
+        head[group_of((pair.exercise, pair.first.label))] = group_of((pair.exercise, pair.second.label))
+    together: dict[tuple[str, str], list[Pair]] = {}
+    for pair in linked:
+        together.setdefault(group_of((pair.exercise, pair.first.label)), []).append(pair)
+    found = []
+    for one in together.values():
+        members = {document.label for pair in one for document in (pair.first, pair.second)}
+        if len(members) > 2:
+            found.append(Group(one[0].exercise, tuple(sorted(members)), min(pair.share for pair in one)))
+    return sorted(found, key=lambda group: (-len(group.members), group.exercise, group.members))
 
 
 def _submissions(results: Results, exercise: Exercise, parse: Parser, found: Similar) -> Iterator[Document]:

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from course.grading.gradebook.records import Result
 from course.grading.results.effective import Results
-from course.grading.similar.compare import compare
-from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, fingerprints
+from course.grading.similar.compare import Document, Group, Pair, _groups, compare
+from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, Prints, fingerprints
 from course.grading.similar.page import _blocks, page
 from course.scoring.judging.session import Submission
 from tests.growth import LIMIT, growth
@@ -192,6 +192,27 @@ def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog
         ("a 0", "near"),
         *((f"model {number}", "the model solution") for number in range(3)),
     }
+    (group,) = found.groups
+    assert group.members == (*(f"a {number}" for number in range(8)), "near")
+    assert group.share == min(pair.share for pair in found.pairs if not pair.second.own) < 1
+    table = Page(page(found)).tables["Groups that hang together by pairs, the largest first"]
+    assert [name.strip() for name in table[1][0].split(",")] == list(group.members)
+    assert table[1][1:] == ["doubling", "9", f"{100 * group.share:.0f}\u00a0%"]
+
+
+def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody() -> None:
+    def pair(first: str, second: str, share: float, exercise: str = "doubling") -> Pair:
+        sides = (Document(label, "", Prints({}, "", 0), own=label == "own") for label in (first, second))
+        return Pair(exercise, *sides, share, (), 1)
+
+    chain = [pair("a", "b", 1.0), pair("c", "d", 0.7), pair("d", "b", 0.9)]
+    others = [pair("x", "own", 1.0), pair("y", "own", 1.0), pair("a", "own", 1.0), pair("e", "f", 1.0)]
+    elsewhere = [pair("a", "e", 0.8, "halving"), pair("f", "e", 0.8, "halving")]
+    for ordered in itertools.permutations(chain):
+        assert _groups([*others, *ordered, *elsewhere]) == [
+            Group("doubling", ("a", "b", "c", "d"), 0.7),
+            Group("halving", ("a", "e", "f"), 0.8),
+        ]
 
 
 def test_sources_that_hurt_the_parser_are_named_and_the_rest_compared(

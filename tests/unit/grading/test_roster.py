@@ -129,7 +129,7 @@ def test_every_enrolled_student_has_one_row(tmp_path: Path, catalog: Catalog, pl
     listed = read_page(out / "students.html").tables["Students and their scores"]
     assert next(row for row in listed if row[1] == absent)[-1] == "none missing"
     report = read_page(out / "report.html")
-    assert "2 of 2; 1 missing" in str(report.tables["Students with a result, and their scores"])
+    assert "2 of 2; 1 missing" in str(report.tables["Results and scores"])
     for page in (report, *map(read_page, (out / "students").iterdir())):
         assert faults(page, scripted=page is report) == []
 

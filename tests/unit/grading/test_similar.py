@@ -195,7 +195,7 @@ def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog
     (group,) = found.groups
     assert group.members == (*(f"a {number}" for number in range(8)), "near")
     assert group.share == min(pair.share for pair in found.pairs if not pair.second.own) < 1
-    table = Page(page(found)).tables["Groups that hang together by pairs, the largest first"]
+    table = Page(page(found)).tables["Submissions linked by similar pairs, the largest group first"]
     assert [name.strip() for name in table[1][0].split(",")] == list(group.members)
     assert table[1][1:] == ["doubling", "9", f"{100 * group.share:.0f}\u00a0%"]
 

@@ -40,13 +40,13 @@ def class_page(results: Results, tally: Tally, links: Mapping[str, str], index: 
     sections = [
         ("exercises", "Exercises"),
         ("tasks", "Hardest tasks"),
-        ("diagnoses", "Commonest diagnoses"),
+        ("diagnoses", "Most common mistakes"),
         *((f"exercise-{at}", item.exercise.title) for at, item in enumerate(begun, 1)),
         ("time", "Time per submission"),
         ("protection", "Protection"),
         ("ungraded", "Not graded"),
         ("overrides", "Scores set by hand"),
-        ("late", "Late"),
+        ("late", "Late submissions"),
     ]
     return render(
         "class",
@@ -77,7 +77,7 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
     every = tally.exercises.values()
     facts = [
         (tally.students, "students", ""),
-        (sum(len(item.scores) for item in every), "results with a grade", ""),
+        (sum(len(item.scores) for item in every), "graded results", ""),
         (sum(item.passed for item in every), "of them pass", ""),
         (sum(item.ungraded for item in every), "could not be graded", "ungraded"),
     ]
@@ -104,7 +104,7 @@ def _mean_points(item: ExerciseTally) -> list[tuple[str, float, float]]:
 
 
 def _otherwise(check: CheckTally, quiz: bool) -> str:
-    """How the others ended, the commonest first."""
+    """How the others ended, the most common first."""
     words = {
         "fail": "wrong" if quiz else "failed", "error": "raised an error", "timeout": "took too long",
         "memory": "ran out of memory", "crash": "ended its process", "skip": "not run",

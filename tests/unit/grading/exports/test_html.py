@@ -178,7 +178,7 @@ def test_every_number_of_the_class_page_is_the_gradebooks(out: Path, results: Re
     page = read_page(out / "report.html")
     everything = list(results.all())
     titles = {item.id: item.title for item in results.exercises()}
-    rows = {row[0].split()[0]: row[1:] for row in page.tables["Students with a result, and their scores"][1:]}
+    rows = {row[0].split()[0]: row[1:] for row in page.tables["Results and scores"][1:]}
     for name, title in titles.items():
         mine = [item for item in everything if item.exercise == name]
         graded = [
@@ -197,7 +197,7 @@ def test_every_number_of_the_class_page_is_the_gradebooks(out: Path, results: Re
     ungraded = [item for item in everything if item.verdict.state == "ungradable" and item.override is None]
     assert dict(facts) == {
         "students": str(len(results.students())),
-        "results with a grade": str(len(everything) - len(ungraded) - 1),
+        "graded results": str(len(everything) - len(ungraded) - 1),
         "of them pass": str(sum(item.passed for item in everything)),
         "could not be graded": str(len(ungraded)),
         "faults of the grader": "1",
@@ -220,7 +220,7 @@ def test_pass_rates_and_diagnoses_are_counted_per_student(out: Path, results: Re
     assert squares[0].startswith("SQUARES")
     assert "Add it to itself." in squares[0]
     assert squares[1].startswith(f"{mistaken} of {len(graded)},")
-    tasks = page.tables["Tasks by the share of their points that the class reached, the smallest first"]
+    tasks = page.tables["Share of the points that the class earned, by task, lowest first"]
     points = sum(item.score for item in graded) / sum(item.max_score for item in graded)
     assert tasks[1][1].startswith(f"{points:.0%}".replace("%", " %"))
     assert len(tasks) == 2, "questions of the quiz are no tasks"
@@ -299,13 +299,13 @@ def test_overrides_late_and_who_could_not_be_graded_are_listed(out: Path, result
     reasons = {row[0]: row for row in page.tables["By reason"][1:]}
     assert reasons["check_failed"][1:] == ["fault of the grader", "Doubling", "1"]
     assert reasons["no_file"][3] == str(len(refused) - 1)
-    by_hand = page.tables["Scores that count in place of the graders'"]
+    by_hand = page.tables["Scores that replace the graders'"]
     assert sorted(row[1] for row in by_hand[1:]) == [
         "1.5 of 2 checks: –", "3 of 10 checks: –", "8.25 of 10 checks: 5",
     ]  # fmt: skip
-    assert page.tables["Handed in late, the latest first"][1:] == [["late Doubling", "2 d", "2", "8"]]
+    assert page.tables["Late submissions, the latest first"][1:] == [["late Doubling", "2 d", "2", "8"]]
     graded = sum(item.verdict.isolation == "L3" for item in results.all())
-    assert page.tables["Protection level that submissions ran at"][1][:2] == ["L3", str(graded)]
+    assert page.tables["Submissions by protection level"][1][:2] == ["L3", str(graded)]
     assert "course grade rerun" in page.text
 
 

@@ -13,7 +13,7 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import GradedExercise, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
-from course.grading.similar.compare import Document, Pair, Similar
+from course.grading.similar.compare import Document, Group, Pair, Similar
 from course.grading.similar.fingerprints import Parser
 from course.grading.similar.page import page as similar_page
 from tests.unit.grading.exports.test_html import quiz_verdict
@@ -100,7 +100,8 @@ def likeness() -> Similar:
         )
     passages = (((1, 20), (1, 20)), ((20, 62), (20, 62)), ((1, 5), (40, 44)))
     pair = Pair("doubling", one, two, 0.973, passages, 62)
-    return Similar([pair, pair], 300, ["<b>bob</b> doubling"], 7)
+    group = Group("doubling", (HOSTILE[0], "Ada\u202eevoL", "x" * 300), 0.7)
+    return Similar([pair, pair], [group], 300, ["<b>bob</b> doubling"], 7)
 
 
 @pytest.mark.parametrize("name", _PAGES)
@@ -188,7 +189,7 @@ def test_a_long_table_has_its_headings_on_every_sheet(browser: Any, folder: Path
     for lines in range(0, 40, 8):
         push = f"document.querySelector('header').style.paddingBottom = '{lines}rem'"
         for sheet in printed(browser, folder / "report.html", tmp_path, push)[:-1]:
-            assert not sheet.strip().endswith(("Points reached", "Students", "Passed")), sheet
+            assert not sheet.strip().endswith(("Points earned", "Students", "Passed")), sheet
 
 
 def test_of_similar_submissions_what_is_open_is_printed(browser: Any, folder: Path, tmp_path: Path) -> None:

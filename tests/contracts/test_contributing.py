@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import shutil
 import textwrap
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -119,3 +121,15 @@ def test_every_name_of_the_kit_is_on_the_page() -> None:
         "Section",
     }
     assert set(kit.__all__) - set(re.findall(r"kit\.(\w+)", code)) <= told | types
+
+
+def test_the_program_is_as_small_in_its_parts_as_the_page_says() -> None:
+    sources = {path: path.read_text("utf-8") for path in (ROOT / "course").rglob("*.py")}
+    assert max(text.count("\n") for text in sources.values()) < 500
+    kinds = ast.FunctionDef | ast.AsyncFunctionDef
+    nodes = (node for text in sources.values() for node in ast.walk(ast.parse(text)))
+    assert max((node.end_lineno or 0) - node.lineno + 1 for node in nodes if isinstance(node, kinds)) < 70
+    rooms = Counter(path.parent for path in sources if path.name != "__init__.py")
+    assert max(rooms.values()) <= 15
+    packages = [text for path, text in sources.items() if path.name == "__init__.py"]
+    assert all(ast.get_docstring(ast.parse(text)) for text in packages)

@@ -293,7 +293,7 @@ def _show_late(
 def similar(
     out: Out,
     exercise: Exercises = None,
-    # Right solutions that were written differently share 0.39 at most (those of this course, by weight); a
+    # The right solutions in solutions/*/accepted share 0.39 at most with the model solution, by weight; a
     # copy whose names were changed shares 1.
     share: Share = 0.6,
     output: Annotated[

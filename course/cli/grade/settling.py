@@ -24,6 +24,7 @@ from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
     from course.cli.grade.replies import AssignedOne, UnsettledOne
+    from course.grading.gradebook.salvage import Salvaged
     from course.grading.running.assign import Assigned, Unsettled
 
 __all__ = ["assign", "log", "salvage"]
@@ -212,7 +213,7 @@ def salvage(
     if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.folder import export_all, open_results
+    from course.grading.running.folder import export_all
     from course.isolation.launch import private_folder, remove_tree
 
     console = current()
@@ -246,6 +247,13 @@ def salvage(
             )
         )  # fmt: skip
         return code
+    _show_salvaged(console, told, to, dry_run=dry_run)
+    return code
+
+
+def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:
+    from course.grading.running.folder import open_results
+
     for name in ("results", "submissions", "overrides", "journal", "snapshots"):
         backed = told.from_backup[name]
         words = f"{told.rows[name]}" + (f", {backed} of them from a backup" if backed else "")
@@ -260,4 +268,3 @@ def salvage(
             folder = results.book.run_options().get("folder", "SUBMISSIONS")
         rest = command("grade", "run", folder, "--out", to, "--resume")
         console.note(f"Written: {to}. {rest} grades what is missing.")
-    return code

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from course.grading.gradebook.records import Result
 from course.grading.results.effective import Results
-from course.grading.similar.compare import Document, Group, Pair, _groups, compare
+from course.grading.similar.compare import Document, Group, Pair, _groups, _pairs, compare
 from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, Prints, fingerprints
 from course.grading.similar.page import _blocks, page
 from course.scoring.judging.session import Submission
@@ -198,6 +198,29 @@ def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog
     table = Page(page(found)).tables["Submissions linked by similar pairs, the largest group first"]
     assert [name.strip() for name in table[1][0].split(",")] == list(group.members)
     assert table[1][1:] == ["doubling", "9", f"{100 * group.share:.0f}\u00a0%"]
+
+
+def test_right_solutions_of_the_course_share_little_with_the_model_solution(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The default of ``--share`` rests on it, and docs/instructor.md says it."""
+    from course.catalog.load import Catalog
+
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    catalog, most = Catalog(), 0.0
+    assert catalog.content.solutions is not None
+    with Parser() as parse:
+        for name in catalog.exercise_ids():
+            exercise, folder = catalog.exercise(name), catalog.content.solutions / name
+            files = [folder / exercise.module, *sorted((folder / "accepted").glob("*.py"))]
+            documents = [Document(file.name, "", parse(file.read_bytes())) for file in files]
+            ignored = set(parse(exercise.stub_path.read_bytes()).marks)
+            shares = {
+                (pair.first.label, pair.second.label): pair.share
+                for pair in _pairs(name, documents, ignored, 0.0)
+            }
+            most = max([most, *(share for both, share in shares.items() if exercise.module in both)])
+    assert 0.38 < most < 0.395
 
 
 def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody() -> None:

@@ -202,6 +202,12 @@ def test_a_snapshot_is_known_by_what_is_in_it(tmp_path: Path, course: Catalog) -
         start_grader(Config(Terms(graders=one.sha256), 0))
 
 
+def test_a_snapshot_of_the_whole_course_has_about_a_megabyte(monkeypatch: pytest.MonkeyPatch) -> None:
+    """docs/instructor.md says so: it is in every gradebook."""
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    assert 0.8e6 < len(Snapshot.take(Catalog().content).packed) < 1.5e6
+
+
 def test_an_old_pyc_is_never_taken_for_an_edited_file(tmp_path: Path, course: Catalog) -> None:
     """A compiled file comes along only where its source has long been as it is."""
     with frozen(Snapshot.take(course.content)) as graders_then:

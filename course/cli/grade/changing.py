@@ -285,7 +285,7 @@ def _show_late(
     if results.policy is not None:
         console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
         if unknown_time:
-            console.note(f"{unknown_time} have no trusted submission time; they count as in time.")
+            console.note(f"{unknown_time} have no trusted submission time; they count as on time.")
     for name in unknown:
         console.warn(f"The gradebook has no {name}.")
 

@@ -195,6 +195,8 @@ def log(
         words = f"{decision.at}, {decision.who}, {about or 'the class'}: {one_line(decision.reason)}"
         console.item(decision.kind, words, width=10)
         before, after = in_words(decision.before), in_words(decision.after)
+        if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then
+            after = "the graders' score"
         if before != after:
             console.line(f"{before} -> {after}", indent=12)
     return 0

@@ -123,6 +123,12 @@ def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(
     assert course("grade", "export", "my grades", "--format", "gradescope").code == 0
 
 
+def test_the_log_says_that_the_graders_score_counts_again(course, here: Path) -> None:
+    course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "oral")
+    course("grade", "override", "out", "ada", "doubling", "--lift")
+    assert "3, by hand: oral -> the graders' score" in course("grade", "log", "out").out
+
+
 def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
     missing = course("grade", "assign", "out", "cy", "nowhere.py", "--reason", "x", "--dry-run", "--json")
     assert missing.json["error"]["help"] == "Name it as `course grade assign out` lists it, or by its path."

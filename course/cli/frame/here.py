@@ -72,8 +72,12 @@ class Here:
         for name in (self._folder_name(), self._last_worked_on(), *self._only_started()):
             if name in known:
                 return self.catalog.exercise(str(name))
+        raise self.nothing_started()
+
+    def nothing_started(self) -> NotFoundError:
+        """The error that no exercise has been started; its advice names the first one."""
         first = next(iter(self.catalog.exercises()), None)  # in the order they are done
-        raise NotFoundError(
+        return NotFoundError(
             "No exercise has been started here.",
             help=f"Start one: `course start {first.id}`." if first else "This course has no exercises.",
             code="nothing_started",

@@ -231,11 +231,7 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
         if one in known or here.workspace.path(one.place, one.module).is_file()
     ]
     if not started:
-        raise NotFoundError(
-            "No exercise has been started here.",
-            help="`course start EXERCISE` starts one.",
-            code="nothing_started",
-        )
+        raise here.nothing_started()
     results: list[Check | ErrorReply] = []
     for exercise in started:
         if form == "text":

@@ -18,6 +18,7 @@ from course.errors import CourseError, NotFoundError, UngradableError
 from course.handed_in.cells import read_notebook
 from course.notebooks.building.cells import dumped
 from course.notebooks.building.merge import is_untouched
+from course.printable import command
 from course.progress.history import fingerprint
 
 if TYPE_CHECKING:
@@ -83,9 +84,11 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
         for name in (exercise.module, _notebook_name(exercise)):
             if path == here.workspace.path(exercise.place, name).resolve():
                 return exercise, name
+    check = command("notebook", "check", wanted)
+    elsewhere = f"; {check} checks this notebook" if path.suffix == NOTEBOOK else ""
     raise NotFoundError(
         f"{wanted} is not where a file of an exercise lies in this workspace.",
-        help="Name the exercise; a notebook that lies elsewhere is checked by `course notebook check FILE`.",
+        help=f"Name the exercise{elsewhere}.",
         code="exercise_not_found",
     )
 

@@ -210,3 +210,12 @@ def test_an_empty_line_parts_the_score_from_the_curve_below_it(course, write, cu
     said = next(at for at, line in enumerate(lines) if "doublings_works: x over time" in line)
     assert lines[said - 1] == ""
     assert "Score" in lines[said - 2]
+
+
+def test_advice_names_the_exercise_or_the_file_it_is_about(course, tmp_path):
+    course("init", str(tmp_path / "elsewhere"))
+    there = ("-C", str(tmp_path / "elsewhere"), "--json")
+    none = course("check", "--all", *there).json["error"]
+    assert (none["code"], none["help"]) == ("nothing_started", "Start one: `course start doubling`.")
+    other = course("check", "my notes.ipynb", *there).json["error"]
+    assert "`course notebook check 'my notes.ipynb'` checks this notebook" in other["help"]

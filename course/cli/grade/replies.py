@@ -164,7 +164,7 @@ class SimilarPair(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SimilarGroup(msgspec.Struct, frozen=True, kw_only=True):
-    """Submissions of one exercise that hang together by pairs; ``share`` is that of the weakest pair."""
+    """Submissions of one exercise that similar pairs link; ``share`` is that of the weakest pair."""
 
     exercise: str
     members: tuple[str, ...]

@@ -69,7 +69,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """Three or more submissions of one exercise that hang together by pairs.
+    """Three or more submissions of one exercise that similar pairs link.
 
     Attributes:
         members: the students, by name; each is in a pair with another, not with all.

@@ -73,22 +73,6 @@ def workspace(course, tmp_path):
     return root
 
 
-@pytest.fixture(scope="module")
-def worked():
-    """A warm session over the worked example, as a function of the module's text; and the right text."""
-    from course.catalog.load import Catalog
-    from course.cli.setup.demo import worked_example
-    from course.scoring.judging.session import GradingSession, Submission
-
-    catalog = Catalog()
-    example = worked_example(catalog)
-    with GradingSession(example, catalog) as session:
-        yield (
-            lambda text: session.grade(Submission({example.module: text.encode()})),
-            example.stub_path.read_text(encoding="utf-8"),
-        )
-
-
 def test_the_whole_way_from_init_to_submit(process, tmp_path):
     root = tmp_path / "work"
     assert _next(process("init", "work"), "Then: ") == ["go"]
@@ -205,75 +189,6 @@ def test_a_save_is_answered_within_a_quarter_second_of_the_checks_own_time(cours
     checks = sum(check["duration_ms"] for check in body["last"]["checks"]) / 1000
     # The middle one of six: a machine busy with something else may delay one, not most.
     assert sorted(took)[2] - checks < 0.25
-
-
-def test_the_demonstration_names_a_mistake_mends_it_and_leaves_nothing(process, tmp_path):
-    empty = tmp_path / "empty"
-    empty.mkdir()
-    ran = process("demo", cwd=empty)
-    assert ran.returncode == 0
-    said = [
-        "v_next = v - h * rate**2 * x",
-        "diagnosis: EULER_IS_SEMI_IMPLICIT",
-        "0 of 2 checks pass.",
-        "- x_next = x + h * v_next",
-        "+ x_next = x + h * v",
-        "All 2 public checks pass",
-        "Next: course init",
-    ]
-    places = [ran.stdout.index(words) for words in said]
-    assert places == sorted(places)
-    assert list(empty.iterdir()) == []
-
-
-def test_the_demonstration_measures_what_theory_says_of_both_methods(course, tmp_path):
-    body = json.loads(course("demo", "--json", cwd=tmp_path).stdout)
-    assert (body["before"]["ok"], body["after"]["ok"], body["exit_code"]) == (False, True, 0)
-    assert len(body["change"]) == 2, "one line"
-    rate_h = 2.0 * body["step_size"]
-    # Explicit Euler multiplies the energy by 1 + (rate h)^2; semi-implicit Euler keeps it within rate h / 2.
-    assert body["energy_after"] == pytest.approx([1.0, (1.0 + rate_h**2) ** body["steps"]], rel=1e-9)
-    low, high = body["energy_before"]
-    assert 1.0 - rate_h < low < 1.0 < high < 1.0 + rate_h
-
-
-def test_no_task_has_the_signature_of_the_worked_example():
-    """What `course demo` ships would answer it."""
-    import ast
-
-    from course.catalog.load import Catalog
-    from course.cli.setup.demo import worked_example
-
-    def signatures(exercise):
-        tree = ast.parse(exercise.stub_path.read_text(encoding="utf-8"))
-        return {
-            (node.name, tuple(a.arg for a in node.args.args))
-            for node in tree.body
-            if isinstance(node, ast.FunctionDef)
-        }
-
-    catalog = Catalog()
-    ((name, parameters),) = signatures(worked_example(catalog))
-    exercises = [*catalog.exercises(), *getattr(catalog, "warm_ups", tuple)()]
-    taken = set().union(*(signatures(exercise) for exercise in exercises))
-    assert name not in {known for known, _ in taken}
-    assert parameters not in {known for _, known in taken}
-
-
-@pytest.mark.parametrize(
-    ("what", "instead", "failed", "diagnosis"),
-    [
-        ("x + h * v\n", "x + h * v_next\n", "first_step", "EULER_IS_SEMI_IMPLICIT"),
-        ("x + h * v\n", "x + h * v + h * v_next\n", "first_step", None),
-        ("v - h * rate**2 * x", "v - h * rate * x", "energy_grows", None),
-        ("v - h * rate**2 * x", "v + h * rate**2 * x", "energy_grows", None),
-    ],
-)
-def test_each_check_of_the_worked_example_can_fail(worked, what, instead, failed, diagnosis):
-    session, right = worked
-    assert what in right
-    verdict = session(right.replace(what, instead))
-    assert [(c.id, c.diagnosis) for c in verdict.checks if c.status == "fail"] == [(failed, diagnosis)]
 
 
 class _watch:  # noqa: N801 - a context manager, used like a function

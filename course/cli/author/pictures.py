@@ -94,13 +94,13 @@ def _run(*arguments: str, colour: bool = False) -> str:
     return done.stdout
 
 
-def _until_mended(text: str) -> str:
+def _until_fixed(text: str) -> str:
     """The demonstration up to the passing checks; its picture has no place in a small one."""
     return text.partition("3. What the mistake hid")[0].rstrip()
 
 
 def _diagnosis_source() -> bytes:
-    return _until_mended(_run("demo", "--plain")).encode()
+    return _until_fixed(_run("demo", "--plain")).encode()
 
 
 def _diagnosis() -> bytes:
@@ -111,7 +111,7 @@ def _diagnosis() -> bytes:
     from rich.text import Text
 
     screen = Text.from_ansi(_run("demo", colour=True))
-    shown = screen[: len(_until_mended(screen.plain))]
+    shown = screen[: len(_until_fixed(screen.plain))]
     recorder = RichConsole(file=io.StringIO(), record=True, width=_COLUMNS, force_terminal=True)
     recorder.print(shown)
     return recorder.export_svg(title="course demo", unique_id="diagnosis").encode()

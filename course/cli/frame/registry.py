@@ -46,9 +46,7 @@ class Entry:
 
 
 COMMANDS: dict[str, Entry] = {
-    "demo": Entry(
-        "setup.demo", "demo", LEARN, "See a mistake found and mended, without a workspace.", "course demo"
-    ),
+    "demo": Entry("setup.demo", "demo", LEARN, "Find and fix a mistake, without a workspace.", "course demo"),
     "init": Entry("setup.making", "init", LEARN, "Make a workspace.", "course init my-course"),
     "lessons": Entry("reading.commands", "lessons", LEARN, "List the lessons.", "course lessons"),
     "lesson": Entry(

@@ -1,7 +1,7 @@
-"""``course demo``: a mistake found, explained and mended, for a user who has just installed the course.
+"""``course demo``: a mistake found, explained and fixed, for a user who has just installed the course.
 
 A worked example is checked with its mistake and without it, through the session that grades a class, and
-both motions are drawn. Nothing is written anywhere.
+both motions are drawn. On a terminal the user types the line that is right. Nothing is written anywhere.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.figures.drawing.described import Plot
     from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.submission import Submission
     from course.scoring.verdict import Verdict
 
 __all__ = ["MISTAKEN", "WORKED", "demo", "worked_example"]
@@ -38,6 +39,9 @@ MISTAKEN = "mistaken.py"
 
 #: The drawn motion: stretch in m, rate in rad/s, step in s, number of steps. 10 s, about three periods.
 STRETCH, RATE, STEP, STEPS = 0.1, 2.0, 0.05, 200
+#: A line that is wrong so often is followed by the answer.
+TRIES = 3
+_NEXT = ("Next: course init my-course", "bold")
 #: Two panels stand side by side from this width on, in columns.
 _WIDE = 70
 _PANEL_ROWS = 17
@@ -62,31 +66,31 @@ class _Motion:
 
 
 def demo() -> int:
-    """See a mistake found and mended, without a workspace.
+    """Find and fix a mistake, without a workspace.
 
-    An integrator that says Euler and does something else is checked, mended and checked again, as your own
-    code will be. It leaves nothing behind.
+    An integrator that says Euler and does something else is checked. In a terminal you fix its one wrong
+    line, and what you type is checked as your own code will be. It leaves nothing behind.
     """
 
     from course.cli.work.checking import open_session
 
     console, catalog = current(), load_catalog()
     example = worked_example(catalog)
-    sources = [
+    mistaken, right = (
         (Path(example.folder) / name).read_text(encoding="utf-8") for name in (MISTAKEN, example.module)
-    ]
-    change = _change(*sources)
+    )
     with open_session(example, catalog) as session:
-        before, after = (_motion(console, session, source) for source in sources)
-    if before.verdict.all_pass or not after.verdict.all_pass:
-        raise InternalError(
-            "The demonstration failed: the file with the mistake must fail its checks, and the corrected "
-            "file pass them.",
-            help="Run `course doctor`; if it finds nothing, please report this.",
-            code="demo_failed",
-        )
-    _show(console, example, before, after, change)
-    console.note(("Next: course init my-course", "bold"))
+        bench = _Bench(console, session)
+        before = bench.motion(mistaken, passes=False)
+        _show_mistake(console, example, before)
+        fixed = _ask(bench, mistaken, right) if console.converses else right
+        if not fixed:
+            console.note(_NEXT)
+            return 0
+        after = bench.motion(fixed, passes=True)
+    change = _change(mistaken, fixed)
+    _show_fixed(console, example, before, after, change)
+    console.note(_NEXT)
     course = catalog.ref
     console.emit(
         Demo(
@@ -102,19 +106,111 @@ def demo() -> int:
     return 0
 
 
-def _show(
-    console: Console, example: Exercise, before: _Motion, after: _Motion, change: tuple[str, ...]
-) -> None:
-    """Three screens; where a person reads, each waits for Enter, and q leaves out the rest."""
+class _Bench:
+    """Checks versions of the module, and lets them compute the motion that is drawn."""
+
+    def __init__(self, console: Console, session: GradingSession) -> None:
+        self.console = console
+        self._session = session
+        self._checked: dict[str, Verdict] = {}
+
+    def verdict(self, source: str) -> Verdict:
+        """The checks' results; each version is checked once."""
+        from course.cli.work.checking import grade_once
+
+        if source not in self._checked:
+            with self.console.working("Checking"):
+                self._checked[source] = grade_once(self._session, self._submission(source))
+        return self._checked[source]
+
+    def motion(self, source: str, *, passes: bool) -> _Motion:
+        """The motion of a version whose checks must pass, or must not."""
+        import numpy as np
+
+        from course.cli.work.checking import error_without_checks
+
+        verdict = self.verdict(source)
+        problem = error_without_checks(verdict)
+        if problem is not None:
+            raise InternalError(problem.message, help=problem.help, code=problem.code)
+        if verdict.all_pass != passes:
+            raise InternalError(
+                "The demonstration failed: the file with the mistake must fail its checks, and the corrected "
+                "file pass them.",
+                help="Run `course doctor`; if it finds nothing, please report this.",
+                code="demo_failed",
+            )
+        task = self._session.exercise.task[0].id
+        with self.console.working("Computing both motions"):
+            x, v = self._session.using(
+                self._submission(source), lambda live: live.call(task, STRETCH, RATE, STEP, STEPS)
+            )
+        return _Motion(source, verdict, np.array(x), np.array(v))
+
+    def _submission(self, source: str) -> Submission:
+        from course.scoring.judging.submission import Submission
+
+        # What a terminal cannot decode it hands over as lone surrogates.
+        return Submission({self._session.exercise.module: source.encode(errors="replace")})
+
+
+def _show_mistake(console: Console, example: Exercise, before: _Motion) -> None:
     with console.paged():
         console.heading("1. This function calls itself explicit Euler. Each of its steps:")
         console.block(_loop(before.source), "python", indent=2)
         console.blank()
         show_verdict(console, example, before.verdict, whole=False, brief=True)
-    if not console.pause("Next: the mended line."):
-        return
+
+
+def _ask(bench: _Bench, mistaken: str, right: str) -> str:
+    """The module as the user fixes it, or ``right`` if they do not; "" if they leave.
+
+    What is typed replaces the wrong line and is checked as any submission is.
+    """
+    console = bench.console
+    wrong = next(line for line in mistaken.splitlines() if line not in right.splitlines())
+    indent = wrong[: len(wrong) - len(wrong.lstrip())]
     console.blank()
-    console.heading("2. The one line, mended")
+    console.line(("Your turn. ", "bold"), f"Type this line as it should be: {wrong.strip()}")
+    question, tries = "Enter alone shows the answer, q leaves: ", 0
+    while True:
+        typed = console.ask(question)
+        if typed is None or typed.lower() in {"q", "quit"}:
+            return ""
+        if not typed:
+            return right
+        if typed.split() == wrong.split():
+            question = "That is the line as it was. Enter alone shows the answer, q leaves: "
+            continue
+        source = mistaken.replace(wrong, indent + typed)
+        verdict = bench.verdict(source)
+        if verdict.all_pass:
+            return source
+        _show_finding(console, verdict)
+        tries += 1
+        if tries == TRIES:
+            console.line("This is the answer:")
+            return right
+        question = "Type the line again; Enter alone shows the answer, q leaves: "
+
+
+def _show_finding(console: Console, verdict: Verdict) -> None:
+    """What is wrong with a typed line, in brief: the first check that fails, or why none ran."""
+    found = next((check for check in verdict.checks if check.status not in {"pass", "skip"}), None)
+    # Advice for a file that cannot be read, or for code that raises, does not help with one line.
+    if found is None:
+        said = verdict.error.message if verdict.error else "It could not be checked."
+    else:
+        said = found.message if found.status == "error" else f"{found.message} {found.help}".rstrip()
+    console.line(("Not yet. ", "red"), said)
+
+
+def _show_fixed(
+    console: Console, example: Exercise, before: _Motion, after: _Motion, change: tuple[str, ...]
+) -> None:
+    """The line and both motions; where a person reads, the motions wait for Enter, and q leaves them out."""
+    console.blank()
+    console.heading("2. The one line, fixed")
     console.block("\n".join(change), "diff", indent=2)
     console.blank()
     show_verdict(console, example, after.verdict)
@@ -138,24 +234,6 @@ def worked_example(catalog: Catalog) -> Exercise:
     return msgspec.structs.replace(read_toml(folder / "exercise.toml", Exercise), folder=str(folder))
 
 
-def _motion(console: Console, session: GradingSession, source: str) -> _Motion:
-    """Check a module and let it compute the motion that is drawn."""
-    import numpy as np
-
-    from course.cli.work.checking import error_without_checks, grade_once
-    from course.scoring.judging.submission import Submission
-
-    submission = Submission({session.exercise.module: source.encode()})
-    with console.working("Checking"):
-        verdict = grade_once(session, submission)
-        problem = error_without_checks(verdict)
-        if problem is not None:
-            raise InternalError(problem.message, help=problem.help, code=problem.code)
-        task = session.exercise.task[0].id
-        x, v = session.using(submission, lambda live: live.call(task, STRETCH, RATE, STEP, STEPS))
-    return _Motion(source, verdict, np.array(x), np.array(v))
-
-
 def _loop(source: str) -> str:
     """The body of the function's loop up to where it keeps the step: the method itself."""
     body = source.partition("for _ in range(n):\n")[2].partition("        xs.append")[0]
@@ -174,7 +252,7 @@ def _said(before: _Motion, after: _Motion) -> str:
     """The picture in words, with its numbers."""
     low, high = before.energy
     return (
-        f"Explicit Euler is supposed to gain energy: over {STEP * STEPS:g} s of this spring, the mended "
+        f"Explicit Euler is supposed to gain energy: over {STEP * STEPS:g} s of this spring, the fixed "
         f"function's grows to {after.energy[1]:.2f} times its start. The mistaken one's stays between "
         f"{low:.2f} and {high:.2f} times, because it is another method. A comparison made with it would have "
         "praised Euler for what Euler cannot do."

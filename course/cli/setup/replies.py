@@ -12,10 +12,10 @@ __all__ = ["Bug", "Demo", "Doctor", "Fix", "Init", "Package"]
 
 
 class Demo(Envelope, tag="course.demo/2", frozen=True, kw_only=True):
-    """A worked example with a mistake, and mended.
+    """A worked example with a mistake, and without it.
 
-    ``change`` is the mended line as a diff. ``energy`` is the energy of each motion in units of its energy at
-    the start: the least and the most over ``steps`` steps of ``step_size`` seconds.
+    ``change`` is the corrected line as a diff. ``energy`` is the energy of each motion in units of its energy
+    at the start: the least and the most over ``steps`` steps of ``step_size`` seconds.
     """
 
     before: Check

@@ -120,6 +120,11 @@ class Console:
         return not self.json and sys.stdin is not None and sys.stdin.isatty()
 
     @property
+    def converses(self) -> bool:
+        """True if a user reads the words of the run on a terminal and can answer them there."""
+        return self.interactive and not self.quiet and bool(self._human.isatty())
+
+    @property
     def motion(self) -> bool:
         """True if something may move while there is work, on a terminal only."""
         return self.fancy and not self.quiet and bool(self._human.isatty())

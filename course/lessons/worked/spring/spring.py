@@ -7,8 +7,8 @@ def trajectory(stretch, rate, h, n):
     xs, vs = [x], [v]
     for _ in range(n):
         v_next = v - h * rate**2 * x
-        x_next = x + h * v
-        x, v = x_next, v_next
+        x = x + h * v
+        v = v_next
         xs.append(x)
         vs.append(v)
     return xs, vs

@@ -54,12 +54,14 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         title: what a person calls it.
         points: public and hidden points together.
         read: the section that explains it, as "lesson#section"; "" for the exercise's lesson as a whole.
+        fault: the diagnosis of the function as it is handed out; "" where the student writes it.
     """
 
     id: str
     title: str
     points: float
     read: str = ""
+    fault: str = ""
 
 
 #: At home a check may take so many times what it takes at most of a right solution, and so many once another
@@ -130,11 +132,6 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def place(self) -> str:
         """Where it lies among the exercises, and in a workspace."""
         return f"{WARM_UPS}/{self.id}" if self.is_warm_up else self.id
-
-    @property
-    def comes_with_faults(self) -> bool:
-        """Whether the student gets a program to mend, not functions to write."""
-        return self.is_warm_up and "NotImplementedError" not in self.stub_path.read_text(encoding="utf-8")
 
     @property
     def given(self) -> tuple[Path, ...]:

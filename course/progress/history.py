@@ -93,6 +93,18 @@ class CheckRun:
     numbers: Mapping[str, Mapping[str, str]]
 
     @property
+    def wrong_tasks(self) -> frozenset[str]:
+        """Tasks with a check that ran and did not pass."""
+        wrong = (name for name, status in self.statuses.items() if status not in {_PASS, _SKIP})
+        return frozenset(self.tasks[name] for name in wrong)
+
+    @property
+    def right_tasks(self) -> frozenset[str]:
+        """Tasks whose every check passed."""
+        not_passed = {self.tasks[name] for name, status in self.statuses.items() if status != _PASS}
+        return frozenset(self.tasks.values()) - not_passed
+
+    @property
     def failed(self) -> bool:
         """True if a check ran and did not pass."""
         return any(status != _PASS for status in self.statuses.values())
@@ -139,6 +151,18 @@ class History:
     @property
     def _whole(self) -> list[CheckRun]:
         return [run for run in self.runs if run.state == "graded" and not run.only]
+
+    def changed_tasks(self) -> tuple[frozenset[str], frozenset[str]]:
+        """Tasks that the newest whole run found wrong and then right, and right and then wrong.
+
+        It is compared with the whole run before, if that checked another file. A function that was not
+        written then was not wrong.
+        """
+        if len(self._whole) < 2 or self._whole[-2].fingerprint == self._whole[-1].fingerprint:
+            return frozenset(), frozenset()
+        before, now = self._whole[-2:]
+        fixed, broke = before.wrong_tasks & now.right_tasks, before.right_tasks & now.wrong_tasks
+        return fixed - {before.tasks.get(check, "") for check in before.unwritten}, broke
 
     def failing_tasks(self) -> frozenset[str]:
         """Tasks with a check that does not pass, as far as is known.

@@ -13,6 +13,7 @@ from course.authoring.exercises.variants import accepted_files, solution_path
 from course.catalog.load import Catalog
 from course.grading import kit
 from course.ids import WARM_UPS
+from course.scoring.judging.session import GradingSession, Submission
 
 if TYPE_CHECKING:
     from course.authoring.report import AuditReport
@@ -59,6 +60,20 @@ def test_every_lesson_has_two_or_three_warm_ups_of_five_minutes(catalog: Catalog
 
 def test_the_first_warm_up_of_all_is_the_program_with_faults(catalog: Catalog) -> None:
     assert catalog.warm_ups()[0].id == "first-program"
+
+
+def test_a_program_that_is_handed_out_wrong_declares_what_its_checks_find_in_it(catalog: Catalog) -> None:
+    handed_out = []
+    for one in (*catalog.exercises(), *catalog.warm_ups()):
+        declared = {task.id: task.fault for task in one.task if task.fault}
+        unwritten = "raise NotImplementedError" in one.stub_path.read_text(encoding="utf-8")
+        assert unwritten != bool(declared), one.id
+        if declared:
+            handed_out.append(one.id)
+            with GradingSession(one, catalog, scope="public") as session:
+                verdict = session.grade(Submission({one.module: one.stub_path.read_bytes()}))
+            assert declared == {check.task: check.diagnosis for check in verdict.checks if check.diagnosis}
+    assert "first-program" in handed_out
 
 
 def test_a_warm_up_names_each_of_its_mistakes_apart(catalog: Catalog) -> None:

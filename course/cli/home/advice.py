@@ -14,7 +14,14 @@ if TYPE_CHECKING:
     from course.cli.frame.here import Here
     from course.scoring.verdict import Verdict
 
-__all__ = ["after_report", "after_warm_up", "hint_is_due", "next_in_course", "next_step"]
+__all__ = [
+    "after_report",
+    "after_warm_up",
+    "exercise_ahead",
+    "hint_is_due",
+    "next_in_course",
+    "next_step",
+]
 
 
 def next_step(here: Here, exercise: Exercise, verdict: Verdict, source: bytes) -> str:
@@ -95,6 +102,22 @@ def next_in_course(here: Here) -> str:
     if not started:
         return "course lessons"
     return "course submit" if _quiz_passed(here) else "course quiz take"
+
+
+def exercise_ahead(here: Here, step: str) -> str:
+    """Where the next exercise comes and how to start it now, while ``step`` is about a lesson; else empty."""
+    catalog, (_, kind, *names) = here.catalog, step.split()
+    a_warm_up = bool(names) and names[0] in catalog.warm_up_ids()
+    if kind != "lesson" and not a_warm_up:
+        return ""
+    started = set(here.workspace.started())
+    ahead = (one for one in catalog.exercises() if one.id not in started and here.history(one).last is None)
+    exercise = next(ahead, None)
+    if exercise is None or exercise.lesson not in catalog.lesson_ids():
+        return ""
+    after = catalog.lesson_ids().index(exercise.lesson) + 1
+    called = f"Exercise {exercise.number}, {exercise.id}," if exercise.number else f"Exercise {exercise.id}"
+    return f"{called} comes after lesson {after}. To start it now: course start {exercise.id}"
 
 
 def _warm_up_step(here: Here, lesson: str, started: set[str]) -> str:

@@ -8,7 +8,7 @@ from course.cli.frame.app import again
 from course.cli.frame.here import Here
 from course.cli.frame.replies import NextStep
 from course.cli.frame.terminal.console import Console, current
-from course.cli.home.advice import next_in_course
+from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.replies import Go, Next
 
 __all__ = ["go", "next_command"]
@@ -55,11 +55,15 @@ def go() -> int:
     if console.json:
         console.emit(Go(next=NextStep(step), why=_why(here, step)))
         return 0
+    ahead = exercise_ahead(here, step)
     while True:
         words = _as_run(console, step)
         if not (words[0] == "lesson" and console.fancy):  # the reader covers it and tells where it continues
             console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(here, step)}", "dim"))
-        code = again(words)
+        if ahead:  # also above the reader, which leaves it on the screen
+            console.note(ahead)
+            ahead = ""
+        code = _led(console, words)
         if not console.interactive:
             return code
         here = Here.load()
@@ -71,6 +75,15 @@ def go() -> int:
         console.note((f"Next: course {shlex.join(_as_run(console, step))}", "bold"), f"  {_why(here, step)}")
         if not console.go_on(""):
             return 0
+
+
+def _led(console: Console, words: list[str]) -> int:
+    """Run a command; at a terminal what comes next is said once, by the loop."""
+    console.led = console.interactive
+    try:
+        return again(words)
+    finally:
+        console.led = False
 
 
 def _why(here: Here, step: str) -> str:

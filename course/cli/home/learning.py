@@ -106,7 +106,7 @@ class Learning:
                 last_seen=one.last.isoformat(),
                 runs=one.runs,
                 mended_at=one.mended.isoformat() if one.mended else None,
-                given=exercise.comes_with_faults,
+                given=one.diagnosis in {task.fault for task in exercise.task if task.id == one.task},
             )
 
     # -- what to read again ----------------------------------------------------------------------------
@@ -183,25 +183,25 @@ def _show_predictions(console: Console, predictions: PredictionsState) -> None:
 
 def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
     _show_some(console, "Mistakes", "made", [one for one in mistakes if not one.given])
-    _show_some(console, "Faults in programs to mend", "found", [one for one in mistakes if one.given])
+    _show_some(
+        console, "Faults in the programs you were given", "found", [one for one in mistakes if one.given]
+    )
 
 
 def _show_some(console: Console, what: str, done: str, mistakes: Sequence[MistakeState]) -> None:
-    """How many, and each that is open or was mended last."""
+    """How many, and each with the day it was made or fixed."""
     if not mistakes:
         return
-    mended = sum(one.mended_at is not None for one in mistakes)
-    console.heading(what, f"{len(mistakes)} {done}, {mended} mended")
+    fixed = sum(one.mended_at is not None for one in mistakes)
+    console.heading(what, f"{len(mistakes)} {done}, {fixed} fixed")
     for one in mistakes:
-        where = f"{one.title} ({one.exercise})"
-        if one.mended_at:
-            console.line(f"{where}, {one.diagnosis}: mended {day(one.mended_at)}", indent=2)
-            continue
         seen = f"in {one.runs} checks since" if one.runs > 1 else "seen"
-        named = where if one.looks_like else f"{where}, {one.diagnosis}"
-        console.line(f"{named}: not mended yet, {seen} {day(one.first_seen)}", indent=2)
-        if one.looks_like:
-            console.line(one.looks_like, indent=4)
+        state = (
+            f"fixed {day(one.mended_at)}" if one.mended_at else f"not fixed yet, {seen} {day(one.first_seen)}"
+        )
+        # A diagnosis of a check's own code has no words here; its name is made of words.
+        words = one.looks_like or f"{one.diagnosis.replace('_', ' ').capitalize()}."
+        console.line(f"{one.title} ({one.exercise}), {state}: {words}", indent=2)
 
 
 def _in_words(counts: PredictionsOf) -> str:

@@ -52,12 +52,13 @@ def objective_states(
 
 
 def show_objectives(
-    console: Console, objectives: Sequence[ObjectiveState], exercises: Mapping[str, str]
+    console: Console, objectives: Sequence[ObjectiveState], exercises: Mapping[str, str], *, taken: bool
 ) -> None:
     """Each objective with its evidence.
 
     Args:
         exercises: the line about each exercise, by id.
+        taken: the quiz was taken, so there is something to say of it.
     """
     console.heading("After this course you can …")
     for number, one in enumerate(objectives, 1):
@@ -66,7 +67,7 @@ def show_objectives(
         facts.append(f"predictions: {one.predictions}")
         if one.warm_ups:
             facts.append(f"warm-ups: {one.warm_ups_done} of {one.warm_ups}")
-        if one.questions:
+        if one.questions and taken:
             facts.append(f"quiz: {len(one.answered)} of {len(one.questions)} right")
         console.line((", ".join(facts), "dim"), indent=5)
         for name in one.exercises:

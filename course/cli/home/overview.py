@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from course.cli.frame.here import Here, find_workspace, load_catalog
 from course.cli.frame.replies import NextStep
 from course.cli.frame.terminal.console import Console, current
-from course.cli.home.advice import next_in_course
+from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.learning import Learning, day, show_learning
 from course.cli.home.objectives import objective_states, show_objectives
 from course.cli.home.replies import ExerciseState, LessonState, Progress, QuizState, Status, WarmUpState
@@ -56,7 +56,7 @@ def progress() -> int:
     """Show everything done so far.
 
     Lessons read, exercises checked, with dates and scores; what you predicted and how well, which mistakes
-    you made and mended, and what to read again.
+    you made and fixed, and what to read again.
     """
 
     console, here = current(), Here.load()
@@ -77,7 +77,7 @@ def progress() -> int:
         console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
         show_learning(console, learning)
     step = next_in_course(here)
-    console.note(f"Next: {step}")
+    console.next(step)
     console.emit(
         Progress(
             course=here.course,
@@ -225,7 +225,7 @@ def _outside(console: Console) -> int:
     )
     console.line("You are not in a workspace: the folder that holds your own files.")
     console.note("See what it looks like first: course demo")
-    console.note(f"Next: {step}")
+    console.next(step)
     console.emit(
         Status(
             course=catalog.ref,
@@ -249,10 +249,11 @@ def _inside(console: Console, here: Here) -> int:
         warm_ups = warm_up_states(here)
         objectives = objective_states(here, states, warm_ups)
         step = next_in_course(here)
+        ahead = exercise_ahead(here, step)
     except CourseError as error:
         # A student in trouble looks at the dashboard first, so it must not fail as well.
         here.warnings.append(f"{error.message} {error.help}")
-        states, read, quiz, warm_ups, objectives, step = (), 0, None, (), (), "course doctor"
+        states, read, quiz, warm_ups, objectives, step, ahead = (), 0, None, (), (), "course doctor", ""
     total = len(catalog.lesson_ids())
     console.heading(catalog.title)
     console.line(f"Workspace: {here.workspace.root}")
@@ -261,7 +262,8 @@ def _inside(console: Console, here: Here) -> int:
     done += [f"quiz: {_quiz_line(quiz)}"] if quiz is not None else []
     console.line("; ".join(done))
     if objectives:
-        show_objectives(console, objectives, {state.id: _evidence(state) for state in states})
+        taken = quiz is not None and quiz.best is not None
+        show_objectives(console, objectives, {state.id: _evidence(state) for state in states}, taken=taken)
     elif states:
         console.table(
             ("Exercise", "State", "Score"),
@@ -274,6 +276,8 @@ def _inside(console: Console, here: Here) -> int:
         )
     if objectives:
         console.note("To play with: course sandbox")
+    if ahead:
+        console.note(ahead)
     console.note((f"Next: {step}", "bold"), " (`course go` runs it, and goes on from there)")
     for warning in here.warnings:
         console.warn(warning)

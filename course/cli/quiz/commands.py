@@ -165,7 +165,7 @@ def _finish(
     step = _step(result.missed, due, passed=result.passed)
     screen.show_result(console, result)
     screen.show_due(console, due, today())
-    console.note(f"Next: {step}")
+    console.next(step)
     for warning in desk.here.warnings:
         console.warn(warning)
     console.emit(
@@ -268,7 +268,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
     screen.show_due(console, due, today())
     best = desk.history.best
     step = "course" if best is not None and best.passed else "course quiz take"
-    console.note(f"Next: {step}")
+    console.next(step)
     for warning in desk.here.warnings:
         console.warn(warning)
     console.emit(
@@ -300,7 +300,7 @@ def history() -> int:
     screen.show_due(console, due, today())
     ready = bool(due) and due[0].on <= today()
     step = "course quiz review" if ready else "course" if passed else "course quiz take"
-    console.note(f"Next: {step}")
+    console.next(step)
     console.emit(
         QuizHistoryReply(
             course=desk.here.course,

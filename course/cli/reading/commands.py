@@ -48,7 +48,7 @@ def lessons() -> int:
     unread = next((state.id for state in states if state.read_at is None), None)
     step = f"course lesson {unread}" if unread else None
     if step:
-        console.note(f"Next: {step}")
+        console.next(step)
     console.emit(Lessons(lessons=states, next=NextStep(step) if step else None))
     return 0
 
@@ -108,7 +108,7 @@ def lesson(
             console.warn(warning)
     for picture in reader.pictures:
         console.note(f"Wrote {picture}")
-    console.note(f"Next: {step}")
+    console.next(step)
     console.emit(_reply(chosen, text.getvalue(), tuple(map(str, reader.pictures)), step))
     return 0
 
@@ -195,7 +195,7 @@ def _read_on_screen(
     lesson = last.script.lesson
     for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
         console.warn(warning)
-    console.note(f"Next: {_after(here, lesson) if last.read else f'course lesson {lesson.id}'}")
+    console.next(_after(here, lesson) if last.read else f"course lesson {lesson.id}")
     return 0
 
 

@@ -114,9 +114,10 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
     console.note(
         f"Write in {chosen.place}/{chosen.module} with your own editor, about {chosen.minutes} minutes."
     )
-    console.note(f"Check it:          {step}")
-    console.note(f"On every save:     course watch {chosen.id}")
-    console.note(f"Still failing:     course hint {chosen.id}")
+    if not console.led:
+        console.note(f"Check it:          {step}")
+        console.note(f"On every save:     course watch {chosen.id}")
+        console.note(f"Still failing:     course hint {chosen.id}")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))

@@ -77,7 +77,7 @@ def check(
     chosen = chosen_work(here, *asked_for(here, exercise))
     reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
     if reply.next is not None and form == "text":
-        console.note(f"Next: {reply.next.command}")
+        console.next(reply.next.command)
     for warning in here.warnings:
         console.warn(warning)
     console.emit(reply)
@@ -212,6 +212,8 @@ def _check_one(
         brief = exercise.is_warm_up and not verbose
         if console.draws:  # above, so that the finding stays on the screen
             show_curve(console, exercise, verdict, session)
+        if only is None:
+            _show_changes(console, here, exercise)
         show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
         if not console.draws:
             show_curve(console, exercise, verdict, session, drawn=False)
@@ -220,6 +222,20 @@ def _check_one(
     step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""
     curves = curve_replies(exercise, verdict, session)
     return reply_to(here.course, verdict, step or f"course check {exercise.id}", printed, curves)
+
+
+def _show_changes(console: Console, here: Here, exercise: Exercise) -> None:
+    """First the functions that the last edit broke, and those that it fixed."""
+    try:
+        fixed, broke = here.history(exercise).changed_tasks()
+    except CourseError:  # a record that cannot be read is warned about elsewhere
+        return
+    for label, style, tasks in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):
+        for task in exercise.task:
+            if task.id in tasks:
+                console.item(label, f"{task.title}  [{task.id}]", style=style, width=9)
+    if (fixed or broke) and console.fancy:
+        console.blank()
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:

@@ -52,7 +52,7 @@ def hint(
     console, here = current(), Here.load()
     chosen, named = asked_for(here, exercise)
     reply = give_hint(console, here, chosen, task, named)
-    console.note(f"Next: {reply.next.command}")
+    console.next(reply.next.command)
     for warning in here.warnings:
         console.warn(warning)
     console.emit(reply)

@@ -69,7 +69,7 @@ def reflect(
         raise UsageError("There is no answer to grade yet.", help="Give it with --answer FILE.")
     step = f"course reflect {chosen.id}" + ("" if graded else " --grades …" if said else " --answer FILE")
     if not graded:
-        console.note(f"Next: {step}")
+        console.next(step)
     for warning in here.warnings:
         console.warn(warning)
     console.emit(

@@ -60,7 +60,7 @@ def report(
         for number, section in enumerate(made.sections, 1)
     )
     written = _write_bag(console, made, bag) if bag is not None else None
-    console.note(f"Next: {after_report(here, chosen)}")
+    console.next(after_report(here, chosen))
     for warning in here.warnings:
         console.warn(warning)
     console.emit(

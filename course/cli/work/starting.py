@@ -27,8 +27,9 @@ def start(exercise: OneExercise) -> int:
     files = put(console, here, chosen)
     step = f"course watch {chosen.id}"
     console.note(f"Read {chosen.place}/README.md, write your code in {chosen.place}/{chosen.module}.")
-    console.note(f"Then check it on every save: {step}")
-    console.note(f"Or once, now and then: course check {chosen.id}")
+    if not console.led:
+        console.note(f"Then check it on every save: {step}")
+        console.note(f"Or once, now and then: course check {chosen.id}")
     for warning in here.warnings:
         console.warn(warning)
     console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))

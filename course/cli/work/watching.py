@@ -267,7 +267,7 @@ class Watcher:
         self._show(verdict)
         step = next_step(self.here, self.exercise, verdict, work.source)
         if step != f"course watch {self.exercise.id}":
-            self.console.note(f"Next: {step}")
+            self.console.next(step)
         curves = curve_replies(self.exercise, verdict, session)
         self.last = checking.reply_to(self.here.course, verdict, step, self._printed, curves)
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
@@ -300,11 +300,11 @@ class Watcher:
             return
         before = {check.id: check.status for check in self._verdict.checks}
         broke = [c for c in verdict.checks if c.status != "pass" and before.get(c.id) == "pass"]
-        mended = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
-        for label, style, changed in (("broke", "bold red", broke), ("mended", "bold green", mended)):
+        fixed = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
+        for label, style, changed in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):
             for check in changed:
                 self.console.item(label, check.title, style=style, width=_LABEL_WIDTH)
-        if (broke or mended) and self.console.fancy:
+        if (broke or fixed) and self.console.fancy:
             self.console.blank()
 
     @contextlib.contextmanager

@@ -98,6 +98,8 @@ class Console:
         self.fancy = self._is_fancy()
         self._rich: RichConsole | None = None
         self.emitted = False
+        #: Set while ``course go`` runs a command.
+        self.led = False
 
     @property
     def json(self) -> bool:
@@ -307,6 +309,11 @@ class Console:
         """Advice and next steps; ``--quiet`` drops it."""
         if not self.quiet:
             self.line(*pieces, indent=indent)
+
+    def next(self, step: str) -> None:
+        """The command that comes next, unless ``course go`` leads on and names it."""
+        if not self.led:
+            self.note(f"Next: {step}")
 
     def warn(self, text: str) -> None:
         """A warning, which is not a failure; on standard error."""

@@ -92,6 +92,39 @@ def test_go_announces_the_command_that_it_would_run(course, workspace, someone, 
     assert "Next: course watch doubling" in said
 
 
+def test_at_a_terminal_what_comes_next_is_said_once(course, workspace, someone, monkeypatch):
+    steps = iter(["course lesson twice-as-much", "course check doubling"])
+    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda _: next(steps))
+    monkeypatch.setattr(Console, "go_on", lambda *_: False)
+    said = course("go").out
+    assert "Next: course watch doubling" in said
+    assert said.count("Next: ") == 1, said
+
+
+def test_go_and_the_dashboard_say_where_the_next_exercise_comes(course, tmp_path, monkeypatch):
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    monkeypatch.chdir(tmp_path)
+    course("init", ".")
+    ahead = "Exercise 2, integrators, comes after lesson 3. To start it now: course start integrators\n"
+    for line in ("go", ""):
+        assert ahead in course(*line.split()).out
+    course("start", "integrators")
+    assert "Exercise collisions comes after lesson 4. To start it now" in course("go").out
+
+
+def test_the_dashboard_says_nothing_of_a_quiz_that_was_not_taken(course, tmp_path, monkeypatch):
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    monkeypatch.chdir(tmp_path)
+    course("init", ".")
+    assert "of 1 right" not in course().out
+    store = record(tmp_path)
+    store.append(START, "", {"attempt": "a", "seed": 1, "version": "1", "questions": ["why-simulate"]})
+    store.append(
+        DONE, "", {"attempt": "a", "right": {"why-simulate": False}, "score": 0, "passed": False, "total": 1}
+    )
+    assert "quiz: 0 of 1 right" in course().out
+
+
 def test_a_lesson_that_was_read_names_the_step_that_the_dashboard_names(course, workspace, someone):
     ran = course("lesson", "twice-as-much", "--page")
     step = course("next", "--json").json["next"]["command"]

@@ -1,4 +1,4 @@
-"""``course progress``: predictions, mistakes made and mended, what to read again."""
+"""``course progress``: predictions, mistakes made and fixed, what to read again."""
 
 from __future__ import annotations
 
@@ -84,13 +84,13 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     body = course("progress", "--json").json
     assert body["mistakes"][0]["mended_at"] > mistake["last_seen"]
     assert body["revisit"] == []
-    assert "Mistakes: 1 made, 1 mended\n" in course("progress", "--plain").out
+    assert "Mistakes: 1 made, 1 fixed\n" in course("progress", "--plain").out
 
 
 def test_a_function_that_was_to_be_written_has_mistakes_of_its_author(course, workspace, write):
     write("wrong", "RIGHT")
     course("check")
-    assert "Mistakes: 1 made, 0 mended" in course("progress").out
+    assert "Mistakes: 1 made, 0 fixed" in course("progress").out
 
 
 def test_who_did_nothing_yet_reads_nothing_about_it(course, workspace):
@@ -110,7 +110,7 @@ def test_a_screen_cuts_no_line(asking, workspace, write, monkeypatch, columns):
     monkeypatch.setenv("COLUMNS", str(columns))
     shown = course("progress").out
     assert max(map(len, shown.splitlines())) <= columns + len("\x1b[1m\x1b[0m")
-    assert "NOT_RIGHT" in shown
+    assert "Not right." in shown, "a diagnosis that has no words is not shown as a code"
 
 
 def test_a_section_that_is_not_there_is_refused_with_those_that_are(course, workspace):

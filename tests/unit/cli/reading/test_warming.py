@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import zipfile
 from pathlib import Path
@@ -201,14 +202,21 @@ def test_a_lesson_that_is_half_read_goes_on_and_has_its_other_warm_ups_in_their_
     assert warm("check", "adding", "--json").json["next"]["command"] == "course warmup taking"
 
 
-def test_faults_of_a_program_to_mend_are_nobody_s_mistakes(warm, workspace):
+def test_a_fault_of_a_program_that_was_given_is_nobody_s_mistake_and_another_is(warm, workspace):
+    declared = Path(os.environ["COURSE_CONTENT"]) / "exercises" / "warm-ups" / "adding" / "exercise.toml"
+    declared.write_text(declared.read_text().replace("points = 1\n", 'points = 1\nfault = "NOT_RIGHT"\n', 1))
     warm("start", "adding")
     write(workspace, "adding", "wrong", "RIGHT")
     warm("check", "adding")
     said = warm("progress").out
-    assert "Faults in programs to mend: 1 found, 0 mended" in said
+    assert "Faults in the programs you were given: 1 found, 0 fixed" in said
     assert "Mistakes" not in said
-    assert [one["given"] for one in warm("progress", "--json").json["mistakes"]] == [True]
+    write(workspace, "adding", "RIGHT", "wrong")
+    warm("check", "adding")
+    said = warm("progress").out
+    assert "Faults in the programs you were given: 1 found, 1 fixed" in said
+    assert "Mistakes: 1 made, 0 fixed" in said
+    assert [one["given"] for one in warm("progress", "--json").json["mistakes"]] == [True, False]
 
 
 @pytest.mark.parametrize("words", [(), ("--plain",), ("--json",)])

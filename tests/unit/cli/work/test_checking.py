@@ -57,6 +57,26 @@ def test_what_passing_checks_printed_is_one_line_until_it_is_asked_for(course, w
     assert course("check", "--verbose").out.count("    Your code printed:\n      a row\n") == 2
 
 
+def test_check_says_first_what_the_last_edit_fixed_and_broke(course, write):
+    write("wrong", "RIGHT")
+    assert "fixed" not in course("check").out
+    assert "broke" not in course("check").out, "nothing was edited"
+    write("RIGHT", "wrong")
+    shown = course("check").out
+    assert shown.startswith(
+        "  broke: Doubled again and again  [doublings]\n  fixed: Twice a number  [double]\n"
+    )
+    write("RIGHT", "RIGHT")
+    assert course("check").out.startswith("  fixed: Doubled again and again  [doublings]\n")
+
+
+def test_a_function_that_was_not_written_before_is_not_fixed(course, write):
+    write("raise NotImplementedError", "RIGHT")
+    course("check")
+    write("RIGHT", "RIGHT")
+    assert "fixed" not in course("check").out
+
+
 def test_check_json_is_the_contract(course, write):
     write("NAN", "RIGHT")
     ran = course("check", "--json")

@@ -184,7 +184,7 @@ def test_there_must_be_a_file_to_begin_with(course, workspace):
     assert course("watch", "doubling").code == 3
 
 
-def test_what_broke_and_what_was_mended_comes_first(watching, write):
+def test_what_broke_and_what_was_fixed_comes_first(watching, write):
     watcher, session = watching
     write("wrong", "RIGHT")
     watcher.look(session)
@@ -194,7 +194,7 @@ def test_what_broke_and_what_was_mended_comes_first(watching, write):
     watcher.look(session)
     lines = _said(watcher)[before:].splitlines()
     assert "broke" in lines[1]
-    assert "mended" in lines[2]
+    assert "fixed" in lines[2]
 
 
 def test_a_newer_save_drops_the_run_and_is_checked_instead(watching, write, monkeypatch):

@@ -82,3 +82,18 @@ def test_every_figure_is_shown_in_some_lesson_or_by_a_simulation() -> None:
     }
     # `course sim run --plot` draws the figures of the simulations.
     assert shown == {name for name in figure_ids() if not name.startswith("sim-")}
+
+
+@pytest.mark.parametrize("lesson_id", LESSONS)
+def test_no_prediction_quotes_a_number_of_an_answer_above_it(lesson_id: str) -> None:
+    """Both may stand on one screen, and the answer above may still be closed."""
+
+    def quoted(block: b.Block) -> set[str]:
+        return {inline.text for _, inline in b.walk_inlines((block,)) if isinstance(inline, b.Value)}
+
+    answered: set[str] = set()
+    for block in blocks_of(lesson_id):
+        if isinstance(block, b.Prediction):
+            assert not quoted(block) & answered
+        elif isinstance(block, b.Callout) and block.kind == "answer":
+            answered |= quoted(block)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from textual.app import ComposeResult
+    from textual.events import Key
 
 __all__ = ["ChoiceOverlay", "Edit", "Find", "Predict"]
 
@@ -134,6 +135,36 @@ class Find(Overlay[str]):
         self.close(event.option.id)
 
 
+class _Code(TextArea):
+    """A field for Python: Enter indents the next line as Python's own editors do."""
+
+    BINDINGS: ClassVar[list[Any]] = [
+        Binding("ctrl+home", "to_start", show=False),
+        Binding("ctrl+end", "to_end", show=False),
+    ]
+
+    def action_to_start(self) -> None:
+        """The first line."""
+        self.move_cursor((0, 0))
+
+    def action_to_end(self) -> None:
+        """The end of the last line."""
+        self.move_cursor(self.document.end)
+
+    def _on_key(self, event: Key) -> None:  # type: ignore[override]
+        if event.key != "enter":
+            return  # Textual goes on with the field's own
+        event.stop()
+        event.prevent_default()
+        start, end = self.selection
+        (row, column), _ = sorted((start, end))
+        before = self.document.get_line(row)[:column]
+        indent = before[: len(before) - len(before.lstrip())]
+        if before.partition("#")[0].rstrip().endswith(":"):
+            indent += " " * self.indent_width
+        self._replace_via_keyboard(f"\n{indent}", start, end)
+
+
 class Edit(Overlay[tuple[str, bool]]):
     """Code to change. Dismissed with it and whether to run or check it, or None to leave it as it was.
 
@@ -161,7 +192,7 @@ class Edit(Overlay[tuple[str, bool]]):
         with Vertical(classes="box") as box:
             box.border_title = self._title
             box.border_subtitle = f"Ctrl-R: keep and {self._act}   Escape: keep   Ctrl-D: drop the changes"
-            area = TextArea(self._source, tab_behavior="indent", show_line_numbers=True)
+            area = _Code(self._source, tab_behavior="indent", show_line_numbers=True)
             area.cursor_blink = False
             yield area
 

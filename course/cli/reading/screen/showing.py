@@ -304,6 +304,9 @@ class LessonApp(FullScreenApp):
         section = script.section_of(place.block) if place.block >= 0 else None
         title = script.lesson.title
         head = f"{title.partition(':')[0]} · {section.title}" if section else title
+        if place.block < 0:  # the title itself is on the page
+            known = self.catalog.lesson_ids()
+            head = f"Lesson {known.index(script.lesson.id) + 1} of {len(known)}"
         share = page.end() / max(1, len(layout))
         self._told = self.message
         room = self._width - 2

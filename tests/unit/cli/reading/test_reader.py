@@ -237,6 +237,24 @@ def test_the_editor_keeps_runs_and_drops(catalog):
     reading(catalog, journey)
 
 
+def test_the_editor_indents_after_a_colon_and_goes_to_both_ends(catalog):
+    async def journey(app, pilot):
+        cell = app.progress.script.shown_cells[0]
+        await to_question(app, pilot)
+        await pilot.press("s")
+        app._chosen(f"block:{cell.index}")
+        await pilot.pause()
+        await pilot.press("e")
+        await pilot.pause()
+        await pilot.press("ctrl+end", "enter", *"if 1:  ", "enter", "1", "enter", "ctrl+home", "#", "escape")
+        await pilot.pause()
+        changed = app.progress.cell(cell).source
+        assert changed.startswith("#")
+        assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
+
+    reading(catalog, journey)
+
+
 def test_the_place_is_kept_to_the_line_at_another_width(catalog, tmp_path):
     store = Store(tmp_path / "progress.sqlite")
     seen = {}

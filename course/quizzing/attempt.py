@@ -77,8 +77,8 @@ def needed(total: int) -> int:
 
 
 def mark_sentence(total: int) -> str:
-    """The pass mark as it is shown: "4 right answers of 5 pass"."""
-    return f"{needed(total)} right answers of {total} pass"
+    """The pass mark as it is shown: "You pass with 4 right answers out of 5"."""
+    return f"You pass with {needed(total)} right answers out of {total}"
 
 
 def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:

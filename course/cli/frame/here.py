@@ -93,6 +93,16 @@ class Here:
         names = set(self.workspace.started())
         return tuple(one for one in self.catalog.warm_ups() if one.id in names)
 
+    def misnamed(self, exercise: Exercise) -> str:
+        """A file beside the student's whose name differs in capitals only; "" if there is none."""
+        folder = self.workspace.path(exercise.place, exercise.module).parent
+        try:
+            names = sorted(path.name for path in folder.iterdir())
+        except OSError:
+            return ""
+        wanted = exercise.module
+        return next((name for name in names if name != wanted and name.lower() == wanted.lower()), "")
+
     def source(self, exercise: Exercise) -> bytes:
         """The student's file.
 
@@ -102,9 +112,11 @@ class Here:
         path = self.workspace.path(exercise.place, exercise.module)
         shown = self.workspace.shown(path)
         if not path.exists():
+            other = self.misnamed(exercise)
+            advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
             raise UngradableError(
                 f"There is no file {shown}.",
-                help=f"`course start {exercise.id}` puts one there.",
+                help=advice or f"`course start {exercise.id}` puts one there.",
                 code="no_file",
             )
         try:

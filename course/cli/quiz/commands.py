@@ -17,7 +17,7 @@ from course.errors import UsageError
 from course.progress import quiz
 from course.quizzing.answers import read_answers
 from course.quizzing.attempt import check_seed, mark, mark_sentence, needed
-from course.quizzing.desk import finished
+from course.quizzing.desk import finished, fits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,8 +62,8 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     """Answer the questions; exit code 0 if passed, 1 below the mark.
 
     An interrupted attempt continues where it stopped. Without a terminal: print the questions with
-    --questions, put the answers into a file, and pass it with --answers. Afterwards every option of a missed
-    question is explained.
+    --questions, put the answers into a file, and pass it with --answers. Afterwards each missed question is
+    explained; `course quiz history --all` explains every option.
     """
 
     console = current()
@@ -288,9 +288,21 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
 
 
 @app.command(epilog="Example: course quiz history --json")
-def history() -> int:
+def history(
+    whole: Annotated[
+        bool, typer.Option("--all", help="Explain every option of your last finished attempt, too.")
+    ] = False,
+) -> int:
     """Show every attempt, with dates and scores, and what is under review."""
     console, desk = current(), Desk.load()
+    last = desk.history.finished[-1] if whole and desk.history.finished else None
+    if last is not None and fits(desk.bank, last):
+        with console.paged():
+            for number, one in enumerate(mark(desk.bank.pose(last.seed), last.answers).marked, start=1):
+                screen.show_marked(console, one, number)
+            console.blank()
+    elif last is not None:
+        console.line("The questions have changed since your last attempt, so it cannot be explained.")
     attempts = screen.attempt_replies(desk.history)
     due = desk.reviews()
     best = desk.history.best

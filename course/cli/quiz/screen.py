@@ -90,7 +90,7 @@ def _show_prompt(console: Console, posed: PosedQuestion, indent: int = 0) -> Non
 
 
 def show_result(console: Console, result: Result) -> None:
-    """The score, then each question: all options of a missed question, only the right one of the others."""
+    """The score, then each question in brief: of a missed one the two answers, and what to read again."""
     verdict = ("passed", "green") if result.passed else ("not passed", "red")
     with console.paged():
         console.blank()
@@ -98,7 +98,20 @@ def show_result(console: Console, result: Result) -> None:
             (f"{result.score} of {result.total} right, {needed(result.total)} needed: ", "bold"), verdict
         )
         for number, marked in enumerate(result.marked, start=1):
-            show_marked(console, marked, number)
+            _show_briefly(console, marked, number)
+        console.note(("Every option explained: course quiz history --all", "dim"))
+
+
+def _show_briefly(console: Console, marked: MarkedQuestion, number: int) -> None:
+    """One answered question; why the given and the right option are wrong and right."""
+    posed, chosen = marked.posed, marked.chosen
+    outcome = ("right", "green") if marked.right else ("missed", "red")
+    console.line((f"{number}. {posed.title}: ", "bold"), outcome)
+    if not marked.right:
+        console.line(f"You chose {chosen.letter}: {chosen.explanation}", indent=2)
+        console.line((f"Right is {posed.key.letter}: ", "green"), posed.key.text, indent=2)
+        if posed.read:
+            console.line((f"Read again: course lesson {posed.read}", "dim"), indent=2)
 
 
 def show_marked(console: Console, marked: MarkedQuestion, number: int) -> None:
@@ -128,14 +141,17 @@ def _show_choice(console: Console, label: str, choice: Choice, style: str) -> No
 
 
 def show_due(console: Console, due: Sequence[Due], today: date) -> None:
-    """The day on which each question under review is due."""
+    """The day on which each question under review is due, a line for those that stand alike."""
     if not due:
         return
     console.blank()
     console.heading("Under review", f"until right {ROUNDS} times in a row, {GAP_DAYS} days or more apart")
+    alike: dict[str, list[str]] = {}
     for entry in due:
-        rounds = f"right {entry.rounds} of {ROUNDS} times"
-        console.line(f"{entry.question}: {_when(entry.on, today)}; {rounds}", indent=2)
+        state = f"{_when(entry.on, today)}; right {entry.rounds} of {ROUNDS} times"
+        alike.setdefault(state, []).append(entry.question)
+    for state, questions in alike.items():
+        console.line(f"{', '.join(questions)}: {state}", indent=2)
 
 
 def _when(day: date, today: date) -> str:

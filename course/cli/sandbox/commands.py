@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.here import cwd
@@ -25,6 +27,7 @@ from course.errors import NotFoundError, UsageError
 from course.sandbox.exports.mjcf import mjcf
 from course.sandbox.exports.sdf import START, sdf, start_script
 from course.sandbox.scene.loading import choose, question, scenes, unchanged
+from course.sandbox.scene.loading import scene_ids as known_scenes
 from course.sandbox.scene.settings import SETTINGS
 
 if TYPE_CHECKING:
@@ -32,7 +35,33 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "export", "list_scenes", "play", "replay"]
 
+
+class _Scenes(TyperGroup):
+    """`course sandbox SCENE` plays it: no command is named like a scene."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command, and what is left of the line."""
+        name = args[0]
+        if self.get_command(ctx, name) is None and (name.isdecimal() or name in known_scenes()):
+            args = ["play", *args]
+        elif self.get_command(ctx, name) is None:
+            _suggest(name, list(self.commands))
+        return super().resolve_command(ctx, args)
+
+
+def _suggest(name: str, commands: list[str]) -> None:
+    """Say which scene was meant, unless a command is as close."""
+    close = difflib.get_close_matches(name, [*commands, *known_scenes()], n=1)
+    if close and close[0] not in commands:
+        raise NotFoundError(
+            f"There is no scene {name!r}.",
+            help=f"Did you mean: course sandbox play {close[0]}?",
+            code="scene_not_found",
+        )
+
+
 app = typer.Typer(
+    cls=_Scenes,
     help="Play with collisions, and see where the energy goes.",
     invoke_without_command=True,
     pretty_exceptions_enable=False,
@@ -65,10 +94,14 @@ def menu(
     _list(console, None, asks=asks)
     if not asks:
         return 0
-    answer = console.ask("Which one? A number or a name, Enter for none: ")
-    if not answer:
-        return 0
-    return play(answer)
+    while answer := console.ask("Which one? A number or a name, Enter for none: "):
+        try:
+            choose(answer)
+        except NotFoundError as error:
+            console.line(f"{error.message} {error.help}".rstrip())
+        else:
+            return play(answer)
+    return 0
 
 
 @app.command("list", epilog="Example: course sandbox list newtons-cradle")

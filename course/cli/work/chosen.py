@@ -136,7 +136,10 @@ def work_of(here: Here, *, warm_ups: bool = False) -> tuple[list[StudentWork], l
         elif notebook is not None:
             chosen.append(notebook)
         elif module == _STUB or (module == _MISSING and exercise.id in here.workspace.started()):
-            left_out += _reply(exercise, exercise.module, module)
+            other = here.misnamed(exercise)
+            left_out += _reply(
+                exercise, exercise.module, f"{module}; {other} is not read" if other else module
+            )
         if why_not:
             left_out += _reply(exercise, _notebook_name(exercise), why_not)
     return chosen, left_out
@@ -159,7 +162,13 @@ def _notebook_name(exercise: Exercise) -> str:
 def _module(here: Here, exercise: Exercise) -> StudentWork:
     """The module as it lies in the workspace."""
     source = here.source(exercise)
-    return StudentWork(exercise, exercise.module, source, source, here.stub(exercise))
+    other = here.misnamed(exercise)
+    note = (
+        f"{exercise.place}/{other} is not read: the file that counts is {exercise.module}. Capitals matter."
+    )
+    return StudentWork(
+        exercise, exercise.module, source, source, here.stub(exercise), notes=(note,) if other else ()
+    )
 
 
 def _notebook(here: Here, exercise: Exercise) -> StudentWork:
@@ -214,7 +223,7 @@ def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
         f"{notebook.path} was worked in too and holds other code; {module.path} is what counts and was read. "
         f"To have the notebook checked: course check {notebook.path}"
     )
-    return replace(module, notes=(note,))
+    return replace(module, notes=(*module.notes, note))
 
 
 # -- as they are handed in -----------------------------------------------------------------------------------

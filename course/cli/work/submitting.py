@@ -181,14 +181,17 @@ def _show(
     left_out: list[FileReply],
     quiz: Sequence[Mapping[str, Any]],
 ) -> None:
+    marks = {exercise.id: exercise.pass_mark for exercise in here.catalog.exercises()}
     if files or quiz:
         console.line("This goes in:")
     for file in files:
         score = "not checked since its last change"
         if file.last_score is not None and file.max_score is not None:
-            score = (
-                f"score {format_points(file.last_score)}/{format_points(file.max_score)} at the last check"
-            )
+            points = f"{format_points(file.last_score)}/{format_points(file.max_score)}"
+            score = f"{points} points from the public checks"
+            mark = marks.get(Path(file.path).parent.name)
+            if mark is not None:
+                score += f" (a pass is {mark:.0%} of all points, hidden checks included)"
         console.line(f"{file.path}: {file.bytes:,} bytes, {score}", indent=2)
     if quiz:
         attempts = "1 attempt" if len(quiz) == 1 else f"{len(quiz)} attempts"

@@ -49,6 +49,26 @@ def test_a_piped_play_runs_unseen_and_compares(tmp_path: Path) -> None:
     assert "25 % too low" in out
 
 
+def test_a_scene_is_played_without_the_word_play(tmp_path: Path) -> None:
+    said = sandbox("head-on", "--guess", "1.5", cwd=tmp_path).stdout
+    assert said == sandbox("play", "head-on", "--guess", "1.5", cwd=tmp_path).stdout
+    assert "Did you mean: course sandbox play head-on?" in sandbox("heda-on", cwd=tmp_path, code=5).stderr
+    assert "No such command 'plai'" in sandbox("plai", cwd=tmp_path, code=2).stderr
+
+
+def test_a_typo_in_the_menu_is_asked_about_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from course.cli.frame.terminal.console import Console
+    from course.cli.sandbox import commands
+
+    typed, played = iter(["99", "newton", "2", "never asked"]), []
+    monkeypatch.setattr(Console, "interactive", property(lambda _: True))
+    monkeypatch.setattr(Console, "ask", lambda *_: next(typed))
+    monkeypatch.setattr(commands, "play", lambda name: played.append(name) or 0)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert "no scene" in sandbox(cwd=tmp_path).stdout
+    assert played == ["2"]
+
+
 def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Path) -> None:
     options = ["--headless", "--guess", "0.04", "--set", "step=0.0004"]
     data = json.loads(sandbox("play", "bullet-wall", *options, "--json", cwd=tmp_path).stdout)

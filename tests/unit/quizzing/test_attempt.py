@@ -33,8 +33,8 @@ def test_seven_of_ten_are_enough() -> None:
 
 
 def test_the_mark_is_said_as_it_is() -> None:
-    assert mark_sentence(5) == "4 right answers of 5 pass"
-    assert mark_sentence(10) == "7 right answers of 10 pass"
+    assert mark_sentence(5) == "You pass with 4 right answers out of 5"
+    assert mark_sentence(10) == "You pass with 7 right answers out of 10"
 
 
 def test_guessing_rarely_passes() -> None:

@@ -43,6 +43,8 @@ _NARROW = 60
 #: Work that takes less than this shows nothing while it runs. In s.
 PATIENCE = 0.5
 
+_GO_ON = " Enter goes on, q stops: "
+
 #: Colour repeats what a word already says; it never says anything alone.
 STATUS_STYLE = {
     "pass": "green",
@@ -363,28 +365,36 @@ class Console:
 
     def ask(self, question: str) -> str | None:
         """What the user types on one line, without surrounding space; None at the end of the input."""
-        self._out.write(question)
+        self._out.write(self._wrapped(question))
         self._out.flush()
         answer = sys.stdin.readline()
         return answer.strip() if answer else None
 
+    def _wrapped(self, question: str) -> str:
+        """A question in lines that break between words; what is typed stands beside the last one."""
+        if len(question) < self.terminal_width or not self._out.isatty():
+            return question
+        rows = textwrap.wrap(question.rstrip(), max(20, self.terminal_width - 1), break_on_hyphens=False)
+        return "\n".join(rows) + " "
+
     def go_on(self, where: str) -> bool:
         """Wait for Enter; q, n, or the end of the input, means no. Anything else is asked about again."""
-        question = f"{where} Enter goes on, q stops: ".lstrip()
+        question = f"{where}{_GO_ON}".lstrip()
         while True:
             answer = self.ask(question)
             if answer is None or answer.lower() in {"q", "quit", "n", "no"}:
                 return False
             if answer.lower() in {"", "y", "yes"}:
                 return True
-            question = f"{answer[:20]!r} was not run: this is not the shell yet. Enter goes on, q stops: "
+            question = f"{answer[:20]!r} was not run: this is not the shell yet.{_GO_ON}"
 
     def pause(self, where: str) -> bool:
         """Wait for Enter on a terminal that a person reads; elsewhere there is nothing to wait for."""
         if not (self.motion and self.interactive):
             return True
+        rows = self._wrapped(f"{where}{_GO_ON}").count("\n") + 1
         going = self.go_on(where)
-        self._human.write("\x1b[A\x1b[2K")  # the question is answered: what follows takes its line
+        self._human.write("\x1b[A\x1b[2K" * rows)  # the question is answered: what follows takes its lines
         return going
 
     @contextlib.contextmanager

@@ -173,6 +173,14 @@ def test_a_command_typed_where_enter_is_asked_for_does_not_go_on(monkeypatch, th
     assert "'course check spring' was not run: this is not the shell yet." in out.getvalue()
 
 
+def test_a_question_breaks_between_words_and_leaves_room_for_the_answer(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    console, out, _ = _console()
+    console.go_on("Next: both motions.")
+    assert out.getvalue() == "Next: both motions. Enter goes on, q\nstops: "
+
+
 @pytest.mark.parametrize("indent", [0, 4])
 def test_an_address_longer_than_a_line_stays_in_one_piece(monkeypatch, indent):
     monkeypatch.setenv("COLUMNS", "60")

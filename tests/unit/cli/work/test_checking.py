@@ -77,6 +77,17 @@ def test_a_function_that_was_not_written_before_is_not_fixed(course, write):
     assert "fixed" not in course("check").out
 
 
+def test_a_file_whose_name_has_other_capitals_is_told(course, write):
+    path = write("RIGHT", "RIGHT")
+    (path.parent / "Doubling.py").write_text("x = 1\n")
+    assert "doubling/Doubling.py is not read: the file that counts is doubling.py." in course("check").err
+    path.unlink()
+    ran = course("check")
+    assert ran.code == 3
+    assert "Rename Doubling.py to doubling.py" in ran.err
+    assert "doubling/doubling.py (not there; Doubling.py is not read)" in course("submit").out
+
+
 def test_check_json_is_the_contract(course, write):
     write("NAN", "RIGHT")
     ran = course("check", "--json")

@@ -15,7 +15,9 @@ def test_submit_writes_one_zip_with_checksums(course, workspace, write):
     ran = course("submit")
     assert ran.code == 0
     assert "doubling/doubling.py" in ran.out
-    assert "score 2/4 at the last check" in ran.out
+    assert (
+        "2/4 points from the public checks (a pass is 70% of all points, hidden checks included)" in ran.out
+    )
     with zipfile.ZipFile(workspace / "mini-submission.zip") as archive:
         assert archive.namelist() == ["doubling/doubling.py", "submission.json"]
         assert archive.read("doubling/doubling.py") == source

@@ -2,7 +2,7 @@
 
 Bodies do not spin. Positions in m, velocities in m/s, masses in kg (math.inf for a wall); vectors are arrays
 of shape (d,) with d = 1, 2 or 3. `restitution` is e: speed of parting over speed of approach, 0 to 1.
-Replace each ``raise`` by your code, and mend ``simulate_head_on``. README.md has the formulae.
+Replace each ``raise`` with your code, and fix ``simulate_head_on``. README.md has the formulae.
 """
 
 import math  # noqa: F401 - yours to use

@@ -1,6 +1,6 @@
 """A digital twin of a mobile robot: its sensors, its actuators, and the exchange in both directions.
 
-SI units and radians throughout. Replace each ``raise`` by your code; keep the names and the arguments.
+SI units and radians throughout. Replace each ``raise`` with your code; keep the names and the arguments.
 Start with ``encoder`` or ``backlash``: two lines each. README.md has the formulae and an example for each.
 """
 

@@ -1,6 +1,6 @@
 """Comparing engines: measure an engine whose inside you cannot see, choose an engine, know four real ones.
 
-Replace each ``None`` in characterise by your measurement, one key at a time, and each ``raise`` by your
+Replace each ``None`` in characterise with your measurement, one key at a time, and each ``raise`` with your
 code; keep the names and the arguments. README.md says what each key means and how to measure it.
 """
 

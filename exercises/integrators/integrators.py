@@ -1,7 +1,7 @@
 """Numerical integration: four steps, the loop around a step, and two ways to judge a step.
 
 A step takes a system from time t to t + h. ``accel(t, q, v)`` gives the acceleration, an array like q.
-Replace each ``raise`` by your code; keep the names and the arguments. README.md has the formulae.
+Replace each ``raise`` with your code; keep the names and the arguments. README.md has the formulae.
 """
 
 import math  # noqa: F401 - yours to use

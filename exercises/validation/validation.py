@@ -1,6 +1,6 @@
 """Validation: how wrong a simulation is, how sure you can be of it, and whether to trust the simulation.
 
-An error is always simulated minus real. Replace each ``raise`` by your code; keep the names and the
+An error is always simulated minus real. Replace each ``raise`` with your code; keep the names and the
 arguments. README.md has the formulae. Do not change the arrays that you are given.
 """
 

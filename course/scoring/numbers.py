@@ -90,7 +90,8 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
         rows.append(("input", format_input(check.input)))
     if check.first_divergence:
         place = check.first_divergence
-        rows.append(("first off", f"{place.quantity} at step {place.step}, t = {format_value(place.t)} s"))
+        when = f"step {place.step}, t = {format_value(place.t)} s"
+        rows.append(("differs", f"{place.quantity}, first at {when}"))
     if check.diagnosis:
         rows.append(("diagnosis", check.diagnosis))
     return rows

@@ -11,7 +11,7 @@ probes = kit.companion("integrators", "probes")
 
 
 def refused(rng):
-    """(t_end, h) that are no whole number of steps: by much, by a thousandth of a short step, by 1e-5 steps.
+    """(t_end, h), not a whole number of steps: off by much, by a thousandth of a short step, by 1e-5 steps.
 
     A difference in seconds, or one relative to the number of steps, would let the last two pass.
     """

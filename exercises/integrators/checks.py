@@ -205,7 +205,7 @@ def test_integrate_counts(submission, draw):
 @pytest.mark.task("integrate")
 @pytest.mark.points(0)
 def test_integrate_refusals(submission, draw):
-    """integrate refuses durations that are no whole number of steps (no points here, two when graded)"""
+    """integrate refuses durations that are not a whole number of steps (no points here, two when graded)"""
     durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.000002, 0.2)) if draw is None else cases.refused(draw)
     cases.expect_refusals(submission, (np.array([1.0]), np.array([0.0])), durations)
 

@@ -49,7 +49,7 @@ def rerun(
         bool, typer.Option("--dry-run", help="Show what would change; change nothing.")
     ] = False,
     everything: Annotated[
-        bool, typer.Option("--all", help="Also regrade results of these same graders.")
+        bool, typer.Option("--all", help="Also regrade results that the same graders gave.")
     ] = False,
     jobs: Jobs = 1,
     timeout: Annotated[
@@ -104,7 +104,7 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
-        console.note(f"{done.up_to_date} were graded by these same graders; --all grades them too.")
+        console.note(f"{done.up_to_date} were graded by the same graders already; --all grades them again.")
     if done.kept:
         console.note(f"{done.kept} had nothing to grade, and stay unchanged.")
     if done.faults:

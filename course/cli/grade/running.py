@@ -89,7 +89,7 @@ def run(
     level, at_least = levels(isolation)
     terms = Terms(level, at_least, timeout)
     catalog = load_catalog()
-    catalog.content.instructors()  # before a roster is read, and perhaps mended, for nothing
+    catalog.content.instructors()  # before a roster is read, and perhaps corrected, for nothing
     people = read_roster(roster) if roster else None
     options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
     with (

@@ -92,7 +92,7 @@ class Regraded(msgspec.Struct, frozen=True):
     """The outcome of a regrading.
 
     Attributes:
-        up_to_date: results from these same graders, which were left alone.
+        up_to_date: results from the same graders, which were left alone.
         kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused).
         faults: submissions that a fault of ours kept from being graded.
         graders: digest of the snapshot that judged.

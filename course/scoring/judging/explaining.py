@@ -203,7 +203,7 @@ def _retold(
         return msgspec.structs.replace(
             check,
             diagnosis=CASCADE,
-            message=f"{message} `{task}` calls your `{culprit}`, which is wrong: mend that first.",
+            message=f"{message} `{task}` calls your `{culprit}`, which is wrong: fix that first.",
             help=f"Check again when `{culprit}` is right; what is left then is `{task}`'s own.",
         )
     diagnosis: Diagnosis | None = None if check.id in story.bare else story.diagnosis

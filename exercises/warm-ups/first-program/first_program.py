@@ -1,6 +1,6 @@
 """A fall, a collision and a spring. This program has six faults: one stops it, five make its numbers wrong.
 
-Run it with `python first_program.py`. One small edit mends each fault.
+Run it with `python first_program.py`. One small edit fixes each fault.
 """
 
 import math

@@ -20,7 +20,7 @@ def test_energy_stays(submission):
             energy,
             low=0.9,
             high=1.1,
-            source="with a step of a tenth of sqrt(m/k) the mended loop stays within 8 % of where it began",
+            source="with a step of a tenth of sqrt(m/k) the right loop stays within 8 % of where it began",
             quantity="energy over the energy at the start",
             input={"k": k, "m": m, "h": h, "n": n},
             message="The energy of the swing does not stay where it began.",

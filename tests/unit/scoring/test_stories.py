@@ -86,7 +86,7 @@ def test_what_calls_a_wrong_function_is_told_to_wait(session: GradingSession) ->
     found = failed(session, REDUCED_MASS)
     assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
     for check in found["resolve"]:
-        assert "`resolve` calls your `impulse_1d`, which is wrong: mend that first." in check.message
+        assert "`resolve` calls your `impulse_1d`, which is wrong: fix that first." in check.message
 
 
 def test_arguments_changed_in_place_are_said_where_they_are_seen(session: GradingSession) -> None:

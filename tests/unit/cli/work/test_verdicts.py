@@ -120,7 +120,7 @@ def test_a_failure_says_what_was_measured_expected_why_and_where():
         "    measured: 1 J",
         "    expected: 1.01 J, within 2 % (closed form)",
         "    input: h = 0.05",
-        "    first off: q[0] at step 1, t = 0.05 s",
+        "    differs: q[0], first at step 1, t = 0.05 s",
         "    diagnosis: EULER_IS_SEMI_IMPLICIT",
     ]
 

@@ -48,7 +48,7 @@ def test_what_the_readme_counts_is_so():
     for said in (
         f"{words[len(minutes)]} small tasks, most of five minutes",
         f"{words[len(scene_ids())]} scenes to play with",
-        f"{words[asked]} questions; {needed(asked)} of {asked} pass",
+        f"{words[asked]} questions; {needed(asked)} right answers pass",
         f"puts {words[len(SCENARIOS)]} tests with known answers to",
         f"to pymunk and up to {words[len(ENGINES) - 1]} more",
     ):

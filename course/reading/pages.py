@@ -28,11 +28,13 @@ class Row:
         block: index of the block it belongs to; -1 for the head of the lesson.
         blank: nothing is on it.
         joined: it belongs to the row above; no screen should begin with it.
+        fresh: it takes the rows above as answered; a screen always begins with it.
     """
 
     block: int
     blank: bool = False
     joined: bool = False
+    fresh: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +81,9 @@ class Layout:
     def end_of(self, top: int) -> int:
         """The row after the last one of a screen that begins with row ``top``."""
         end = top + self.height
+        fresh = (row for row in range(top + 1, min(end, len(self.rows))) if self.rows[row].fresh)
+        if (first_fresh := next(fresh, None)) is not None:
+            return first_fresh
         if end >= len(self.rows):
             return len(self.rows)
         for cut in range(end, top + int(self.height * _LEAST), -1):

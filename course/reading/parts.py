@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from course.catalog.models import Exercise, Lesson
 
-__all__ = ["Cell", "Question", "Script", "Section", "read_script", "words_of"]
+__all__ = ["Cell", "Question", "Script", "Section", "is_unseen", "read_script", "words_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +120,11 @@ class Script:
     def question_over(self, index: int) -> Question | None:
         """The prediction that keeps this block closed until it is answered; None if nothing does."""
         return next((one for one in self.questions if one.index < index < one.end), None)
+
+    def after(self, question: Question) -> int:
+        """Index of the first block in sight that takes the answer as read; behind the last if none does."""
+        rest = range(question.end, len(self.blocks))
+        return next((i for i in rest if not is_unseen(self.blocks[i])), len(self.blocks))
 
     def gives_away(self, index: int) -> bool:
         """Whether a block below an open prediction must not be seen: it may hold the answer."""
@@ -263,6 +268,11 @@ def _cells(blocks: tuple[b.Block, ...]) -> Iterator[Cell]:
                 shown = 0 if inner.hidden else number
                 yield Cell(shown, order, index, _key(inner.source), inner.source, inner.output)
                 order += 1
+
+
+def is_unseen(block: b.Block) -> bool:
+    """Whether a block is a cell that only later cells need."""
+    return isinstance(block, b.CodeCell) and block.hidden
 
 
 def _key(words: str) -> str:

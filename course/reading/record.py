@@ -12,10 +12,9 @@ import threading
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from course.catalog import blocks as b
 from course.errors import CourseError
 from course.reading.pages import Place
-from course.reading.parts import words_of
+from course.reading.parts import is_unseen, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -265,9 +264,5 @@ class InProgress:
     def is_done(self, start: int, end: int) -> bool:
         """Whether the blocks of a section were all in sight and no prediction in it is open."""
         asked = [one for one in self.script.questions if start <= one.index < end]
-        last = max((i for i in range(start, end) if not _unseen(self.script.blocks[i])), default=start)
+        last = max((i for i in range(start, end) if not is_unseen(self.script.blocks[i])), default=start)
         return last <= self.furthest and all(one.key in self._predictions for one in asked)
-
-
-def _unseen(block: b.Block) -> bool:
-    return isinstance(block, b.CodeCell) and block.hidden

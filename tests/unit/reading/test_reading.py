@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -82,6 +83,19 @@ def test_a_prediction_closes_what_follows_up_to_its_answer(lesson):
     assert script.question_over(closed[-1] + 1) is None
     assert second.answer is None
     assert second.end == len(script.blocks)
+
+
+def test_a_screen_ends_below_an_open_prediction(lesson):
+    rows = [Row(0), Row(1), Row(1), Row(2, blank=True, fresh=True), Row(2), Row(2)]
+    layout = Layout(rows, 10)
+    assert (layout.end_of(0), layout.next(0), layout.end_of(4)) == (3, 4, 6)
+    assert layout.starts == [0, 4]
+    script = read_script(lesson)
+    first, second = script.questions
+    hidden = next(cell.index for cell in script.cells if cell.hidden)
+    assert script.after(first) < hidden
+    assert script.after(second) == len(script.blocks)
+    assert script.after(replace(first, end=hidden)) == second.index
 
 
 def test_a_prediction_opens_once_it_is_answered_or_skipped(lesson):

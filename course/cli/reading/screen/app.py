@@ -173,7 +173,8 @@ class ReaderApp(TasksApp):
 
     def _answered(self, question: Question, text: str) -> None:
         self.progress.predict(question, text)
-        self._rebuild(*range(question.index, question.end), len(self.progress.script.blocks))
+        script = self.progress.script
+        self._rebuild(*range(question.index, question.end), script.after(question), len(script.blocks))
         self.page.item = None
         self._settle()
         cells = [c for c in self.progress.script.shown_cells if question.index < c.index < question.end]

@@ -175,9 +175,15 @@ class ScreenPrinter(FancyPrinter):
             # A heading is not left alone at the foot of a screen, nor a single line of a paragraph.
             first = 0 < number <= lead or number == len(lines) - 1
             joined = (number > 0 and (whole or first)) or after_head
-            rows.append(Row(index, blank, joined and not (number == 0 and not after_head)))
+            fresh = number == 0 and self._begins_afresh(index)
+            rows.append(Row(index, blank, joined and not (number == 0 and not after_head), fresh))
             items += self._links_in(line, index, number)
         return BlockRows(tuple(tuple(line) for line in lines), tuple(rows), tuple(items))
+
+    def _begins_afresh(self, index: int) -> bool:
+        """Whether a block comes right after what an open prediction closes."""
+        before = (one for one in self._script.questions if self._script.after(one) == index)
+        return any(self._progress.prediction(one) is None for one in before)
 
     def _segment(self, text: str, style: Style | None) -> Segment:
         if style is not None and self._console.no_color:

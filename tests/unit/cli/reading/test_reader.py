@@ -16,6 +16,7 @@ from course.cli.reading.screen import showing
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.telling import fitting
 from course.progress.store import Store
+from course.reading.pages import Place
 from course.reading.record import Writer
 from tests.unit.cli.reading.driving import drive, screen, settled
 
@@ -212,6 +213,23 @@ def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog, tmp_path):
         assert app.progress.cell(cell).printed == cell.output
 
     reading(catalog, journey)
+
+
+def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction(catalog):
+    async def journey(app, pilot):
+        await to_question(app, pilot, 9)
+        assert "shown once you have predicted" in screen(app)
+        assert "why not always" not in screen(app)
+        await pilot.press("space")
+        assert "So why not always step implicitly?" in screen(app)
+        await to_question(app, pilot, 9)
+        await pilot.press("s")
+        app._show(app.page.book.layout.row(Place(app.progress.script.questions[8].answer)))
+        await pilot.pause()
+        assert "The two implicit methods" in screen(app)
+        assert "So why not always step implicitly?" in screen(app)
+
+    reading(catalog, journey, size=(80, 90))
 
 
 def test_the_editor_keeps_runs_and_drops(catalog):

@@ -62,8 +62,8 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     """Answer the questions; exit code 0 if passed, 1 below the mark.
 
     An interrupted attempt continues where it stopped. Without a terminal: print the questions with
-    --questions, put the answers into a file, and pass it with --answers. Afterwards each missed question is
-    explained; `course quiz history --all` explains every option.
+    --questions, put the answers into a file, and pass it with --answers. Afterwards you are told why a missed
+    answer is wrong; `course quiz history --all` explains every option.
     """
 
     console = current()
@@ -164,7 +164,8 @@ def _finish(
     due = desk.reviews()
     step = _step(result.missed, due, passed=result.passed)
     screen.show_result(console, result)
-    screen.show_due(console, due, today())
+    if result.passed:  # else the lesson to read comes first
+        screen.show_first_due(console, due, today())
     console.next(step)
     for warning in desk.here.warnings:
         console.warn(warning)

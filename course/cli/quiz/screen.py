@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import shorten
 from typing import TYPE_CHECKING
 
 from course.cli.frame.replies import NextStep
@@ -38,6 +39,7 @@ __all__ = [
     "question_reply",
     "show_attempts",
     "show_due",
+    "show_first_due",
     "show_keys",
     "show_mark",
     "show_marked",
@@ -90,28 +92,28 @@ def _show_prompt(console: Console, posed: PosedQuestion, indent: int = 0) -> Non
 
 
 def show_result(console: Console, result: Result) -> None:
-    """The score, then each question in brief: of a missed one the two answers, and what to read again."""
+    """The score, then each question; of a missed one both answers, and why the student's is wrong."""
     verdict = ("passed", "green") if result.passed else ("not passed", "red")
     with console.paged():
         console.blank()
-        console.line(
-            (f"{result.score} of {result.total} right, {needed(result.total)} needed: ", "bold"), verdict
-        )
+        score = f"{result.score} of {result.total} right, {needed(result.total)} needed: "
+        console.line((score, "bold"), verdict, (". All options: course quiz history --all", "dim"))
         for number, marked in enumerate(result.marked, start=1):
             _show_briefly(console, marked, number)
-        console.note(("Every option explained: course quiz history --all", "dim"))
 
 
 def _show_briefly(console: Console, marked: MarkedQuestion, number: int) -> None:
-    """One answered question; why the given and the right option are wrong and right."""
+    """One answered question; if it was missed, both answers and why the student's is wrong."""
     posed, chosen = marked.posed, marked.chosen
     outcome = ("right", "green") if marked.right else ("missed", "red")
     console.line((f"{number}. {posed.title}: ", "bold"), outcome)
     if not marked.right:
-        console.line(f"You chose {chosen.letter}: {chosen.explanation}", indent=2)
-        console.line((f"Right is {posed.key.letter}: ", "green"), posed.key.text, indent=2)
-        if posed.read:
-            console.line((f"Read again: course lesson {posed.read}", "dim"), indent=2)
+        answer = _lettered(chosen)
+        if console.fancy:  # it was read a moment ago, and a line of it says which it was
+            answer = shorten(answer, max(20, console.width - _LABEL - 4), placeholder=" …")
+        console.item("Your answer", answer, style="red", width=_LABEL)
+        console.line(chosen.explanation, indent=4)
+        console.item("Right", _lettered(posed.key), style="green", width=_LABEL)
 
 
 def show_marked(console: Console, marked: MarkedQuestion, number: int) -> None:
@@ -134,10 +136,21 @@ def show_marked(console: Console, marked: MarkedQuestion, number: int) -> None:
 
 
 def _show_choice(console: Console, label: str, choice: Choice, style: str) -> None:
-    console.item(label, f"{choice.letter}. {choice.text}", style=style, width=_LABEL)
+    console.item(label, _lettered(choice), style=style, width=_LABEL)
     console.line(choice.explanation, indent=4)
     if choice.belief:
         console.line(f'The belief behind it: "{choice.belief}"', indent=4)
+
+
+def _lettered(choice: Choice) -> str:
+    return f"{choice.letter}. {choice.text}"
+
+
+def show_first_due(console: Console, due: Sequence[Due], today: date) -> None:
+    """How many questions are under review, and the day on which the first is due."""
+    if due:
+        many = f"{len(due)} questions are under review, the first" if len(due) > 1 else "1 is under review,"
+        console.line(f"{many} {_when(due[0].on, today)}: course quiz review")
 
 
 def show_due(console: Console, due: Sequence[Due], today: date) -> None:

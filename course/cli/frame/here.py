@@ -95,13 +95,14 @@ class Here:
 
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""
-        folder = self.workspace.path(exercise.place, exercise.module).parent
+        own = self.workspace.path(exercise.place, exercise.module)
         try:
-            names = sorted(path.name for path in folder.iterdir())
+            # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
+            others = [path for path in sorted(own.parent.iterdir()) if path.name.lower() == own.name.lower()]
+            found = (path.name for path in others if not (own.exists() and path.samefile(own)))
+            return next(found, "")
         except OSError:
             return ""
-        wanted = exercise.module
-        return next((name for name in names if name != wanted and name.lower() == wanted.lower()), "")
 
     def source(self, exercise: Exercise) -> bytes:
         """The student's file.

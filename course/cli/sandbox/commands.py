@@ -95,6 +95,8 @@ def menu(
     if not asks:
         return 0
     while answer := console.ask("Which one? A number or a name, Enter for none: "):
+        if answer.lower() in {"q", "quit"}:
+            break
         try:
             choose(answer)
         except NotFoundError as error:

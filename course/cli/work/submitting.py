@@ -66,7 +66,7 @@ def submit(
             help="Write an exercise first, or take the quiz.",
             code="nothing_to_submit",
         )
-    notes = [note for work in works if (note := _syntax_note(work))]
+    notes = [note for work in works for note in (*work.notes, _syntax_note(work)) if note]
     data = _packed(here, works, quiz)
     backup = _keep_old(here, target, data)
     write_atomically(target, data)

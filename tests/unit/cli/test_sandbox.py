@@ -67,6 +67,9 @@ def test_a_typo_in_the_menu_is_asked_about_again(tmp_path: Path, monkeypatch: py
     monkeypatch.setenv("FORCE_COLOR", "1")
     assert "no scene" in sandbox(cwd=tmp_path).stdout
     assert played == ["2"]
+    typed = iter(["q"])
+    sandbox(cwd=tmp_path)
+    assert played == ["2"], "q leaves"
 
 
 def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Path) -> None:

@@ -81,11 +81,19 @@ def test_a_file_whose_name_has_other_capitals_is_told(course, write):
     path = write("RIGHT", "RIGHT")
     (path.parent / "Doubling.py").write_text("x = 1\n")
     assert "doubling/Doubling.py is not read: the file that counts is doubling.py." in course("check").err
+    assert "doubling/Doubling.py is not read" in course("submit").err
     path.unlink()
     ran = course("check")
     assert ran.code == 3
     assert "Rename Doubling.py to doubling.py" in ran.err
     assert "doubling/doubling.py (not there; Doubling.py is not read)" in course("submit").out
+
+
+def test_one_file_under_two_spellings_is_not_told(course, write):
+    """What a file system on which capitals do not count shows."""
+    path = write("RIGHT", "RIGHT")
+    (path.parent / "Doubling.py").hardlink_to(path)
+    assert "is not read" not in course("check").err
 
 
 def test_check_json_is_the_contract(course, write):

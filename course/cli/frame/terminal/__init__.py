@@ -1,1 +1,1 @@
-"""The screen: printing and paging, pictures, progress bars, and a pipe whose reader goes away."""
+"""The screen: printing and paging, its text, pictures, progress bars, a pipe whose reader goes away."""

@@ -16,22 +16,21 @@ import io
 import os
 import shutil
 import sys
-import textwrap
 import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO, cast
 
 from course.cli.frame.terminal.stream import Stream
+from course.cli.frame.terminal.text import bare, filled, harmless, rich_text
 from course.errors import InternalError
-from course.printable import steady, unheeded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     import msgspec
     from rich.console import Console as RichConsole
-    from rich.text import Text
 
+    from course.cli.frame.terminal.text import Piece
     from course.figures.registry import Builder
 
 __all__ = ["STATUS_STYLE", "Console", "Settings", "current", "install"]
@@ -57,8 +56,6 @@ STATUS_STYLE = {
     "ungradable": "red",
     "grader_error": "magenta",
 }
-
-Piece = str | tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,13 +189,13 @@ class Console:
         it can be copied.
         """
         if not self.fancy:
-            self._fact("".join(_bare(piece) for piece in pieces), indent)
+            self._fact("".join(bare(piece) for piece in pieces), indent)
             return
         from rich.padding import Padding
 
-        text = _text(pieces)
+        text = rich_text(pieces)
         if max(map(len, text.plain.split()), default=0) > self.width - indent:
-            self.rich().print(_text((" " * indent, *pieces)), soft_wrap=True)
+            self.rich().print(rich_text((" " * indent, *pieces)), soft_wrap=True)
         else:
             self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
 
@@ -209,9 +206,7 @@ class Console:
         if not any(len(row) + indent > self.width for row in rows):
             self._human.write(f"{margin}{text}\n")
             return
-        wrapper = textwrap.TextWrapper(self.width, margin, margin + " " * hanging)
-        wrapper.break_long_words = wrapper.break_on_hyphens = False
-        self._human.write("".join(f"{wrapper.fill(row)}\n" for row in rows))
+        self._human.write("".join(f"{filled(row, self.width, margin, hanging)}\n" for row in rows))
 
     def blank(self) -> None:
         """An empty line, if the output has a layout."""
@@ -227,9 +222,9 @@ class Console:
 
     def item(self, label: str, *pieces: Piece, style: str = "", indent: int = 2, width: int = 0) -> None:
         """A short label and a text beside it; in a terminal the text wraps under itself."""
-        label = _harmless(label)
+        label = harmless(label)
         if not self.fancy:
-            self._fact(f"{label}: " + "".join(_bare(p) for p in pieces), indent, hanging=2)
+            self._fact(f"{label}: " + "".join(bare(p) for p in pieces), indent, hanging=2)
             return
         from rich.padding import Padding
         from rich.table import Table
@@ -238,7 +233,7 @@ class Console:
         grid = Table.grid(padding=(0, 2, 0, 0))
         grid.add_column(no_wrap=True, min_width=width or len(label))
         grid.add_column(overflow="fold")
-        grid.add_row(Text(label, style=style), _text(pieces))
+        grid.add_row(Text(label, style=style), rich_text(pieces))
         self.rich().print(Padding(grid, (0, 0, 0, indent)))
 
     def table(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
@@ -246,7 +241,7 @@ class Console:
         if not self.fancy:
             for row in rows:
                 facts = [
-                    f"{head}: {_bare(cell)}" for head, cell in zip(headers, row, strict=True) if _bare(cell)
+                    f"{head}: {bare(cell)}" for head, cell in zip(headers, row, strict=True) if bare(cell)
                 ]
                 self._fact("; ".join(facts), hanging=2)
             return
@@ -260,7 +255,7 @@ class Console:
         for index, head in enumerate(headers):
             table.add_column(head, overflow="fold", no_wrap=index == 0)  # the first is an id that people copy
         for row in rows:
-            table.add_row(*(_text((cell,)) for cell in row))
+            table.add_row(*(rich_text((cell,)) for cell in row))
         self.rich().print(table)
 
     def table_or_facts(self, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -275,7 +270,7 @@ class Console:
         for first, *rest in rows:
             self.line(first)
             facts = [
-                f"{head} {_bare(cell)}" for head, cell in zip(headers[1:], rest, strict=True) if _bare(cell)
+                f"{head} {bare(cell)}" for head, cell in zip(headers[1:], rest, strict=True) if bare(cell)
             ]
             self.line(", ".join(facts), indent=2)
 
@@ -295,7 +290,7 @@ class Console:
 
     def block(self, text: str, language: str = "", indent: int = 0) -> None:
         """Text shown exactly as it is: code, a diff, a traceback."""
-        text = _harmless(text)
+        text = harmless(text)
         if not self.fancy:
             for row in text.splitlines():
                 self._human.write(" " * indent + row + "\n")
@@ -319,15 +314,23 @@ class Console:
 
     def warn(self, text: str) -> None:
         """A warning, which is not a failure; on standard error."""
-        self._err.write(f"Note: {_harmless(text)}\n")
+        self._aside(f"Note: {text}")
 
     def error(self, message: str, help: str = "") -> None:  # noqa: A002
         """What went wrong, and below it what to do; on standard error."""
         self._out.flush()
-        self._err.write(f"{_harmless(message)}\n")
+        self._aside(message)
         if help:
-            self._err.write(f"{_harmless(help)}\n")
+            self._aside(help)
         self._err.flush()
+
+    def _aside(self, text: str) -> None:
+        """Words on standard error; on a terminal a line that is too long for it wraps between words."""
+        rows = harmless(text).split("\n")
+        if self._err.isatty() and not (self.settings.plain or self.settings.json):
+            width = min(self.terminal_width, MAX_WIDTH)
+            rows = [filled(row, width) if len(row) > width else row for row in rows]
+        self._err.write("\n".join(rows) + "\n")
 
     def raw(self, text: str) -> None:
         """Text that already has its layout (a help page)."""
@@ -374,8 +377,7 @@ class Console:
         """A question in lines that break between words; what is typed stands beside the last one."""
         if len(question) < self.terminal_width or not self._out.isatty():
             return question
-        rows = textwrap.wrap(question.rstrip(), max(20, self.terminal_width - 1), break_on_hyphens=False)
-        return "\n".join(rows) + " "
+        return filled(question.rstrip(), max(20, self.terminal_width - 1)) + " "
 
     def go_on(self, where: str) -> bool:
         """Wait for Enter; q, n, or the end of the input, means no. Anything else is asked about again."""
@@ -437,25 +439,6 @@ class Console:
         """Flush everything."""
         self._out.flush()
         self._err.flush()
-
-
-def _bare(piece: Piece) -> str:
-    return _harmless(piece if isinstance(piece, str) else piece[0])
-
-
-def _text(pieces: Sequence[Piece]) -> Text:
-    """Pieces as one Rich text."""
-    from rich.text import Text
-
-    text = Text()
-    for piece in pieces:
-        text.append(_bare(piece), None if isinstance(piece, str) else piece[1])
-    return text
-
-
-def _harmless(text: str) -> str:
-    """Text without control codes or workflow commands: a student's own text is shown, never obeyed."""
-    return unheeded(steady(text.replace("\r\n", "\n")))
 
 
 _installed: Console | None = None

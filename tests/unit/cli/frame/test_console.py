@@ -248,6 +248,22 @@ def test_words_wrap_on_a_terminal_without_layout_and_stay_on_one_line_under_plai
         assert " ".join(out.getvalue().split()) == f"{words} help: {words}"
 
 
+def test_errors_and_warnings_break_between_words_on_a_terminal_only(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    words = "integrators/integrators.py " * 4 + "counts."
+    for err, settings, rows in (
+        (Terminal(), {}, 9),
+        (Terminal(), {"plain": True}, 3),
+        (io.StringIO(), {}, 3),
+    ):
+        console = Console(Settings(**settings), stdout=Terminal(), stderr=err, environ={})
+        console.error(words, "Do it.")
+        console.warn(words)
+        said = err.getvalue()
+        assert said.count("\n") == rows
+        assert " ".join(said.split()) == f"{words} Do it. Note: {words}", "no word is broken"
+
+
 def test_a_window_that_becomes_narrower_is_seen(monkeypatch):
     console, out, _ = _console(environ={"NO_COLOR": "1"})
     for columns in (80, 40):

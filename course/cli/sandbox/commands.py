@@ -50,10 +50,10 @@ class _Scenes(TyperGroup):
 
 
 def _suggest(name: str, commands: list[str]) -> None:
-    """Say which scene was meant, unless a command is as close."""
+    """Say which scene was meant, unless a command is as close; either way it is no command, exit 2."""
     close = difflib.get_close_matches(name, [*commands, *known_scenes()], n=1)
     if close and close[0] not in commands:
-        raise NotFoundError(
+        raise UsageError(
             f"There is no scene {name!r}.",
             help=f"Did you mean: course sandbox play {close[0]}?",
             code="scene_not_found",

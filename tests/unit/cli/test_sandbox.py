@@ -52,7 +52,7 @@ def test_a_piped_play_runs_unseen_and_compares(tmp_path: Path) -> None:
 def test_a_scene_is_played_without_the_word_play(tmp_path: Path) -> None:
     said = sandbox("head-on", "--guess", "1.5", cwd=tmp_path).stdout
     assert said == sandbox("play", "head-on", "--guess", "1.5", cwd=tmp_path).stdout
-    assert "Did you mean: course sandbox play head-on?" in sandbox("heda-on", cwd=tmp_path, code=5).stderr
+    assert "Did you mean: course sandbox play head-on?" in sandbox("heda-on", cwd=tmp_path, code=2).stderr
     assert "No such command 'plai'" in sandbox("plai", cwd=tmp_path, code=2).stderr
 
 

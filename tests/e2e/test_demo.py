@@ -57,7 +57,7 @@ def test_a_right_line_fixes_the_mistake_in_any_spelling(typing, line):
         ("x = x + h *", "invalid syntax"),
         ("x = x + v_next * h", "semi-implicit Euler"),
         ("x + h * v", "The position never changes"),
-        ("x = x + h * w", "raised NameError"),
+        ("x = x + h * w", "It raises NameError: name 'w' is not defined"),
         ("while True: pass", "when the time was up"),
         ("x = x + h * v\udcff", "Python cannot read this file"),
     ],

@@ -201,7 +201,8 @@ def _show_finding(console: Console, verdict: Verdict) -> None:
     if found is None:
         said = verdict.error.message if verdict.error else "It could not be checked."
     else:
-        said = found.message if found.status == "error" else f"{found.message} {found.help}".rstrip()
+        raised = found.status == "error" and isinstance(found.actual, str)
+        said = f"It raises {found.actual}." if raised else f"{found.message} {found.help}".rstrip()
     console.line(("Not yet. ", "red"), said)
 
 

@@ -60,6 +60,12 @@ def slow_growth(limit):
     return LinearStep([1 - 1e-3, 1e-3 / limit], [0.0], [0.0], [0.2])
 
 
+def turn(c, s, z=None):
+    """A rotation that may shrink; with z, for the step h omega = z alone, so that h must be right."""
+    powers = (lambda entry: [entry]) if z is None else (lambda entry: [0.0, entry / z])
+    return LinearStep(powers(c), powers(s), powers(-s), powers(c))
+
+
 # -- expectations ---------------------------------------------------------------------------------------
 
 
@@ -131,7 +137,7 @@ def expect_clean(submission, task, system, t, whole, h):
             input=given,
             message="From a state of whole numbers the step gives a different result than from the same "
             "state as floats.",
-            diagnose=lambda: probes.of_whole_numbers(submission, task),
+            diagnose=lambda: probes.of_whole_numbers(submission, task, kit.as_pair(result, 2)),
         )
 
 

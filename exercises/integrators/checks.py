@@ -110,8 +110,7 @@ def test_rk4_evaluations(submission, draw):
 
 def _spiral(angle, shrink):
     """A rotation (rad) that also shrinks a little: where it leads is known at every step."""
-    c, s = shrink * math.cos(angle), shrink * math.sin(angle)
-    return systems.LinearStep([c], [s], [-s], [c])
+    return cases.turn(shrink * math.cos(angle), shrink * math.sin(angle))
 
 
 @pytest.mark.task("integrate")
@@ -123,7 +122,7 @@ def test_integrate_samples(submission, draw):
     if draw is not None:
         n, angle = int(draw.integers(6, 14)), float(draw.uniform(0.3, 0.6))
         q0, v0 = _signed(draw, 0.5, 1.5, 2), _signed(draw, 0.5, 2.0, 2)
-    step = _spiral(angle, shrink)
+    step = cases.turn(shrink * math.cos(angle), shrink * math.sin(angle), h * omega)
     value = submission.call("integrate", step, systems.Oscillator(omega), q0, v0, n * h, h)
     given = {"step": "a known linear map", "q0": q0, "v0": v0, "t_end": n * h, "h": h}
     t, q, v = kit.as_tuple(value, ("t", "q", "v"))
@@ -134,7 +133,7 @@ def test_integrate_samples(submission, draw):
         message="integrate does not return one sample more than there are steps.",
         help="N = round(t_end / h) steps connect N + 1 states.",
         input=given,
-        diagnose=lambda: probes.of_count(submission),
+        diagnose=lambda: probes.of_count(submission, n, h),
     )
     q, v = kit.as_array(q, (n + 1, 2), "q"), kit.as_array(v, (n + 1, 2), "v")
     turned, left = angle * np.arange(n + 1)[:, None], shrink ** np.arange(n + 1)[:, None]
@@ -184,8 +183,8 @@ def test_integrate_counts(submission, draw):
             "ValueError",
             input=given,
             message="integrate raises ValueError for a duration that is a whole number of steps.",
-            diagnose=lambda t_end=t_end: probes.named(
-                "REFUSES_DIVISIBLE" if t_end else "REFUSES_NO_DURATION"
+            diagnose=lambda t_end=t_end: probes.of_refusal(
+                submission, np.array([1.0]), np.array([0.0]), t_end
             ),
         )
         t, q, v = kit.as_tuple(value, ("t", "q", "v"))
@@ -196,8 +195,12 @@ def test_integrate_counts(submission, draw):
                 name=name,
                 input=given,
                 message="The number of samples is not N + 1 with N = round(t_end / h).",
-                help="In floating point, t_end / h may come out just below or above a whole number.",
-                diagnose=lambda name=name: probes.of_count(submission) if name == "t" else None,
+                help="In floating point, t_end / h may come out just below or above a whole number."
+                if n
+                else "Without a step there is one sample: the initial state.",
+                diagnose=lambda name=name, n=n, h=h: (
+                    probes.of_count(submission, n, h) if name == "t" else None
+                ),
             )
         kit.as_array(q, (n + 1, 1), "q"), kit.as_array(v, (n + 1, 1), "v")
 
@@ -243,7 +246,7 @@ def test_observed_order_slope(submission, draw):
             input={"hs": hs, "errors": errors},
             message="For errors of the form C * h**p, observed_order does not return p.",
             help="Take logarithms of both, then the slope of the line through them.",
-            diagnose=lambda value=value, errors=errors: probes.of_order(value, hs, errors),
+            diagnose=lambda value=value, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 
 
@@ -269,7 +272,7 @@ def test_observed_order_scattered(submission, draw):
             input={"hs": hs, "errors": errors},
             message="Through points that scatter, observed_order does not return the least-squares slope.",
             help="Fit one line to all points, each error over its own step.",
-            diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(value, hs, errors),
+            diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 
 
@@ -375,7 +378,7 @@ def test_integrate_arguments(submission):
         "TypeError",
         input=given,
         message="integrate fails on an initial state of whole numbers.",
-        diagnose=lambda: probes.named("INTEGER_STATE"),
+        diagnose=lambda: probes.of_whole_start(submission, args),
     )
     _, q, _ = kit.as_tuple(inspected.value, ("t", "q", "v"))
     q = kit.as_array(q, (n + 1, 2), "q")
@@ -383,7 +386,7 @@ def test_integrate_arguments(submission):
         not np.array_equal(q, np.trunc(q)),
         "From an initial state of whole numbers, integrate produces whole numbers only.",
         input=given,
-        diagnose=lambda: probes.named("INTEGER_STATE"),
+        diagnose=lambda: probes.of_whole_rows(q),
     )
     cases.expect_start_kept(submission, args, inspected, given)
 

@@ -58,10 +58,12 @@ def of_step(submission, task, run=None):
     return named(code, left) if code else None
 
 
-def of_whole_numbers(submission, task):
-    """Why a step from integers differs from the same step from floats."""
-    cached = kit.attempt(lambda: _remembers(submission, task))
-    return named("STALE_CACHE" if cached else "INTEGER_STATE")
+def of_whole_numbers(submission, task, result=None):
+    """Why a step from integers differs from the same step from floats, or fails. result: of the step."""
+    if kit.attempt(lambda: _remembers(submission, task)):
+        return named("STALE_CACHE")
+    cut = result is None or any(np.array_equal(part, np.trunc(part)) for part in result)
+    return named("INTEGER_STATE") if cut else None
 
 
 def _wraps(submission, task):
@@ -86,18 +88,28 @@ def _weights(submission, task):
     """On a constant acceleration a method of more than one stage shows whether its weights add up to one."""
     if ORDERS[task] == 1:
         return None
+    kick, other = (_weight(submission, task, h) for h in (0.37, 0.2))
+    if task != "rk4_step" or not kick or not other or math.isclose(kick, 1.0, rel_tol=1e-6):
+        return None
+    # A weight is a number: what changes with the step is a power of it.
+    if math.isclose(kick, other, rel_tol=1e-6):
+        return "WEIGHTS_DO_NOT_ADD_UP"
+    return "POWER_OF_STEP_WRONG" if math.isclose(kick / other, 0.37 / 0.2, rel_tol=1e-6) else None
+
+
+def _weight(submission, task, h):
+    """The sum of the weights with which position and velocity move, if it is one positive number."""
     q0, v0, g = np.array([0.2, -0.5, 1.3]), np.array([0.7, 0.1, -0.9]), 7.0
-    _, v = kit.as_pair(submission.call(task, FreeFall(g), 0.4, q0, v0, 0.37), 3)
-    still, _ = kit.as_pair(submission.call(task, FreeFall(0.0), 0.4, q0, v0, 0.37), 3)
-    kick, drift = (v - v0)[2] / (-g * 0.37), (still - q0) / (v0 * 0.37)
+    _, v = kit.as_pair(submission.call(task, FreeFall(g), 0.4, q0, v0, h), 3)
+    still, _ = kit.as_pair(submission.call(task, FreeFall(0.0), 0.4, q0, v0, h), 3)
+    kick, drift = (v - v0)[2] / (-g * h), (still - q0) / (v0 * h)
     alike = np.allclose(v[:2], v0[:2], atol=1e-9) and np.allclose(drift, kick, rtol=1e-6)
-    wrong = task == "rk4_step" and alike and kick > 0 and not math.isclose(kick, 1.0, rel_tol=1e-6)
-    return "WEIGHTS_DO_NOT_ADD_UP" if wrong else None
+    return float(kick) if alike and kick > 0 else None
 
 
-def _calls(submission, task):
-    """What accel is called with in a step where it is zero."""
-    accel = kit.counted(lambda *args, **names: np.zeros(2))
+def _calls(submission, task, value=0.0):
+    """What accel is called with in a step where it has this value throughout."""
+    accel = kit.counted(lambda *args, **names: np.full(2, value))
     kit.attempt(lambda: submission.call(task, accel, _T, _Q, _V, _H))
     return accel.calls
 
@@ -117,8 +129,13 @@ def _mixes_arguments(submission, task):
         [kit.attempt(lambda arg=arg: kit.as_vector(arg, 2)) for arg in call]
         for call in _calls(submission, task)
     )
+    # A time for each coordinate, all the same, is a time.
     return any(
-        len(place) == 3 and (place[0] is not None or (place[1] is not None and np.allclose(place[1], _V)))
+        len(place) == 3
+        and (
+            (place[0] is not None and not np.allclose(place[0], place[0][0]))
+            or (place[1] is not None and np.allclose(place[1], _V))
+        )
         for place in places
     )
 
@@ -157,16 +174,18 @@ def _equal(a, b):
 
 def _blind_spot(submission, task):
     """What the step does not look at: the clock, or the velocity, where only that acts."""
-    if ORDERS[task] == 1:
+    calls = [[np.asarray(arg, dtype=float) for arg in call] for call in _calls(submission, task, 1.7)]
+    # Where one acceleration is used for all, it is not the clock that is left out.
+    if ORDERS[task] == 1 or all(np.array_equal(call[1], calls[0][1]) for call in calls):
         return None
     clock = DrivenPendulum(0.0, 0.0, 1.9, 2.3)
     _, v = kit.as_pair(submission.call(task, clock, _T, _Q, _V, _H), 2)
-    if np.allclose(v, _V + _H * clock(_T, _Q, _V), rtol=1e-9):
+    if np.allclose(v, _V + _H * clock(_T, _Q, _V), rtol=1e-9) and all(call[0] == _T for call in calls):
         return "STAGE_TIMES_FROZEN"
     drag = DrivenPendulum(0.0, 0.7, 0.0, 1.0)
     _, v = kit.as_pair(submission.call(task, drag, _T, _Q, _V, _H), 2)
     blind = task == "rk4_step" and np.allclose(v, _V + _H * drag(_T, _Q, _V), rtol=1e-9)
-    return "STAGE_VELOCITY_IGNORED" if blind else None
+    return "STAGE_VELOCITY_IGNORED" if blind and all(np.allclose(call[2], _V) for call in calls) else None
 
 
 def _rate(submission, task):
@@ -222,17 +241,42 @@ IDENTITY = LinearStep([1.0], [0.0], [0.0], [1.0])
 _PLAIN = ((1.0, 0.25, 4), (2.0, 0.5, 4))
 
 
-def of_count(submission):
-    """Whether the number of samples is off by one where nothing is rounded."""
+def of_count(submission, n, h):
+    """Whether the number of samples is off by one where nothing is rounded.
+
+    n, h: number and size, s, of the steps of which it is wrong.
+    """
     rows = []
-    for t_end, h, n in _PLAIN:
+    for t_end, size, count in _PLAIN:
         t, _, _ = kit.as_tuple(
-            submission.call("integrate", IDENTITY, Oscillator(1.0), [1.0], [0.0], t_end, h), "tqv"
+            submission.call("integrate", IDENTITY, Oscillator(1.0), [1.0], [0.0], t_end, size), "tqv"
         )
-        rows.append(len(kit.as_vector(t)) - n - 1)
+        rows.append(len(kit.as_vector(t)) - count - 1)
     if rows[0] == rows[1] and abs(rows[0]) == 1:
         return named("OFF_BY_ONE_SAMPLE")
-    return named("COUNT_NOT_ROUNDED") if rows == [0, 0] else None
+    exact = (2**20 * h).is_integer()
+    return named("COUNT_NOT_ROUNDED") if rows == [0, 0] and n and not exact else None
+
+
+def of_refusal(submission, q0, v0, t_end):
+    """Why a duration of a whole number of steps gives a ValueError, if not every duration does."""
+    plain = kit.attempt(lambda: submission.call("integrate", IDENTITY, Oscillator(1.0), q0, v0, 2.0, 0.5))
+    if plain is None:
+        return None
+    return named("REFUSES_DIVISIBLE" if t_end else "REFUSES_NO_DURATION")
+
+
+def of_whole_start(submission, args):
+    """Why integrate fails on whole numbers, if it does not fail on the same numbers as floats."""
+    step, accel, q0, v0, *rest = args
+    floats = step, accel, q0.astype(float), v0.astype(float), *rest
+    works = kit.attempt(lambda: submission.call("integrate", *floats)) is not None
+    return named("INTEGER_STATE") if works else None
+
+
+def of_whole_rows(q):
+    """What positions show that are whole numbers throughout, where true ones are not."""
+    return None if np.array_equal(q, np.broadcast_to(q[0], q.shape)) else named("INTEGER_STATE")
 
 
 def of_rows(t, q, v, h, states):
@@ -253,7 +297,7 @@ def _histories(q, v, states):
         for a, b in ((q, q_true), (v, v_true))
     ]
     # Positions that are all zero may have been left out as well as cut off.
-    seen = whole[0] and (whole[1] or np.any(q))
+    seen = whole[0] and (whole[1] or np.any(q)) and not np.array_equal(q, np.broadcast_to(q[0], q.shape))
     return "INTEGER_STATE" if seen and not np.array_equal(q_true, np.trunc(q_true)) else None
 
 
@@ -285,36 +329,60 @@ def _later_rows(q, v, states):
         return "STEP_RESULT_SWAPPED"
     if any(first) and not all(first):
         return "ROW_HALF_RIGHT"
-    carried = len(q) <= 2 or not (np.allclose(q[2:], q[1]) and np.allclose(v[2:], v[1]))
-    return None if carried else "STATE_NOT_CARRIED"
+    if len(q) <= 2 or not (np.allclose(q[2:], q[1]) and np.allclose(v[2:], v[1])):
+        return None
+    if all(first):
+        return "STATE_NOT_CARRIED"
+    return "PATH_STANDS_STILL" if np.allclose(q[1], q[0]) and np.allclose(v[1], v[0]) else None
 
 
-def of_times(times, h):
-    """What is wrong with the times that ``integrate`` told its step. times: shape (N,), s."""
+def of_times(submission, times, h):
+    """What is wrong with the times that ``integrate`` told its step. times: shape (N,), s.
+
+    They are read off a path, so where a path without a clock is wrong, that is told.
+    """
+    n, size, p = 6, 0.25, np.array([[0.9, 0.35], [-0.4, 0.85]])
+    turn = LinearStep(*p.reshape(4, 1).tolist())
+    start = np.array([1.0, -0.5]), np.array([0.5, 2.0])
+    found = submission.call("integrate", turn, Oscillator(1.0), *start, n * size, size)
+    t, q, v = kit.as_tuple(found, ("t", "q", "v"))
+    t, q, v = kit.as_vector(t), kit.as_array(q, (n + 1, 2)), kit.as_array(v, (n + 1, 2))
+    true = np.array([np.linalg.matrix_power(p, i) @ start for i in range(n + 1)])
+    if not np.allclose(np.stack([q, v], axis=1), true):
+        return of_rows(t, q, v, size, (true[:, 0], true[:, 1]))
     if np.allclose(times, times[0]):
         return named("TIME_NOT_PASSED")
-    if np.allclose(np.cumsum(times), h * np.arange(len(times))):
-        return named("STATE_NOT_CARRIED")
     return named("TIME_AHEAD") if np.allclose(times, h * np.arange(1, len(times) + 1)) else None
 
 
 # -- observed_order -----------------------------------------------------------------------------------
 
 
-def of_order(value, hs, errors):
+def of_order(submission, value, hs, errors):
     """What a wrong slope through (hs, errors) has in common with others."""
     value = kit.as_number(value)
     if not math.isfinite(value):
         return None
-    if value < 0:
-        return named("ORDER_SIGN_FLIPPED")
+    right = convergence_order(hs, errors)
+    if value < 0 < right:
+        pairings = ((hs, errors[::-1]), (np.sort(hs), np.sort(errors)[::-1]))
+        flipped = (-right, *(convergence_order(*pairing) for pairing in pairings))
+        alike = any(math.isclose(value, one, rel_tol=1e-6) for one in flipped)
+        return named("ORDER_SIGN_FLIPPED" if alike else "ORDER_NEGATIVE")
     last = {error: h for h, error in zip(hs, errors, strict=True)}
     if len(last) < len(hs) and math.isclose(
         value, convergence_order(list(last.values()), list(last)), abs_tol=1e-8
     ):
         return named("EQUAL_ERRORS_LOST")
-    scattered = len(hs) > 2 and float(value).is_integer()
-    return named("ORDER_ROUNDED") if scattered and value > 0 else None
+    return named("ORDER_ROUNDED") if _rounds(submission) else None
+
+
+def _rounds(submission):
+    """Whether slopes that are no whole numbers come out as the ones beside them, all different."""
+    hs, slopes = np.array([0.3, 0.11, 0.05]), (1.4, 3.6, 6.4)
+    values = submission.call_each("observed_order", [(hs, 2.0 * hs**slope) for slope in slopes])
+    found = [float(kit.as_number(value)) for value in values]
+    return all(one.is_integer() and abs(one - slope) < 1 for one, slope in zip(found, slopes, strict=True))
 
 
 # -- max_stable_step ----------------------------------------------------------------------------------
@@ -322,6 +390,8 @@ def of_order(value, hs, errors):
 #: Maps whose limits differ: one with an eigenvalue of -1 at z = 1.5, one that spirals out at 1.9.
 _FLIPPED = LinearStep([0.6, 0, -1.6 / 1.5**2], [2.0], [0.0], [0.3])
 _SPIRAL = LinearStep([0.3, 0, 0.02], [0.75, 0, 0.05], [-0.75, 0, -0.05], [0.3, 0, 0.02])
+#: Diagonal, and stable for longer, whatever is looked at: its entries, a norm or its eigenvalues.
+_LONG = LinearStep([0.1, 0.15], [0.0], [0.0], [0.2])
 
 
 def of_stability(submission, value, step, omega, limit):
@@ -337,18 +407,23 @@ def of_stability(submission, value, step, omega, limit):
         z, limit * omega
     ):
         return named("RETURNS_Z")
-    if _same(flipped, spiral):  # a search that takes no notice of the step
-        return named("ASSUMES_ITS_LIMIT")
-    return named(_beside(z, limit)) if z != limit else None
+    # A search that takes no notice of the step: a strict one, too, may find two maps unstable at once.
+    if 0.0 < flipped < math.inf and _same(flipped, spiral):
+        third = kit.as_number(submission.call("max_stable_step", _LONG, 1.0))
+        if _same(flipped, third):
+            return named("ASSUMES_ITS_LIMIT")
+    code = _beside(z, limit) if z != limit else None
+    return named(code) if code else None
 
 
 def _beside(z, limit):
     """On which side of the right one a limit lies, and how far."""
     if limit == 0.0:
-        return "NO_ZERO"
+        return "NO_ZERO" if z > 0.0 else None
     if limit == math.inf:
         return "NO_INFINITY" if z > 2.0 else "LIMIT_TOO_EARLY"
-    if abs(z - limit) < 0.25:  # as far as a search in the increments of the README may be off
+    # As far as a search in the increments of the README may be off.
+    if abs(z - limit) < min(0.25, 0.5 * limit):
         return "SEARCH_TOO_COARSE"
     return "LIMIT_TOO_LATE" if z > limit else "LIMIT_TOO_EARLY"
 

@@ -15,7 +15,7 @@ _DAMPED, _DRIVEN = DrivenPendulum(3.1, 0.7, 1.9, 2.3), DrivenPendulum(3.1, 0.0, 
 _FALL = FreeFall(7.0), 0.4, np.array([0.2, -0.5, 1.3]), np.array([0.7, 0.1, -0.9]), 0.37
 
 #: A turn that shrinks, with a clock: where it leads depends on every argument of a step.
-_TURN = LinearStep([0.9], [0.35], [-0.4], [0.85], clock=0.3)
+_TURN = LinearStep([0.9], [0.35, 0.04], [-0.4], [0.85, -0.03], clock=0.3)
 
 
 def _loops():

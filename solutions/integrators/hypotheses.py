@@ -32,6 +32,7 @@ def hypotheses():
         for family, base, terms in several:
             yield from _pairs(task, family, base, terms)
     yield from (("observed_order", (code,), slope) for code, slope in _slopes())
+    yield "max_stable_step", ("LIMIT_NEVER_SEEN",), lambda step, omega: math.inf
 
 
 def _pairs(task, family, base, terms):
@@ -323,7 +324,6 @@ _SEARCH = {
     "scales": (("START_NOT_SCALED", "out"), ("START_NOT_SCALED", "in")),
     "force": (
         ("ACCELERATION_WRONG", lambda omega: omega),
-        ("ACCELERATION_WRONG", lambda omega: -(omega**2)),
         ("ACCELERATION_WRONG", lambda omega: 1.0),
     ),
     "probe": (("OMEGA_SQUARED_IN_STEP", lambda z, omega: z),),

@@ -142,7 +142,7 @@ def expect_one_evaluation(accel, submission, task):
     if accel.count != 1:
         kit.fail(
             "A step does not take one evaluation of accel.",
-            help="Call accel once, with the state at the start of the step, and return both new values.",
+            help="Call accel once, keep what it returns, and return both new values.",
             expected=1,
             actual=accel.count,
             units="evaluations",
@@ -242,7 +242,7 @@ def expect_slopes(submission, points):
             input={"hs": hs, "errors": errors},
             message=message,
             help="Slope of log error over log h by least squares, whatever the order of the points.",
-            diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(value, hs, errors),
+            diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 
 

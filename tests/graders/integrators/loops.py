@@ -33,7 +33,7 @@ def expect_times(submission, rng):
         input=given,
         message="The path of a step that depends on its time is wrong.",
         help="Step number i starts at i * h.",
-        diagnose=lambda: probes.of_times(told, h),
+        diagnose=lambda: probes.of_times(submission, told, h),
     )
     kit.expect_array(
         t,
@@ -81,7 +81,7 @@ def expect_refusals(submission, rng):
 def expect_whole_numbers(submission, rng):
     """An initial state of integers leads through fractions, and is still there afterwards."""
     n, h, omega, angle = 12, 0.125, 2.0, rng.uniform(0.3, 0.6)
-    turn = systems.LinearStep([math.cos(angle)], [math.sin(angle)], [-math.sin(angle)], [math.cos(angle)])
+    turn = bundles.cases.turn(math.cos(angle), math.sin(angle), h * omega)
     q0, v0 = rng.integers(1, 5, 3), rng.integers(-5, 5, 3)
     args = [turn, systems.Oscillator(omega), q0, v0, n * h, h]
     given = {"q0": q0, "v0": v0, "t_end": n * h, "h": h, "step": "a rotation", "angle": angle}
@@ -90,9 +90,9 @@ def expect_whole_numbers(submission, rng):
         "TypeError",
         input=given,
         message="integrate fails on an initial state of whole numbers.",
-        diagnose=lambda: probes.named("INTEGER_STATE"),
+        diagnose=lambda: probes.of_whole_start(submission, args),
     )
-    t, q, v = _arrays(submission, inspected.value, n, 3, given)
+    t, q, v = _arrays(submission, inspected.value, n, args, given)
     angles = angle * np.arange(n + 1)[:, None]
     q_true = np.cos(angles) * q0 + np.sin(angles) * v0 / omega
     v_true = np.cos(angles) * v0 - omega * np.sin(angles) * q0
@@ -119,13 +119,14 @@ def _path(submission, args, n, given):
         "ValueError",
         input=given,
         message="integrate raises ValueError for a duration that is a whole number of steps.",
-        diagnose=lambda: probes.named("REFUSES_DIVISIBLE"),
+        diagnose=lambda: probes.of_refusal(submission, args[2], args[3], args[4]),
     )
-    return _arrays(submission, value, n, len(args[2]), given)
+    return _arrays(submission, value, n, args, given)
 
 
-def _arrays(submission, value, n, d, given):
+def _arrays(submission, value, n, args, given):
     """The three arrays that integrate returns, with a row for every sample."""
+    d = len(args[2])
     t, q, v = kit.as_tuple(value, ("t", "q", "v"))
     for rows, name in ((t, "t"), (q, "q"), (v, "v")):
         kit.expect_length(
@@ -135,6 +136,6 @@ def _arrays(submission, value, n, d, given):
             input=given,
             message="The number of samples is not N + 1 with N = round(t_end / h).",
             help="n steps connect n + 1 states, and n is rounded, not truncated.",
-            diagnose=lambda: probes.of_count(submission),
+            diagnose=lambda: probes.of_count(submission, n, args[5]),
         )
     return kit.as_array(t, (n + 1,), "t"), kit.as_array(q, (n + 1, d), "q"), kit.as_array(v, (n + 1, d), "v")

@@ -8,12 +8,16 @@ of them fits. What the paths of the two simulations show is in ``tracks.py``.
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 
 from course.grading import kit
 
 named = kit.words("collisions")
+
+#: A step is searched in no more samples than this. Of other numbers, one in twenty is as near to such a part.
+_SAMPLES = 10_000
 
 # -- single calls ---------------------------------------------------------------------------------------
 
@@ -80,22 +84,33 @@ def _not_a_number(task, calls, values, truth):
     if not spoiled:
         return None
     if task == "detect_sphere_sphere":
-        return "NORMAL_UNDEFINED"
+        return "NORMAL_UNDEFINED" if all(np.array_equal(call[0], call[2]) for call in spoiled) else None
     if task == "time_of_impact":
         return _moment_not_a_number(calls, values, truth)
     if task in ("impulse_1d", "resolve", "resolve_with_friction"):
         if all(math.inf in call[:2] for call in spoiled):
             return "INFINITE_MASS_NAN"
-        if task == "resolve_with_friction":
+        if task == "resolve_with_friction" and all(not _slip(call).any() for call in spoiled):
             return "NO_SLIDING_NAN"
     return None
+
+
+def _slip(call):
+    """The slip of b as seen from a, m/s; rounding is none."""
+    u, n = call[3] - call[2], call[4]
+    across = u - (u @ n) * n
+    return np.where(np.abs(across) < 1e-12, 0.0, across)
 
 
 def _moment_not_a_number(calls, values, truth):
     """Which division or root gives nan, if nan is what is wrong with the first answer that is."""
     for call, value, right in zip(calls, values, truth, strict=True):
         if _has_nan(value):
-            return "NO_RELATIVE_MOTION" if np.array_equal(call[1], call[4]) else "ROOT_OF_A_NEGATIVE"
+            x, v = call[3] - call[0], call[4] - call[1]
+            if not v.any():
+                return "NO_RELATIVE_MOTION"
+            beside = (x @ v) ** 2 < v @ v * (x @ x - (call[2] + call[5]) ** 2)
+            return "ROOT_OF_A_NEGATIVE" if beside else "MISS_IS_A_NUMBER" if right is None else None
         if not _same(right, value):
             return None
     return None
@@ -130,7 +145,8 @@ def _of_walls(task, calls, values, truth):
         return None
     if task == "impulse_1d":
         own = [_wall_at_rest(call) for call, _, _ in wrong]
-        return "WALL_ASSUMED_AT_REST" if all(map(_same, own, (value for _, value, _ in wrong))) else None
+        at_rest = any(own) and all(map(_same, own, (value for _, value, _ in wrong)))
+        return "WALL_ASSUMED_AT_REST" if at_rest else None
     cases = [_at_wall(*case) for case in wrong]
     if not any(kept for kept, *_ in cases):
         return "WALL_MOVED"
@@ -139,7 +155,9 @@ def _of_walls(task, calls, values, truth):
         smooth = all(
             _same(true, along) and not np.any(np.abs(across) > 1e-9) for along, across, true, _ in changes
         )
-        return "WALLS_SMOOTH" if smooth else None
+        rubbed = [c for c in zip(calls, truth, strict=True) if _slip(c[0]).any() and c[0][6]]
+        every = len(wrong) == sum(math.inf in call[:2] and _closing(task, call) > 0 for call, _ in rubbed)
+        return "WALLS_SMOOTH" if smooth and every else None
     rest = all(_same(at_rest, along) or (not along and at_rest <= 0) for along, _, _, at_rest in changes)
     return "WALL_ASSUMED_AT_REST" if rest and any(along for along, *_ in changes) else None
 
@@ -253,16 +271,14 @@ def _rubs(calls, values, truth):
             return None
         slip, wanted, found = (u - (u @ n) * n for u in (vb - va, right[1] - vb, value[1] - vb))
         size = float(np.sqrt(slip @ slip))
-        found_size, share = (
-            float(np.sqrt(found @ found)),
-            float(found @ wanted) / float(wanted @ wanted or 1.0),
-        )
-        if not size:
+        if not size or _same(right[1], value[1]):
             return None
-        if found_size and not np.allclose(found, share * wanted, rtol=0, atol=1e-8):
+        along = float(found @ slip) / size
+        if not np.allclose(found, along * slip / size, rtol=0, atol=1e-8):
             return "FRICTION_ASKEW"
         left = ((value[1] - value[0]) @ slip) / size
-        seen.add("FRICTION_TURNS_THE_SLIP" if left < -1e-8 else "TOO_STRONG" if share > 1 else "TOO_WEAK")
+        more = along < float(wanted @ slip) / size
+        seen.add("FRICTION_TURNS_THE_SLIP" if left < -1e-8 else "TOO_STRONG" if more else "TOO_WEAK")
     names = {"TOO_STRONG": "FRICTION_TOO_STRONG", "TOO_WEAK": "FRICTION_TOO_WEAK"}
     code = seen.pop() if len(seen) == 1 else None
     return names.get(code, code)
@@ -302,9 +318,11 @@ def _wrong_moment(calls, values, truth):
         if value is None or _same(right, value):
             continue
         if right is None:
+            if value == 0.0 and _overlap(call):
+                return "OVERLAP_ALWAYS_HITS"
             # Only a time at which they do touch is a contact that was, or one that is to come.
-            if _apart(call, value) >= 1e-6:
-                return "MISS_IS_A_NUMBER"
+            if not _apart(call, value) < 1e-6:
+                return None if _overlap(call) else "MISS_IS_A_NUMBER"
             return "IMPACT_IN_THE_PAST" if value < 0.0 else _beyond(call, value)
         if right == 0.0:
             return "OVERLAP_IN_THE_PAST" if value < 0.0 else None
@@ -316,7 +334,13 @@ def _wrong_moment(calls, values, truth):
 
 
 def _beyond(call, value):
-    return "IMPACT_BEYOND_STEP" if value > call[-1] else None
+    return "IMPACT_BEYOND_STEP" if value > call[-1] and not _overlap(call) else None
+
+
+def _overlap(call):
+    """Whether two spheres overlap at the start."""
+    x = call[3] - call[0]
+    return float(np.sqrt(x @ x)) < call[2] + call[5]
 
 
 def _apart(call, t):
@@ -339,10 +363,18 @@ def _coarse(calls, values, truth):
     near = all(abs(value - right) <= 0.05 * dt for right, value, dt in found)
     if len(found) == sum(right is not None for right, _, _ in pairs):
         return "MOMENT_TOO_COARSE" if near else None
-    # A search in steps finds the others a little late.
+    # A search in steps finds the others a little late, at an instant that it looks at.
     late = all(value >= right - 1e-9 for right, value, _ in found)
-    rough = not all(_same(right, value) for right, value, _ in found)
-    return "TUNNELS" if near and late and rough else "CONTACTS_MISSED"
+    rough = [(value, dt) for right, value, dt in found if not _same(right, value)]
+    return "TUNNELS" if near and late and rough and _sampled(rough) else "CONTACTS_MISSED"
+
+
+def _sampled(found):
+    """Whether times, each with its dt, are whole parts of dt, or of a second, as those of samples are."""
+    parts = [[value / dt for value, dt in found], [value for value, _ in found]]
+    return any(
+        all(abs(part - Fraction(part).limit_denominator(_SAMPLES)) < 1e-9 for part in each) for each in parts
+    )
 
 
 @np.errstate(all="ignore")

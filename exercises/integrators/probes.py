@@ -298,7 +298,11 @@ def _histories(q, v, states):
     ]
     # Positions that are all zero may have been left out as well as cut off.
     seen = whole[0] and (whole[1] or np.any(q)) and not np.array_equal(q, np.broadcast_to(q[0], q.shape))
-    return "INTEGER_STATE" if seen and not np.array_equal(q_true, np.trunc(q_true)) else None
+    if not seen or np.array_equal(q_true, np.trunc(q_true)):
+        return None
+    # From whole numbers the first step is right but for its fractions.
+    from_whole = all(np.array_equal(true[0], np.trunc(true[0])) for true in states)
+    return None if from_whole and not np.array_equal(q[1], np.trunc(q_true[1])) else "INTEGER_STATE"
 
 
 def _first_row(t, q, v, h, states):

@@ -386,7 +386,7 @@ def test_integrate_arguments(submission):
         not np.array_equal(q, np.trunc(q)),
         "From an initial state of whole numbers, integrate produces whole numbers only.",
         input=given,
-        diagnose=lambda: probes.of_whole_rows(q),
+        diagnose=lambda: probes.of_whole_rows(submission, args, q),
     )
     cases.expect_start_kept(submission, args, inspected, given)
 

@@ -143,6 +143,8 @@ def _mixes_arguments(submission, task):
 def _remembers(submission, task):
     """Whether the same call gives something else after a call of another kind."""
     first = _generic(submission, task)
+    if not _equal(first, _generic(submission, task)):
+        return False  # by chance, perhaps
     submission.call(task, Oscillator(1.3), _T + 1.0, -_V, _Q, _H)
     return not _equal(first, _generic(submission, task))
 
@@ -274,9 +276,14 @@ def of_whole_start(submission, args):
     return named("INTEGER_STATE") if works else None
 
 
-def of_whole_rows(q):
+def of_whole_rows(submission, args, q):
     """What positions show that are whole numbers throughout, where true ones are not."""
-    return None if np.array_equal(q, np.broadcast_to(q[0], q.shape)) else named("INTEGER_STATE")
+    step, accel, q0, v0, *rest = args
+    _, same, _ = kit.as_tuple(
+        submission.call("integrate", step, accel, q0.astype(float), v0.astype(float), *rest), "tqv"
+    )
+    stands = np.array_equal(q, np.broadcast_to(q[0], q.shape))
+    return None if stands or np.array_equal(kit.as_array(same, q.shape), q) else named("INTEGER_STATE")
 
 
 def of_rows(t, q, v, h, states):
@@ -297,7 +304,8 @@ def _histories(q, v, states):
         for a, b in ((q, q_true), (v, v_true))
     ]
     # Positions that are all zero may have been left out as well as cut off.
-    seen = whole[0] and (whole[1] or np.any(q)) and not np.array_equal(q, np.broadcast_to(q[0], q.shape))
+    moves = [not np.array_equal(a, np.broadcast_to(a[0], a.shape)) for a in (q, v)]
+    seen = whole[0] and (whole[1] or np.any(q)) and (moves[0] or (whole[1] and moves[1]))
     if not seen or np.array_equal(q_true, np.trunc(q_true)):
         return None
     # From whole numbers the first step is right but for its fractions.

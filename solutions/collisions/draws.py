@@ -122,6 +122,13 @@ def passing(rng, d, share):
     return xa, drift + speed * n, ra, xb, drift, rb, float(dt)
 
 
+def late(rng):
+    """A pair that meets head on in the last hundredth of the step."""
+    xa, va, ra, xb, vb, rb, _ = passing(rng, 3, 0.0)
+    meets = (float(np.linalg.norm(xb - xa)) - ra - rb) / float(np.linalg.norm(va - vb))
+    return xa, va, ra, xb, vb, rb, meets * float(rng.uniform(1.001, 1.01))
+
+
 def overlap(rng, approach):
     """Two spheres that overlap, approaching or parting."""
     n = unit(rng, 3)
@@ -422,7 +429,7 @@ PUBLIC = {
     "friction_absent": _no_friction,
     "friction_walls": lambda rng: [wall(friction(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))],
     "moment_of_contact": lambda rng: [
-        passing(rng, 3, 0.05),
+        late(rng),
         shot(rng, 300.0),
         passing(rng, 3, 0.6),
         passing(rng, 2, 0.4),

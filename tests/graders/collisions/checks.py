@@ -247,7 +247,7 @@ def test_moment_any_speed(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
-        [draws.shot(rng, 10.0**power) for power in (*np.linspace(0.0, 5.0, 11), -2.4)],
+        [*(draws.shot(rng, 10.0**power) for power in (*np.linspace(0.0, 5.0, 11), -2.4)), draws.late(rng)],
         "A contact is missed or comes at the wrong time.",
         "Do not sample the step: solve the quadratic for the first moment of contact.",
     )

@@ -330,9 +330,13 @@ def test_a_constant_none_is_told_from_tunnelling():
 def test_a_search_in_small_steps_is_told_from_a_missed_contact():
     calls = [draws.passing(np.random.default_rng(seed), 3, 0.3) for seed in range(4)]
     truth = [formulas.RIGHT["time_of_impact"](*call) for call in calls]
-    rough = [t + 1e-3 for t in truth]
+    rough = [0.01 * math.ceil(t / 0.01) for t in truth]
     assert said("time_of_impact", calls, rough) == "MOMENT_TOO_COARSE"
     assert said("time_of_impact", calls, [None, *rough[1:]]) == "TUNNELS"
+    # Spheres that are taken for smaller ones meet late, too.
+    assert (
+        said("time_of_impact", calls, [None, *(t + 1.234567891e-3 for t in truth[1:])]) == "CONTACTS_MISSED"
+    )
 
 
 def test_contacts_that_are_missed_beside_exact_ones_are_not_laid_to_a_search():

@@ -24,6 +24,9 @@ class Fake:
     def call(self, name, *args):
         return self._functions[name](*args)
 
+    def call_each(self, name, calls):
+        return [self.call(name, *args) for args in calls]
+
     def march(self, name, system, q0, v0, h, n, t0=0.0):
         q, v = [np.array(q0, float)], [np.array(v0, float)]
         for i in range(n):
@@ -152,6 +155,79 @@ def test_a_limit_is_too_late_too_early_or_nearly_right():
     sides = {1.9: "SEARCH_TOO_COARSE", 3.0: "LIMIT_TOO_LATE", 1.2: "LIMIT_TOO_EARLY"}
     assert {z: probes._beside(z, 2.0) for z in sides} == sides
     assert probes._beside(1.0, 0.0) == "NO_ZERO"
+    assert probes._beside(-1.0, 0.0) is None
+    assert probes._beside(0.0, 0.2) == "LIMIT_TOO_EARLY"  # none of it is nearly all of it
+
+
+def test_a_power_of_the_step_is_told_from_wrong_weights():
+    step = formulas._runge_kutta(size=lambda h: h * h)
+    assert probes.of_step(Fake(rk4_step=step), "rk4_step").code == "POWER_OF_STEP_WRONG"
+
+
+def test_one_acceleration_for_all_is_told_from_frozen_times():
+    def verlet(accel, t, q, v, h):
+        a = np.asarray(accel(t, q, v))
+        return q + h * v + h * h / 6 * a, v + h * a
+
+    assert probes.of_step(Fake(velocity_verlet_step=verlet), "velocity_verlet_step").code == "ORDER_TOO_LOW"
+
+
+def test_chance_is_told_from_memory():
+    rng = np.random.default_rng(0)
+
+    def euler(accel, t, q, v, h):
+        return q + h * v * rng.uniform(0.5, 1.5), v + h * np.asarray(accel(t, q, v))
+
+    found = probes.of_step(Fake(explicit_euler_step=euler), "explicit_euler_step")
+    assert found is None or found.code != "STALE_CACHE"
+
+
+def test_a_time_for_each_coordinate_is_in_its_place():
+    def euler(accel, t, q, v, h):
+        return q + h * v, v + h * h * np.asarray(accel(t * np.ones_like(q), q, v))
+
+    assert not probes._mixes_arguments(Fake(explicit_euler_step=euler), "explicit_euler_step")
+
+
+def _loop(told, carries=True):
+    """A loop that tells its step the time ``told(i, h)``."""
+
+    def integrate(step, accel, q0, v0, t_end, h):
+        n = round(t_end / h)
+        q, v = [np.array(q0, dtype=float)], [np.array(v0, dtype=float)]
+        for i in range(n):
+            q_next, v_next = step(accel, told(i, h), q[-1 if carries else 0], v[-1 if carries else 0], h)
+            q.append(q_next)
+            v.append(v_next)
+        return h * np.arange(n + 1), np.array(q), np.array(v)
+
+    return integrate
+
+
+@pytest.mark.parametrize(
+    ("code", "told", "carries"),
+    [
+        ("TIME_NOT_PASSED", lambda i, h: 0.0, True),
+        ("TIME_AHEAD", lambda i, h: (i + 1) * h, True),
+        ("STATE_NOT_CARRIED", lambda i, h: i * h, False),
+        (None, lambda i, h: h if i else 0.0, True),
+    ],
+)
+def test_times_are_told_from_states_that_are_not_carried(code, told, carries):
+    n, h, clock = 5, 0.2, systems.LinearStep([1.0], [0.0], [0.0], [1.0], clock=2.0)
+    fake = Fake(integrate=_loop(told, carries))
+    _, q, _ = fake.call("integrate", clock, systems.Oscillator(1.7), [0.5], [0.0], n * h, h)
+    found = probes.of_times(fake, np.diff(q[:, 0]) / (2.0 * h), h)
+    assert (found and found.code) == code
+
+
+def test_a_numpy_error_is_no_refusal_of_a_duration():
+    def integrate(step, accel, q0, v0, t_end, h):
+        raise kit.StudentFailure("error", type="ValueError")
+
+    raising = Fake(integrate=integrate)
+    assert probes.of_refusal(raising, np.ones(1), np.ones(1), 0.29) is None
+    assert probes.of_whole_start(raising, [None, None, np.array([1]), np.array([1]), 1.0, 0.25]) is None
 
 
 def test_a_step_that_asks_at_no_time_of_its_own_is_recognised():
@@ -167,8 +243,17 @@ def test_the_rule_behind_a_wrong_number_of_samples_is_recognised(code, count):
         n = count(t_end, h)
         return [h * np.arange(n + 1), np.zeros((n + 1, 1)), np.zeros((n + 1, 1))]
 
-    found = probes.of_count(Fake(integrate=integrate))
+    found = probes.of_count(Fake(integrate=integrate), 29, 0.01)
     assert (found and found.code) == code
+
+
+def test_a_count_is_called_not_rounded_only_where_something_is_rounded():
+    def integrate(step, accel, q0, v0, t_end, h):
+        n = max(1, round(t_end / h))
+        return [h * np.arange(n + 1), np.zeros((n + 1, 1)), np.zeros((n + 1, 1))]
+
+    found = [probes.of_count(Fake(integrate=integrate), n, h) for n, h in ((0, 0.1), (8, 0.25), (8, 0.1))]
+    assert [one and one.code for one in found] == [None, None, "COUNT_NOT_ROUNDED"]
 
 
 SAMPLES = np.arange(6.0)
@@ -194,6 +279,8 @@ def _without(rows, value=0.0):
         ("INITIAL_STATE_WRONG", lambda q, v: (q, -v)),
         ("INTEGER_STATE", lambda q, v: (np.trunc(q), np.trunc(v))),
         ("STATE_NOT_CARRIED", lambda q, v: (q[[0, 1, 1, 1, 1, 1]], v[[0, 1, 1, 1, 1, 1]])),
+        ("PATH_STANDS_STILL", lambda q, v: (q[[0] * 6], v[[0] * 6])),
+        (None, lambda q, v: (q[[0, 5, 5, 5, 5, 5]], v[[0, 5, 5, 5, 5, 5]])),
         (None, lambda q, v: (q, v)),
     ],
 )
@@ -216,20 +303,28 @@ def test_times_that_begin_late_beside_the_right_states_are_told_from_a_missing_s
 
 HS = np.array([0.2, 0.11, 0.04, 0.03])
 ERRORS = np.array([0.9, 0.31, 0.04, 0.015])
-X, Y = np.log(HS), np.log(ERRORS)
+
+
+def slope(x, y):
+    return np.polyfit(x, y, 1)[0]
 
 
 @pytest.mark.parametrize(
-    ("code", "value"),
+    ("code", "wrong"),
     [
-        ("ORDER_SIGN_FLIPPED", -np.polyfit(X, Y, 1)[0]),
-        ("ORDER_ROUNDED", float(round(np.polyfit(X, Y, 1)[0]))),
-        (None, 1.234),
-        (None, math.nan),
+        ("ORDER_SIGN_FLIPPED", lambda x, y: -slope(x, y)),
+        ("ORDER_SIGN_FLIPPED", lambda x, y: slope(x, y[::-1])),
+        ("ORDER_NEGATIVE", lambda x, y: slope(x, y) - 5),
+        ("ORDER_ROUNDED", lambda x, y: float(round(slope(x, y)))),
+        ("ORDER_ROUNDED", lambda x, y: float(math.ceil(slope(x, y)))),
+        (None, lambda x, y: 2.0),
+        (None, lambda x, y: 1.234),
+        (None, lambda x, y: math.nan),
     ],
 )
-def test_a_wrong_slope_shows_what_it_shows(code, value):
-    found = probes.of_order(float(value), HS, ERRORS)
+def test_a_wrong_slope_shows_what_it_shows(code, wrong):
+    fake = Fake(observed_order=lambda hs, errors: float(wrong(np.log(hs), np.log(errors))))
+    found = probes.of_order(fake, fake.call("observed_order", HS, ERRORS), HS, ERRORS)
     assert (found and found.code) == code
 
 
@@ -259,6 +354,7 @@ CALM = systems.LinearStep([0.5], [0.1], [0.0], [0.4])
         ("NO_ZERO", search(RADIUS, zero=0.05), EULER, 0.0),
         ("NO_INFINITY", search(RADIUS, infinity=10.0), CALM, math.inf),
         ("SEARCH_TOO_COARSE", search(RADIUS, dz=0.5), SHEARED, 2.0),
+        ("LIMIT_TOO_EARLY", search(lambda m: abs(m).sum(axis=(-1, -2))), SHEARED, 2.0),
     ],
 )
 def test_a_wrong_stability_search_is_recognised(code, function, step, limit):

@@ -1,0 +1,14 @@
+"""Each step writes its result into all later rows."""
+
+
+def integrate(step, accel, q0, v0, t_end, h):
+    n = round(t_end / h)
+    if abs(t_end / h - n) > 1e-6:
+        raise ValueError
+    t = h * np.arange(n + 1)
+    q = np.empty((n + 1, len(q0)))
+    v = np.empty((n + 1, len(v0)))
+    q[0], v[0] = q0, v0
+    for i in range(n):
+        q[1:], v[1:] = step(accel, t[i], q[i], v[i], h)
+    return t, q, v

@@ -369,3 +369,100 @@ def test_a_ball_that_stays_on_the_floor_it_is_thrown_from_is_told_so():
     still = np.full(51, 0.2), np.concatenate([[2.5], np.zeros(50)])
     truth = motions.bounces(scene, 0.51, h)
     assert tracks.of_drop(scene, truth, t, *still, h).code == "LAUNCH_IGNORED"
+
+
+def test_friction_where_none_belongs_is_too_strong_and_not_askew():
+    call = (1.0, 2.0, *map(np.array, ([3.0, 1.0, 0.0], [0.0, 0.0, 2.0], [1.0, 0.0, 0.0])), 0.5, 0.0)
+    value = formulas.RIGHT["resolve_with_friction"](*call[:-1], 0.1)
+    assert said("resolve_with_friction", [call], [value]) == "FRICTION_TOO_STRONG"
+    turned = value[0], value[1] + np.array([0.0, 0.1, 0.3])
+    assert (
+        probes._rubs([call], [turned], [formulas.RIGHT["resolve_with_friction"](*call)]) == "FRICTION_ASKEW"
+    )
+
+
+def test_walls_are_called_smooth_only_if_all_are():
+    rng = np.random.default_rng(1)
+    calls = [draws.wall(draws.friction(rng, 3, 0.6), side) for side in (0, 1)]
+    truth = [formulas.RIGHT["resolve_with_friction"](*call) for call in calls]
+    smooth = [formulas.RIGHT["resolve"](*call[:-1]) for call in calls]
+    assert said("resolve_with_friction", calls, smooth) == "WALLS_SMOOTH"
+    assert said("resolve_with_friction", calls, [smooth[0], truth[1]]) != "WALLS_SMOOTH"
+
+
+def test_of_nan_only_its_place_is_told():
+    rng = np.random.default_rng(2)
+    apart = draws.spheres(rng, 3, 0.8)
+    nan = (True, np.full(3, np.nan), 0.1)
+    assert said("detect_sphere_sphere", [apart], [nan]) != "NORMAL_UNDEFINED"
+    sliding = draws.friction(rng, 3, 0.6)
+    spoilt = np.full(3, np.nan), np.full(3, np.nan)
+    assert said("resolve_with_friction", [sliding], [spoilt]) != "NO_SLIDING_NAN"
+    meets = draws.passing(rng, 3, 0.5)
+    xa, va, ra, xb, vb, rb, dt = meets
+    parting, passing = (xa, vb, ra, xb, va, rb, dt), draws.passing(rng, 3, 1.6)
+    assert said("time_of_impact", [parting], [math.nan]) == "MISS_IS_A_NUMBER"
+    assert said("time_of_impact", [passing], [math.nan]) == "ROOT_OF_A_NEGATIVE"
+
+
+def test_an_overlap_is_no_miss():
+    parting = draws.overlap(np.random.default_rng(3), False)
+    assert said("time_of_impact", [parting], [0.0]) == "OVERLAP_ALWAYS_HITS"
+    assert said("time_of_impact", [parting], [parting[-1]]) is None
+
+
+def head_on_path(h=0.05):
+    scene = paths.HeadOn((1.0, 2.0), (-1.0, 0.93), (2.0, -1.5), 0.25, 0.5)
+    t = h * np.arange(30)
+    return scene, t, *path(scene, t)
+
+
+def test_velocities_that_are_late_are_told_from_differences_of_positions():
+    scene, t, x, v = head_on_path()
+    truth = motions.meeting(scene)
+    k = int(np.searchsorted(t, truth.contact))
+    late = v.copy()
+    late[k] = scene.v0
+    apart = np.vstack([scene.v0, np.diff(x, axis=0) / 0.05])
+    codes = [tracks.of_head_on(scene, truth, t, x, other, 0.05).code for other in (late, apart)]
+    assert codes == ["VELOCITIES_LATE", "VELOCITIES_APART"]
+
+
+def test_a_path_in_single_precision_is_told_so():
+    scene, t, x, v = head_on_path()
+    rough = (a.astype(np.float32).astype(float) for a in (x, v))
+    assert tracks.of_head_on(scene, motions.meeting(scene), t, *rough, 0.05).code == "PRECISION_LOST"
+    rough = np.float32(0.01) * np.arange(200)
+    assert tracks.of_times(rough.astype(float), 0.01).code == "PRECISION_LOST"
+
+
+def test_a_ball_that_loses_nothing_does_not_tell_a_wrong_time_from_another_floor():
+    for e, code in ((1.0, None), (0.7, "TIME_LEFT_WRONG")):
+        scene, h = paths.Drop(1.0, 0.0, 0.1, e), 0.01
+        truth = motions.bounces(scene, 1.0, h)
+        t = h * np.arange(90)
+        # From the first contact on it is a millisecond ahead.
+        z, v = (
+            np.where(t < truth.times[0], *both)
+            for both in zip(
+                scene.at(t, truth.times, truth.speeds),
+                scene.at(t + 1e-3, truth.times, truth.speeds),
+                strict=True,
+            )
+        )
+        found = tracks.of_drop(scene, truth, t, z, v, h)
+        assert (found and found.code) == code
+
+
+def test_velocities_that_count_downwards_are_told_from_a_wrong_flight():
+    scene, h = paths.Drop(1.0, 0.0, 0.1, 0.7), 0.01
+    truth = motions.bounces(scene, 1.0, h)
+    t = h * np.arange(90)
+    z, v = scene.at(t, truth.times, truth.speeds)
+    assert tracks.of_drop(scene, truth, t, z, -v, h).code == "VELOCITIES_APART"
+    assert tracks.of_drop(scene, truth, t, z + 1e-3 * np.sin(t), v, h).code == "FLIGHT_WRONG"
+    # It slides along the floor, and gravity goes on.
+    sliding = np.maximum(scene.z0 - scene.g * t**2 / 2, scene.radius), -scene.g * t
+    elastic = paths.Drop(1.0, 0.0, 0.1, 1.0)
+    found = tracks.of_drop(elastic, motions.bounces(elastic, 1.0, h), t, *sliding, h)
+    assert found is None or found.code != "SPEED_AT_STEP_END"

@@ -21,7 +21,15 @@ _TURN = LinearStep([0.9], [0.35, 0.04], [-0.4], [0.85, -0.03], clock=0.3)
 def _loops():
     """Durations: exact ones, quotients just beside a whole number, sums of h that fall short, none."""
     starts = np.array([1.0, -0.5]), np.array([0.5, 2.0])
-    for t_end, h in ((2.0, 0.25), (0.29, 0.01), (0.8, 0.1), (1.1, 0.1), (0.063, 0.009), (0.0, 0.1)):
+    for t_end, h in (
+        (2.0, 0.25),
+        (0.29, 0.01),
+        (0.8, 0.1),
+        (1.1, 0.1),
+        (0.063, 0.009),
+        (0.6, 0.1),
+        (0.0, 0.1),
+    ):
         yield (_TURN, Oscillator(1.7), *starts, t_end, h)
     yield (_TURN, Oscillator(1.7), np.array([2, -1]), np.array([1, 3]), 1.0, 0.25)
     yield (_TURN, Oscillator(1.7), *starts, 1.1, 0.2)

@@ -54,6 +54,14 @@ def _running(t_end, h, overshoot=False):
     return n
 
 
+def _running_short(t_end, h):
+    """Steps that end at t_end or before it, by a running sum."""
+    t, n = 0.0, 0
+    while t + h <= t_end:
+        t, n = t + h, n + 1
+    return n
+
+
 def _loop(
     count=lambda t_end, h: round(t_end / h),
     refuses=lambda x: abs(x - round(x)) > 1e-6,
@@ -105,6 +113,7 @@ _LOOP = {
         ("TRUNCATED_AND_SHORT", lambda t_end, h: int(t_end / h) - 1),
         ("TRUNCATED_AND_SHORT", lambda t_end, h: int(t_end // h) - 1),
         ("TIME_ACCUMULATES", _running),
+        ("TIME_ACCUMULATES", _running_short),
         ("TIME_ACCUMULATES", lambda t_end, h: _running(t_end, h, overshoot=True)),
         ("TIME_ACCUMULATES", lambda t_end, h: len(np.arange(0, t_end + h, h)) - 1),
         ("TIME_ACCUMULATES", lambda t_end, h: len(np.arange(0, t_end, h)) - 1),

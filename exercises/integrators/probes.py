@@ -141,16 +141,10 @@ def _mixes_arguments(submission, task):
 
 
 def _remembers(submission, task):
-    """Whether a call gives something else after another call, and the same after the same other call."""
-
-    def after_another():
-        submission.call(task, Oscillator(1.3), _T + 1.0, -_V, _Q, _H)
-        return _generic(submission, task)
-
-    first, after, again = _generic(submission, task), after_another(), _generic(submission, task)
-    if _equal(first, after) and _equal(after, again):
-        return False
-    return _equal(after, after_another())  # otherwise it may be chance
+    """Whether the same call gives something else after a call of another kind."""
+    first = _generic(submission, task)
+    submission.call(task, Oscillator(1.3), _T + 1.0, -_V, _Q, _H)
+    return not _equal(first, _generic(submission, task))
 
 
 def of_energy(submission, task, change, expected, run=None):

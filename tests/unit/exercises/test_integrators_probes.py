@@ -172,16 +172,6 @@ def test_one_acceleration_for_all_is_told_from_frozen_times():
     assert probes.of_step(Fake(velocity_verlet_step=verlet), "velocity_verlet_step").code == "ORDER_TOO_LOW"
 
 
-def test_chance_is_told_from_memory():
-    rng = np.random.default_rng(0)
-
-    def euler(accel, t, q, v, h):
-        return q + h * v * rng.uniform(0.5, 1.5), v + h * np.asarray(accel(t, q, v))
-
-    found = probes.of_step(Fake(explicit_euler_step=euler), "explicit_euler_step")
-    assert found is None or found.code != "STALE_CACHE"
-
-
 def test_a_time_for_each_coordinate_is_in_its_place():
     def euler(accel, t, q, v, h):
         return q + h * v, v + h * h * np.asarray(accel(t * np.ones_like(q), q, v))

@@ -140,7 +140,9 @@ def _numbers(key, known, ends):
     cases = known + ends if key in _OF_ENDS else known
     numbers = [-4e3 if _raised(case) else _number(key, case.measured(key)) for case in cases]
     if key == "symplectic":
-        numbers.append(float(min(map(_columns_at_one_half, cases))))
+        numbers += [float(min(map(_columns_at_one_half, cases))), float(any(map(_tiny_single_step, cases)))]
+    if key == "linear_damping":
+        numbers.append(float(any(map(_short_free_steps, cases))))
     if key in _AT_DT:
         numbers.append(float(all(_at_dt(key, case) for case in cases)))
     if key == "deterministic":
@@ -170,6 +172,18 @@ def _columns_at_one_half(case):
         if scene == "spring" and n == 1 and math.isclose(h * case.box.omega, 0.5, rel_tol=1e-6)
     }
     return min(2, len(starts))
+
+
+def _tiny_single_step(case):
+    """Whether a single step of the spring was far smaller than asked for."""
+    return any(
+        scene == "spring" and n == 1 and h * case.box.omega < 0.04 for scene, _, _, h, n, _ in case.runs
+    )
+
+
+def _short_free_steps(case):
+    """Whether a free body was run with steps that are short enough."""
+    return any(scene == "free" and h < 0.09 * case.box.dt for scene, _, _, h, _, _ in case.runs)
 
 
 #: Which runs were made for a key that is defined at dt: (scene, whether a run counts).

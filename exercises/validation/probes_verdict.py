@@ -67,16 +67,20 @@ class Facts:
 
 def of_used(used, report, sim, real, right):
     """Why the wrong runs are listed: they were used, too, or the numbers are those of the right ones."""
-    if right.numbers is not None and any(_close(report, right.numbers)):
+    if right.numbers is not None and any(_close(report, {key: right.numbers[key] for key in _EXACT})):
         return named("OTHER_RUNS_LISTED")
     fitted = set(sim["calibrated_on"])
     looks = any(any(_close(report, _numbers(sim, real, ids))) for ids in (set(used), fitted))
     return named("CALIBRATION_RUNS_SCORED") if looks and set(used) & fitted else None
 
 
+#: The numbers that hardly come out right by chance.
+_EXACT = ("rmse", "bias")
+
+
 def _close(report, numbers):
     """Whether each of a report's numbers is one of these, whatever its sign; none where it is none at all."""
-    for key in numbers.keys() & set(NUMBERS):
+    for key in numbers:
         value = kit.attempt(lambda key=key: kit.as_number(report[key], key))
         yield value is not None and math.isclose(abs(value), abs(numbers[key]), rel_tol=1e-6)
 
@@ -146,8 +150,8 @@ def _mirrored(value, right):
     for step in right.steps:
         whole = step * round(late / step)
         apart = (value - late) / step
-        if round(apart) and abs(apart - round(apart)) < 0.1:
-            continue  # it is off by whole samples
+        if round(apart) and abs(apart - round(apart)) < 0.03:
+            continue  # it is off by whole samples, to what a search finds
         if abs(late - whole) > 0.15 * step and abs(value + late - 2 * whole) < 0.05 * step:
             return True
     return False

@@ -211,7 +211,7 @@ def test_contact_force_shifted(submission, rng):
         late = rng.choice([-1, 1]) * rng.uniform(15, 30) * dt
         length, size = rng.uniform(35, 55) * dt, rng.uniform(low, high) * peak
         sim = shared.pulse(t, 70 * dt + late, length, size, rises[1])
-        pairs += [(sim, real, dt), (sim, real + shared.pulse(t, 140 * dt, 55 * dt, 0.06 * peak), dt)]
+        pairs += [(sim, real, dt), (sim, real + shared.pulse(t, 140 * dt, 56 * dt, 0.06 * peak), dt)]
     shared.expect_forces(submission, pairs)
 
 

@@ -143,6 +143,8 @@ def _numbers(key, known, ends):
     numbers = [-4e3 if _raised(case) else _number(key, case.measured(key)) for case in cases]
     if key == "symplectic":
         numbers += [float(min(map(_columns_at_one_half, cases))), float(any(map(_tiny_single_step, cases)))]
+    if key == "rest_penetration":
+        numbers.append(float(any(map(_pushed_upright, cases))))
     if key == "linear_damping":
         numbers.append(float(any(map(_short_free_steps, cases))))
     if key in _AT_DT:
@@ -181,6 +183,11 @@ def _tiny_single_step(case):
     return any(
         scene == "spring" and n == 1 and h * case.box.omega < 0.04 for scene, _, _, h, n, _ in case.runs
     )
+
+
+def _pushed_upright(case):
+    """Whether a body on the floor was pushed up or down, and not sideways."""
+    return any(scene == "floor" and force[2] and not any(force[:2]) for scene, *_, force in case.runs)
 
 
 def _short_free_steps(case):

@@ -7,6 +7,7 @@ submission, and what came back, be it a report or a failure, is kept for the che
 from __future__ import annotations
 
 import itertools
+import math
 import weakref
 from dataclasses import dataclass, field
 from typing import Any
@@ -46,6 +47,7 @@ class Case:
         box: the engine itself.
         truth: the right report.
         runs: arguments of every run it was asked for.
+        through: speeds of shots from the README's starts that ended behind the wall.
         report: what ``characterise`` returned, once it has.
         failure: why there is no report.
     """
@@ -54,6 +56,7 @@ class Case:
     box: Any
     truth: dict[str, Any]
     runs: list[tuple[Any, ...]] = field(default_factory=list)
+    through: list[float] = field(default_factory=list)
     report: Any = None
     failure: Exception | None = None
 
@@ -142,10 +145,28 @@ def engine(case: Case) -> Any:
             )
         if len(case.runs) < MOST_NOTED:
             scene, q0, v0, h, n, force = values
-            case.runs.append((scene, _numbers(q0), _numbers(v0), float(h), int(n), _numbers(force)))
+            run = (scene, _numbers(q0), _numbers(v0), float(h), int(n), _numbers(force))
+            case.runs.append(run)
+            if _is_shot(run, case.box.dt) and answer[0][-1][0] > 0:
+                case.through.append(run[2][0])
         return answer
 
     return kit.black_box(info=info, run=run)
+
+
+def _is_shot(run: tuple[Any, ...], dt: float) -> bool:
+    """Whether a run shoots a body at the wall as the README says."""
+    scene, q0, v0, h, _, force = run
+    if scene != "wall" or any(force) or not math.isclose(h, dt, rel_tol=1e-6):
+        return False
+    return -1 - 1.001 * v0[0] * dt <= q0[0] <= -1
+
+
+def unsafe(case: Case) -> bool:
+    """Whether a body was seen to get through at a speed well below the largest safe one of the report."""
+    value = case.measured("tunnelling_speed")
+    number = isinstance(value, int | float | np.number) and math.isfinite(value)
+    return number and any(speed < 0.97 * value for speed in case.through)
 
 
 _NAMES = ("scene", "q0", "v0", "h", "n", "force")
@@ -161,15 +182,15 @@ def _in_order(args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
 
 
 def repeated(case: Case) -> int:
-    """How a run was made twice in a row, as to compare: 0 not at all, 1 with nothing that moves, 2 moving."""
+    """How a run was made twice in a row, as to compare: 0 not at all, 1 all of it zeros, 2 with numbers that
+    jitter would change."""
     pairs = itertools.pairwise(case.runs)
-    return max((2 if _moves(run) else 1 for run, again in pairs if run == again), default=0)
+    return max((2 if _shows(run) else 1 for run, again in pairs if run == again), default=0)
 
 
-def _moves(run: tuple[Any, ...]) -> bool:
+def _shows(run: tuple[Any, ...]) -> bool:
     scene, q0, v0, _, n, force = run
-    pulled = scene == "floor" or (scene == "spring" and any(q0))
-    return n > 0 and (any(v0) or any(force) or pulled)
+    return n > 0 and (scene == "floor" or any(q0) or any(v0) or any(force))
 
 
 def _numbers(values: Any) -> tuple[float, ...]:

@@ -66,8 +66,9 @@ def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:
 
 
 def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers: list[Any]) -> Any:
-    """Whether the choices follow the names or the order, rather than what was measured."""
+    """Whether the choices follow chance, the names or the order, rather than what was measured."""
     others = (
+        *[("ANSWERS_VARY", lambda reports, needs: ((reports, needs), {}))] * 2,
         ("DEPENDS_ON_NAMES", _renamed),
         ("DEPENDS_ON_NAMES", _with_known_names),
         ("DEPENDS_ON_ORDER", _reversed),
@@ -81,12 +82,20 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
         back = [_back(answer, names) for answer, (_, names) in zip(found, told, strict=True)]
         if back != [_back(answer, {}) for answer in answers]:
             return named(code)
-    if all(answer is None for answer in answers):
+    if all(answer is None for answer in answers) and _never_chooses(submission):
         return named("NEVER_CHOOSES")
     wrong = [
         expected for (_, _, expected), answer in zip(questions, answers, strict=True) if answer != expected
     ]
     return named("NOTHING_FITS") if all(expected is None for expected in wrong) else None
+
+
+def _never_chooses(submission: Any) -> bool:
+    """Whether nothing is chosen either where both of two engines fit, by each operator and without any."""
+    reports = {"kifo": {"order": 2, "cost": 1.0}, "zaru": {"order": 2, "cost": 2.0}}
+    needs = [[{"key": "order", "op": op, "value": 2}] for op in ("<=", ">=", "==")]
+    told = kit.attempt(lambda: submission.call_each(TASK, [(reports, need) for need in ([], *needs)]))
+    return told is not None and all(answer is None for answer in told)
 
 
 def _back(answer: Any, names: dict[str, str]) -> str:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     Probe = Callable[[str, list[Any]], bool]
 
+bench = kit.companion("engine-comparison", "bench")
 probing = kit.companion("engine-comparison", "probing")
 
 # -- floor and wall ---------------------------------------------------------------------------------------
@@ -43,6 +44,22 @@ def _pushed_softly(_: str, cases: list[Any]) -> bool:
 def _pushed_seldom(_: str, cases: list[Any]) -> bool:
     """Too few pushes for two forces between 0 and 5 mu m g to 3 %: that takes seven halvings each."""
     return all(0 < len(set(_pushes(case))) < 14 for case in cases)
+
+
+def _pushed_less(key: str, cases: list[Any]) -> bool:
+    """In each direction the last pushes of engines with a wrong ratio were weaker than slides them."""
+
+    def looks(case: Any) -> bool:
+        last = {}
+        for *_, force in case.runs:
+            if len(force) == 3 and any(force[:2]):
+                x, y = abs(force[0]), abs(force[1])
+                last[min(x, y) > 0.5 * max(x, y)] = math.hypot(x, y)
+        straight = case.box.mu * case.box.grip * case.box.mass * case.box.g
+        needed = {False: straight, True: case.truth[key] * straight}
+        return all(push < 0.9 * needed[diagonal] for diagonal, push in last.items())
+
+    return all(looks(case) for case in cases if not probing.right(key, case))
 
 
 def _seen_moving(key: str, cases: list[Any]) -> bool:
@@ -146,9 +163,14 @@ def _narrow(_: str, cases: list[Any]) -> bool:
 
 
 def _one_start(_: str, cases: list[Any]) -> bool:
-    """Hardly any speed was tried from more than one place."""
+    """Hardly any speed was tried from more than one place, and that place was not looked for beforehand, in
+    the scene "free"."""
+    looked = {(case.name, v0) for case, (_, _, v0, *_) in probing.runs(cases, "free")}
+    shots = {(case.name, run[2]) for case, run in _shots(cases)}
     return (
-        _share_of_speeds(cases, bool) > 0 and _share_of_speeds(cases, lambda places: len(places) > 1) <= 0.2
+        _share_of_speeds(cases, bool) > 0
+        and _share_of_speeds(cases, lambda places: len(places) > 1) <= 0.2
+        and len(shots & looked) < 0.5 * len(shots)
     )
 
 
@@ -189,7 +211,10 @@ PROBES: dict[str, list[tuple[str, Probe]]] = {
         ("PUSHED_TOO_SELDOM", _pushed_seldom),
         (
             "CREEP_TAKEN_FOR_SLIP",
-            probing.where(probing.creeps, lambda value, _: not math.isfinite(value) or 0.9 < value < 1.1),
+            probing.both(
+                probing.where(probing.creeps, lambda value, _: not math.isfinite(value) or 0.9 < value < 1.1),
+                _pushed_less,
+            ),
         ),
         ("NOT_SETTLED", probing.both(probing.where(probing.soft), _pushed_at_once)),
     ],
@@ -215,6 +240,7 @@ PROBES: dict[str, list[tuple[str, Probe]]] = {
             "TUNNEL_NO_INFINITY",
             probing.where(probing.endless("tunnelling_speed"), lambda value, _: value >= 0),
         ),
+        ("TUNNEL_UNSAFE_REPORTED", lambda _, cases: any(map(bench.unsafe, cases))),
         ("TUNNEL_START_ELSEWHERE", _elsewhere),
         ("TUNNEL_RUNS_SHORT", _short_runs),
         ("TUNNEL_ONE_START", probing.both(_too_high(math.inf), _one_start)),

@@ -91,8 +91,8 @@ def spectral_radius(case: Any, z: float) -> float:
     return float(max(abs(np.linalg.eigvals([[a, b * case.box.omega], [c / case.box.omega, d]]))))
 
 
-def determinant(case: Any) -> float:
-    a, b, _, c, d, _ = case.box.matrix(case.box.omega, 0.5 / case.box.omega)
+def determinant(case: Any, z: float = 0.5) -> float:
+    a, b, _, c, d, _ = case.box.matrix(case.box.omega, z / case.box.omega)
     return float(a * d - b * c)
 
 

@@ -75,7 +75,9 @@ KNOWN = {"anvil": boxes.ANVIL, "balsa": boxes.BALSA, "cork": boxes.CORK}
 #: Where the largest stable step is zero, infinite, followed by larger ones that are stable again, or large.
 ENDS = {
     "an engine that is never stable": dataclasses.replace(boxes.BALSA, step=explicit_euler, damping=0.0),
-    "an engine that is never unstable": dataclasses.replace(boxes.BALSA, step=implicit_euler, mass=0.8),
+    "an engine that is never unstable": dataclasses.replace(
+        boxes.BALSA, step=implicit_euler, mass=0.8, damping=2.1
+    ),
     "an engine that is stable again": dataclasses.replace(boxes.ANVIL, step=two_verlet_steps),
     "an engine that is stable again soon": dataclasses.replace(boxes.ANVIL, step=two_euler_steps),
     "an engine of third order": dataclasses.replace(
@@ -140,7 +142,11 @@ def _numbers(key, known, ends):
     cases = known + ends if key in _OF_ENDS else known
     numbers = [-4e3 if _raised(case) else _number(key, case.measured(key)) for case in cases]
     if key == "symplectic":
-        numbers.append(float(min(map(_columns_at_one_half, cases))))
+        numbers += [float(min(map(_columns_at_one_half, cases))), float(any(map(_tiny_single_step, cases)))]
+    if key == "rest_penetration":
+        numbers.append(float(any(map(_pushed_upright, cases))))
+    if key == "linear_damping":
+        numbers.append(float(any(map(_short_free_steps, cases))))
     if key in _AT_DT:
         numbers.append(float(all(_at_dt(key, case) for case in cases)))
     if key == "deterministic":
@@ -170,6 +176,23 @@ def _columns_at_one_half(case):
         if scene == "spring" and n == 1 and math.isclose(h * case.box.omega, 0.5, rel_tol=1e-6)
     }
     return min(2, len(starts))
+
+
+def _tiny_single_step(case):
+    """Whether a single step of the spring was far smaller than asked for."""
+    return any(
+        scene == "spring" and n == 1 and h * case.box.omega < 0.04 for scene, _, _, h, n, _ in case.runs
+    )
+
+
+def _pushed_upright(case):
+    """Whether a body on the floor was pushed up or down, and not sideways."""
+    return any(scene == "floor" and force[2] and not any(force[:2]) for scene, *_, force in case.runs)
+
+
+def _short_free_steps(case):
+    """Whether a free body was run with steps that are short enough."""
+    return any(scene == "free" and h < 0.09 * case.box.dt for scene, _, _, h, _, _ in case.runs)
 
 
 #: Which runs were made for a key that is defined at dt: (scene, whether a run counts).

@@ -169,7 +169,7 @@ def expect_numbers(report, case, right, shown):
         message="`runs_used` does not list the runs that count.",
         help="Use the runs that both lists have, without those on which the simulation was calibrated.",
         input=shown,
-        diagnose=lambda: probes.of_used(used, report, case.sim, right),
+        diagnose=lambda: probes.of_used(used, report, case.sim, case.real, right),
     )
     for key in probes.NUMBERS:
         value = kit.as_number(report[key], key)
@@ -320,13 +320,19 @@ def expect_edges(submission, rng):
         spec = LENIENT | {name: limit}
         report = kit.as_record(submission.call("validate", sim, real, spec), KEYS, "the report")
         shown = {"every error": off, "spec": spec}
+        reasons = reasons_of(report)
+        excluded = reasons == [name.partition("_")[0]]
         kit.expect_equal(
-            reasons_of(report),
+            reasons,
             [],
-            message="An interval that ends exactly on its margin is refused.",
+            message="An interval that ends exactly on its margin is refused."
+            if excluded
+            else "A reason is given although all intervals are inside their margins.",
             help="An end on the margin is inside: refuse where lo < least or hi > most.",
             input=shown,
-            diagnose=named("MARGIN_EXCLUDED"),
+            diagnose=lambda reasons=reasons, excluded=excluded: (
+                named("MARGIN_EXCLUDED") if excluded else probes.of_reasons([(reasons, [])])
+            ),
         )
         expect_accepted(report, True, shown)
 
@@ -367,5 +373,12 @@ def expect_nothing(submission, case, spec, right, shown):
         "only reason is single_run. Then intervals is None, and it is not accepted.",
         input=shown,
         actual=report,
-        diagnose=lambda: named("CALIBRATION_RUNS_SCORED" if used and not single else "NOTHING_LEFT"),
+        diagnose=lambda: named(
+            "CALIBRATION_RUNS_SCORED" if used and not single and _scored(report) else "NOTHING_LEFT"
+        ),
     )
+
+
+def _scored(report):
+    """Whether a report has an rmse."""
+    return kit.attempt(lambda: kit.as_number(report["rmse"], "rmse")) is not None

@@ -160,10 +160,11 @@ def test_energy_error_falling(submission):
 @pytest.mark.task("contact_force_error")
 @pytest.mark.points(3)
 def test_contact_force_late(submission):
-    """An impact that is late, a little too hard and a little too short"""
+    """An impact that is late, a little too hard and a little too short, and one that ends weakly"""
     t = 0.001 * np.arange(61)
-    pair = shared.pulse(t, 0.021, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.02, 80.0, 0.4), 0.001
-    shared.expect_forces(submission, [pair])
+    sim, real = shared.pulse(t, 0.021, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.02, 80.0, 0.4)
+    weak = shared.pulse(t, 0.033, 0.024, 5.0)
+    shared.expect_forces(submission, [(sim, real, 0.001), (sim, real + weak, 0.001)])
 
 
 @pytest.mark.task("cross_validate")

@@ -134,7 +134,7 @@ def expect_normalised(submission, task, err, covariance, names):
     inspected = submission.call_inspect(task, err, covariance)
     value = inspected.value
     expected = np.einsum("ni,nij,nj->n", err, np.linalg.inv(covariance), err)
-    if isinstance(value, int | float) or np.shape(value) == ():
+    if isinstance(value, int | float | np.number) or (isinstance(value, np.ndarray) and value.ndim == 0):
         kit.fail(
             "The result does not have one row per error.",
             help="Return one value per row.",

@@ -7,6 +7,7 @@ Which known wrong formula it is, ``hypotheses.json`` tells. ``probes_verdict.py`
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -40,12 +41,22 @@ def callback(signature, fn):
 
 def of_offset(submission, e):
     """Why a variance is wrong where the mean is much larger than the scatter: it may be right elsewhere."""
-    near = e - np.mean(e) + 0.37  # no whole number, which would hide rounding
-    value = kit.as_tuple(submission.call("bias_variance", near), ("bias", "variance"))[1]
-    off = abs(kit.as_number(value, "variance") / np.var(near) - 1)
-    if off > 1e-5:
-        return None
-    return named("SINGLE_PRECISION" if off > 1e-10 else "CANCELLATION")
+    e = e - np.mean(e)
+    # No whole number, which would hide rounding; and where a single digit after the sixth says nothing.
+    near, small, far = _offs(submission, [e + 0.37, 1e-4 * (e + 0.37), e + 1e5 / 3])
+    if 1e-10 < max(near) < 1e-5 and 1e-10 < max(small) < 1e-5:
+        return named("SINGLE_PRECISION")
+    # One pass loses some six digits of it there, and none of the bias.
+    exact = max(near) < 1e-10 and far[0] < 1e-12
+    return named("CANCELLATION") if exact and 1e-12 < far[1] < 1e-3 else None
+
+
+def _offs(submission, series):
+    """How far bias and variance of each of these are off, relative to the right ones."""
+    for e, value in zip(series, submission.call_each("bias_variance", [(e,) for e in series]), strict=True):
+        pair = kit.as_tuple(value, ("bias", "variance"))
+        bias, variance = (kit.as_number(x, name) for x, name in zip(pair, ("bias", "variance"), strict=True))
+        yield abs(bias / np.mean(e) - 1), abs(variance / np.var(e) - 1)
 
 
 def of_band(submission, setting, ends, right):
@@ -53,10 +64,11 @@ def of_band(submission, setting, ends, right):
 
     setting: (dof, runs, alpha)
     """
-    dof, runs, alpha = setting
-    other = submission.call("consistency_band", dof, runs, alpha / 2)
-    other = kit.attempt(lambda: kit.as_vector(kit.as_tuple(other, ("lo", "hi")), 2, "(lo, hi)"))
-    if other is not None and np.array_equal(other, ends):
+    dof, runs, _ = setting
+    others = submission.call_each("consistency_band", [(dof, runs, level) for level in (0.01, 0.08, 0.2)])
+    if all(
+        kit.attempt(lambda other=other: np.array_equal(kit.as_vector(other, 2), ends)) for other in others
+    ):
         return named("ALPHA_IGNORED")
     # That of a chi-square lies higher by far more than rounding: (2/9 z² - 2/3)/runs and the like.
     if abs(sum(ends) / 2 - dof) < 1e-9 * dof and ends[0] < ends[1]:
@@ -122,14 +134,14 @@ def of_resamples(found):
     whole = all(len(samples) == n for samples in drawn)
     length = _length_of_blocks(drawn) if drawn and whole else math.nan
     looks = [
-        ("STATISTIC_IGNORED", len(found.asked) < 2 or 0 < len(drawn) < _BOOT / 2),
+        ("STATISTIC_IGNORED", not drawn and len(found.asked) < 2),
         ("NOT_RESAMPLED", not drawn),
         ("RESAMPLE_SIZE", not whole),
         ("NOT_OF_THE_SERIES", not all(np.isin(samples, found.e).all() for samples in drawn)),
         # Of errors drawn with replacement a third is missing in a resample.
         ("REPEATS_AN_END", _repeated_ends(drawn, n) >= _MOST_REPEATED),
         ("DRAWN_WITHOUT_REPLACEMENT", all(len(np.unique(samples)) > 0.9 * n for samples in drawn)),
-        ("DRAWN_ONCE", all(np.array_equal(samples, drawn[0]) for samples in drawn)),
+        ("DRAWN_ONCE", len(drawn) > 1 and all(np.array_equal(samples, drawn[0]) for samples in drawn)),
         # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
         ("PART_OF_SERIES", len(drawn) > _BOOT / 2 and len(np.unique(drawn)) < 0.8 * n),
         ("IID_BOOTSTRAP", length < 1.5),
@@ -196,6 +208,8 @@ def _scaled(ends, values, whole):
     """Whether the ends lie about the statistic, or the middle of the values, like the right ones, but much
     nearer or farther."""
     right = np.quantile(values, [_ALPHA / 2, 1 - _ALPHA / 2])
+    if np.isin(ends, values).all():  # other quantiles
+        return False
     for centre in (whole, np.mean(values), np.median(values), np.mean(right)):
         low, high = (ends - centre) / (right - centre)
         if low > 0 and abs(low / high - 1) < 0.02 and not 0.8 < low < 1.25:
@@ -232,7 +246,12 @@ def of_interval(submission, seed, found=None):
     """
     found = found or resample(submission, seed)
     code = of_resamples(found) or of_ends(found)
-    if code in {None, "ONE_SIDED", "LEVEL_FOR_ALPHA"}:  # few values are near each other: ask for more
+    if code in {
+        None,
+        "ONE_SIDED",
+        "LEVEL_FOR_ALPHA",
+        "WIDTH_SCALED",
+    }:  # few values are near each other: ask for more
         many = resample(submission, seed, 10 * _BOOT)
         width, narrow = (kit.attempt(lambda some=some: _width(some)) for some in (found, many))
         if width and narrow and 0 < narrow < 0.5 * width:
@@ -314,11 +333,10 @@ class Folds:
 
     def fault(self, k):
         """What is wrong with who was fitted to what, as a code, or None."""
-        models = zip(self.fitted, self.asked, strict=True)
-        used = [(set(fit), sorted(set(asked))) for fit, asked in models if asked]
+        used = [(set(fit), asked) for fit, asked, _ in self._folds()]
         everything = set(range(len(self.runs)))
         if not used or _fits_the_fold(used, everything):
-            return "FITS_THE_FOLD" if used else "FOLDS_UNEVEN"
+            return "FITS_THE_FOLD" if used else "NEVER_PREDICTS"
         if len(used) == 1 and used[0][0] == everything:
             return "FITS_ONCE"
         if any(fit & set(asked) for fit, asked in used):
@@ -339,12 +357,23 @@ class Folds:
 
     def residuals(self):
         """For each fold in the order of the list, the errors of its runs, one array each."""
-        models = [m for m, asked in enumerate(self.asked) if asked]
-        models.sort(key=lambda m: min(self.asked[m]))
         return [
-            [self._gains[m] * self.runs[i]["u"] - self.runs[i]["y"] for i in sorted(set(self.asked[m]))]
-            for m in models
+            [gain * self.runs[i]["u"] - self.runs[i]["y"] for i in asked]
+            for _, asked, gain in sorted(self._folds(), key=lambda fold: fold[1])
         ]
+
+    def _folds(self):
+        """(fitted to, asked about, gain) of the models that were asked.
+
+        Models that are fitted anew to the same runs, one after the other for each run of a fold, are one.
+        """
+        models = [m for m, asked in enumerate(self.asked) if asked]
+        for fit, same in itertools.groupby(models, key=lambda m: tuple(sorted(self.fitted[m]))):
+            alike = list(same)
+            asked = {i for m in alike for i in self.asked[m]}
+            one = {*fit} == {*range(len(self.runs))} - asked
+            for m in alike[:1] if one else alike:
+                yield fit, sorted(asked if one else {*self.asked[m]}), self._gains[m]
 
 
 def _fits_the_fold(used, everything):

@@ -65,13 +65,32 @@ class Facts:
         return sorted(key.removesuffix("_s") for key, kept in within.items() if not kept)
 
 
-def of_used(used, report, sim, right):
+def of_used(used, report, sim, real, right):
     """Why the wrong runs are listed: they were used, too, or the numbers are those of the right ones."""
-    if right.numbers is not None:
-        close = lambda key: math.isclose(kit.as_number(report[key], key), right.numbers[key], rel_tol=1e-6)  # noqa: E731
-        if kit.attempt(lambda: all(close(key) for key in NUMBERS)):
-            return named("OTHER_RUNS_LISTED")
-    return named("CALIBRATION_RUNS_SCORED") if set(used) & set(sim["calibrated_on"]) else None
+    if right.numbers is not None and any(_close(report, {key: right.numbers[key] for key in _EXACT})):
+        return named("OTHER_RUNS_LISTED")
+    fitted = set(sim["calibrated_on"])
+    looks = any(any(_close(report, _numbers(sim, real, ids))) for ids in (set(used), fitted))
+    return named("CALIBRATION_RUNS_SCORED") if looks and set(used) & fitted else None
+
+
+#: The numbers that hardly come out right by chance.
+_EXACT = ("rmse", "bias")
+
+
+def _close(report, numbers):
+    """Whether each of a report's numbers is one of these, whatever its sign; none where it is none at all."""
+    for key in numbers:
+        value = kit.attempt(lambda key=key: kit.as_number(report[key], key))
+        yield value is not None and math.isclose(abs(value), abs(numbers[key]), rel_tol=1e-6)
+
+
+def _numbers(sim, real, ids):
+    """rmse and bias of the runs of these ids that both sides have."""
+    known = {run["id"]: run["y"] for run in real["runs"]}
+    e = [np.subtract(run["y"], known[run["id"]]) for run in sim["runs"] if run["id"] in known.keys() & ids]
+    e = np.concatenate([*e, np.empty(0)])
+    return {"rmse": float(np.sqrt(np.mean(e**2))), "bias": float(np.mean(e))} if len(e) else {}
 
 
 def of_number(key, value, right):
@@ -115,6 +134,7 @@ def of_lag(value, half, right):
         ("LAG_SIGN", abs(late) > 0.6 * dt and near(-late)),
         # A number of samples is recognised only where it cannot be anything else.
         ("LAG_IN_SAMPLES", abs(late) > dt and any(abs(value * h - late) <= 0.6 * h for h in right.steps)),
+        ("LAG_IN_SAMPLES", abs(late) > dt and abs(value / 1000 - late) <= 0.3 * dt),
         ("LAG_AT_THE_END", abs(value) >= 0.19),  # no lag is larger than 0.2 s
         ("LAG_MIRRORED", _mirrored(value, right)),
         ("LAG_WHOLE_SAMPLES", abs(value - late) < 1.01 * dt and _whole(value, right)),
@@ -129,6 +149,9 @@ def _mirrored(value, right):
     late = right.numbers["lag_s"]
     for step in right.steps:
         whole = step * round(late / step)
+        apart = (value - late) / step
+        if round(apart) and abs(apart - round(apart)) < 0.03:
+            continue  # it is off by whole samples, to what a search finds
         if abs(late - whole) > 0.15 * step and abs(value + late - 2 * whole) < 0.05 * step:
             return True
     return False
@@ -158,5 +181,13 @@ def of_reasons(judged):
     words = {key.removesuffix("_s") for key in MEASURES}
     if any(set(reasons) - words for reasons, _ in judged):
         return named("REASON_UNKNOWN")
+    if all(sorted(set(reasons)) == right for reasons, right in judged):
+        return named("REASON_TWICE")
     missing = any(set(right) - set(reasons) for reasons, right in judged)
     return named("REASON_MISSING" if missing else "REASON_TOO_MANY")
+
+
+def of_far_off(reasons):
+    """What is wrong with the reasons against a simulation that is far off."""
+    known = {key.removesuffix("_s") for key in MEASURES}
+    return named("REASON_UNKNOWN" if reasons - known else "REASON_MISSING")

@@ -126,6 +126,11 @@ def _with_operators(**others):
     return met
 
 
+def _never(op):
+    """Requirements with one operator are never met."""
+    return lambda report, need: need["op"] != op and meets(report, need)
+
+
 #: code: the same slip in several forms
 METS = {
     "IGNORES_MISSING": (
@@ -150,6 +155,7 @@ METS = {
         _with_operators(eq="<="),
         _with_operators(eq=">="),
     ),
+    "OPERATOR_NEVER_MET": tuple(map(_never, ("<=", ">=", "=="))),
     "OPERATOR_IGNORED": (_with_operators(eq=""), _with_operators(le=""), _with_operators(ge="")),
 }
 

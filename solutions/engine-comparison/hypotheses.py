@@ -113,6 +113,10 @@ def _to_the_finest(y):
     return np.linalg.norm(y[0] - y[2]), np.linalg.norm(y[1] - y[2])
 
 
+def _squares(y):
+    return np.sum((y[0] - y[1]) ** 2), np.sum((y[1] - y[2]) ** 2)
+
+
 def _upside_down(y):
     return np.linalg.norm(y[1] - y[2]), np.linalg.norm(y[0] - y[1])
 
@@ -132,6 +136,7 @@ _ORDER = (
     ("ORDER_STEPS_NOT_HALVED", _order((16, 64, 256))),
     ("ORDER_STEPS_NOT_HALVED", _order((10, 100, 1000))),
     ("ORDER_STEPS_NOT_HALVED", _order((16, 48, 144))),
+    ("ORDER_STEPS_NOT_HALVED", _order(gaps=_squares)),
     ("ORDER_OF_OTHER_DIFFERENCES", _order(gaps=_to_the_coarsest)),
     ("ORDER_OF_OTHER_DIFFERENCES", _order(gaps=lambda y: _to_the_coarsest(y)[::-1])),
     *(
@@ -239,7 +244,6 @@ _DAMPING = (
     ("DAMPING_AS_FORCE", _damping(lambda c, info: c * info["mass"])),
     ("DAMPING_PER_STEP", _damping(lambda c, info: c * info["dt"])),
     ("DAMPING_PER_STEP", _damping(lambda c, info: c * info["dt"] / 1000)),
-    ("DAMPING_OVER_ONE_STEP", _damping(lambda c, _: 100 * c)),
     ("DAMPING_AT_DT", _at_dt(1, lambda v, h: -math.log(v[-1][0]) / (100 * h))),
     ("DAMPING_AT_DT", _at_dt(1, lambda v, h: (1 - v[1][0]) / h)),
     ("DAMPING_AT_DT", _at_dt(2, lambda v, h: -math.log(v[-1][0]) / (100 * h))),

@@ -99,11 +99,12 @@ def right_licence(engine: str, text: str) -> bool:
 def licence_mistake(engine: str, text: str) -> str | None:
     """The code of a wrong licence: outdated, another engine's, or the right one by its everyday name."""
     words = plain(text)
-    if any(word in words for word in STALE):
+    right = any(word in words for word in EVERYDAY[engine])
+    if engine in SINCE and not right and any(word in words for word in STALE):
         return "STALE_LICENCE"
     if all(part in IDENTIFIERS for part in spdx(text)):
         return "OTHER_LICENCE"
-    return "NOT_SPDX" if any(word in words for word in EVERYDAY[engine]) else None
+    return "NOT_SPDX" if right else None
 
 
 def plain(text: str) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 
 from course.grading import kit
 
-probes = kit.companion("validation", "probes")
+probes = kit.companion("validation", "probes_verdict")
 shared = kit.companion("validation", "expectations")
 twins = kit.companion("validation", "twins")
 bundles = kit.companion("validation", "bundles")
@@ -85,7 +85,7 @@ def expect_refused(submission, rng, recorded, sim, mass):
         help="Compare each interval with its margin.",
         input=shown,
         actual=sorted(reasons),
-        diagnose=probes.named("REASON_MISSING"),
+        diagnose=lambda: probes.of_far_off(reasons),
     )
     bundles.expect_accepted(report, False, shown)
 

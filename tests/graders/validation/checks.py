@@ -199,7 +199,7 @@ def test_energy_error_signs(submission, rng):
 @pytest.mark.task("contact_force_error")
 @pytest.mark.points(4)
 def test_contact_force_shifted(submission, rng):
-    """Impacts that come early or late, too hard or too soft, too long or too short"""
+    """Impacts that come early or late, too hard or too soft, too long or too short, and may end weakly"""
     pairs = []
     # One of each kind whatever is drawn: a sign left out shows only in an impact that is too soft.
     for low, high in rng.permutation([(0.7, 0.9), (1.1, 1.3), (0.7, 1.3)]):
@@ -211,7 +211,7 @@ def test_contact_force_shifted(submission, rng):
         late = rng.choice([-1, 1]) * rng.uniform(15, 30) * dt
         length, size = rng.uniform(35, 55) * dt, rng.uniform(low, high) * peak
         sim = shared.pulse(t, 70 * dt + late, length, size, rises[1])
-        pairs.append((sim, real, dt))
+        pairs += [(sim, real, dt), (sim, real + shared.pulse(t, 140 * dt, 56 * dt, 0.06 * peak), dt)]
     shared.expect_forces(submission, pairs)
 
 

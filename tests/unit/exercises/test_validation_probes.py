@@ -71,7 +71,9 @@ RESAMPLES = {
     "one block": ([row[:12] for row in blocks(12)], "RESAMPLE_SIZE"),
     "whole blocks": ([row[:240] for row in blocks(12)], "RESAMPLE_SIZE"),
     "itself": ([ITSELF] * 24, "NOT_RESAMPLED"),
-    "asked once": (blocks(12)[:1], "STATISTIC_IGNORED"),
+    "asked once": (blocks(12)[:1], "OTHER_NUMBER_OF_RESAMPLES"),
+    "asked seldom": (blocks(12)[:2], "OTHER_NUMBER_OF_RESAMPLES"),
+    "asked of the series alone": ([ITSELF], "STATISTIC_IGNORED"),
     "never asked": ([], "STATISTIC_IGNORED"),
     "drawn once": (blocks(12)[:1] * 24, "DRAWN_ONCE"),
     "too many": (blocks(12, 2000), "OTHER_NUMBER_OF_RESAMPLES"),
@@ -144,7 +146,13 @@ def folds(fitted, asked):
         ([[2], [0, 1]], [[0, 1], [2, 3]], "TRAINS_ON_TOO_LITTLE"),
         ([[0], [1, 2], [3]], [[1, 2, 3], [0, 3], [0, 1, 2]], "FITS_THE_FOLD"),
         ([[0], [1, 2], [3]], [[0], [1, 2], [3]], "FITS_THE_FOLD"),
-        ([], [], "FOLDS_UNEVEN"),
+        ([], [], "NEVER_PREDICTS"),
+        # A model for each run of a fold, fitted to the same runs, is one model.
+        ([[2, 3], [3, 2], [0, 1]], [[0], [1], [2, 3]], None),
+        ([[2, 3], [3, 2], [0, 1, 2], [0, 1]], [[0], [1], [2], [3]], "LEAKS_HELD_OUT"),
+        # But not where that would make another fold of them.
+        ([[2], [0, 3], [2]], [[0], [1, 2], [3]], "FOLDS_UNEVEN"),
+        ([[2], [0, 1], [2]], [[0, 1], [2], [3]], "FOLDS_UNEVEN"),
     ],
 )
 def test_folds_are_recognised_by_who_was_fitted_to_what(fitted, asked, expected):

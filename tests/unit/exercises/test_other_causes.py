@@ -1,0 +1,62 @@
+"""Programs with another mistake than a diagnosis has in mind, and the same effect: what each is told at home.
+
+A diagnosis is false where its words need not hold of every program that its probe speaks of. These met the
+condition of one that did not hold of them.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from course.authoring.exercises.unprotected import LocalSubmission
+from course.authoring.exercises.variants import compose, solution_path
+from course.catalog.load import Catalog
+from course.scoring.judging.session import GradingSession, Submission
+
+AFRESH = Path(__file__).resolve().parents[2] / "benchmarks" / "mended" / "afresh"
+
+#: What is said of the checks that fail: codes, None for no diagnosis.
+TOLD = {
+    "engine-comparison": {
+        "choose_misspelt_operator": {"OPERATOR_NEVER_MET"},
+        "damping_of_half_the_time": {"DAMPING_OF_ENERGY"},
+        "damping_one_step_too_few": {None},
+        "deterministic_two_rounds": {"DETERMINISM_TOLERANCE"},
+        "facts_read_once": {"GROWS_WITH_EACH_CALL"},
+        "order_no_more_than_three": {None},
+        "order_of_squares": {"ORDER_STEPS_NOT_HALVED"},
+        "stable_columns_exchanged": {"TOLERANCE_TOO_TIGHT"},
+        "symplectic_if_undamped": {None},
+        "tunnelling_by_majority": {"TUNNEL_UNSAFE_REPORTED"},
+    },
+    "validation": {
+        "bootstrap_backwards": {"IID_BOOTSTRAP"},
+        "bootstrap_resamples_by_blocks": {"OTHER_NUMBER_OF_RESAMPLES"},
+        "force_above_a_tenth": {None},
+        "lag_in_milliseconds": {"LAG_IN_SAMPLES"},
+        "nees_of_the_first_row": {"SUMMED"},
+        "variance_without_outliers": {None},
+        "verdict_lists_what_both_have": {"OTHER_RUNS_LISTED", None},
+    },
+}
+
+
+class Unprotected(GradingSession):
+    """Programs of the course's own, graded in this process."""
+
+    def _load(self, submission):
+        return LocalSubmission(submission.files[self.exercise.module].decode())
+
+
+@pytest.mark.parametrize("exercise_id", TOLD)
+def test_a_cause_is_named_only_where_it_is_known(exercise_id):
+    catalog = Catalog()
+    exercise, told = catalog.exercise(exercise_id), {}
+    with Unprotected(exercise, catalog, scope="public") as session:
+        for name in TOLD[exercise_id]:
+            source = compose(solution_path(catalog, exercise), AFRESH / exercise_id / f"{name}.py")
+            verdict = session.grade(Submission({exercise.module: source}))
+            told[name] = {check.diagnosis for check in verdict.checks if check.status == "fail"}
+    assert told == TOLD[exercise_id]

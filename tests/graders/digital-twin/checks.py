@@ -140,9 +140,8 @@ _MOTOR = "The speed of an unknown motor is not what its command, limits and lag 
 def test_motor_unknown(submission, rng):
     """An unknown motor follows commands large and small, both ways, at steps short and long"""
     tau, u_max, dead = rng.uniform(0.05, 1.0), rng.uniform(5, 20), rng.uniform(0.5, 1.5)
-    commands = rng.permutation(
-        [*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, 0.5 * dead, -0.7 * dead, dead, -dead]
-    )
+    edges = [factor * dead for factor in (0.5, -0.7, 1.0, -1.0, 1.05, -1.05)]
+    commands = rng.permutation([*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, *edges])
     calls = [(float(u), tau * float(rng.choice([0.1, 0.7, 2.0, 5.0])), tau, u_max, dead) for u in commands]
     actuators.expect_motor(submission, 0.3 * u_max, calls, _MOTOR)
 

@@ -214,6 +214,19 @@ def expect_gyroscope_draws(submission, seed, dt):
         help="Draw two arrays of standard normal numbers, and sum up only one of them.",
         diagnose=lambda: sensors.of_imu(submission),
     )
+    sizes = ((white, 0.01 / math.sqrt(dt), "measured - bias"), (steps, 0.01 * math.sqrt(dt), "the steps"))
+    for values, expected, name in sizes:
+        kit.expect_close(
+            std(values),
+            expected,
+            rel=0.06,
+            source="five times the scatter of a std from 4000 samples",
+            quantity=f"std of {name}",
+            units="rad/s",
+            input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
+            message="With white noise and a walk together, the std of one of them is wrong.",
+            diagnose=lambda: sensors.of_imu(submission),
+        )
 
 
 def recordings(rng, count, make):

@@ -216,6 +216,9 @@ def _of_power(noise, right, powers, missing, factor):
 def _of_both(pairs):
     measured, bias = pairs[4]
     white, steps = (measured - bias), np.diff(bias)
+    sizes = np.std(steps) / (_K * math.sqrt(_FAST)), np.std(white) / (_K / math.sqrt(_FAST))
+    if max(abs(size - 1) for size in sizes) > 0.05:
+        return "STRENGTHS_MIXED"  # each is right where the other is not asked for
     alike = max(abs(np.corrcoef(white[shift : len(steps) + shift], steps)[0, 1]) for shift in (0, 1))
     return "SAME_DRAW_TWICE" if alike > 0.5 else None
 

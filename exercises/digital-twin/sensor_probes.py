@@ -148,7 +148,7 @@ def _of_bias(pairs, true):
     if ten < 8:
         return "BIAS_NOT_RANDOM_WALK" if ten < 2 else "BIAS_PULLED_BACK"
     powers = {0.0: "BIAS_NOT_SCALED_BY_SQRT_DT", 1.0: "BIAS_TIMES_DT", -0.5: "BIAS_OVER_SQRT_DT"}
-    code = _of_drift(biases) or ("BIAS_STEPS_RELATED" if ten > 12 else None)
+    code = "BIAS_STEPS_RELATED" if ten > 12 else _of_drift(biases)
     code = code or _of_power([np.diff(bias) for bias in biases], 0.5, powers, "BIAS_CONSTANT", "BIAS_FACTOR")
     if code:
         return code
@@ -274,6 +274,9 @@ def of_density(found, cases, walk=None):
     stills, dts = [case[0] for case in cases], np.array([case[1] for case in cases])
     std = np.array([np.std(still) for still in stills])
     root = np.sqrt(dts)
+    walks = np.array([case[3] for case in cases if len(case) > 3])
+    if walk is not None and _all_near(found, walks, 0.6) and _off_by(walk / right, 1.0, 0.1):
+        return named("FIT_SWAPPED")
     # Each in proportion to the recordings' own numbers, which differ by more than the scatter allowed here.
     looks = (
         ("DENSITY_NOT_SCALED_BY_SQRT_DT", right / root),
@@ -286,9 +289,6 @@ def of_density(found, cases, walk=None):
     for code, values in looks:
         if _all_near(found, values, 0.08 if values is not std else 0.01):
             return named(code)
-    walks = np.array([case[3] for case in cases if len(case) > 3])
-    if walk is not None and _all_near(found, walks, 0.6) and _off_by(walk / right, 1.0, 0.1):
-        return named("FIT_SWAPPED")
     if not (np.all(np.isfinite(found)) and np.all(found >= 0)):
         return None
     larger = np.mean(found > right)

@@ -146,7 +146,7 @@ _OTHER: dict[str, tuple[str, str, str]] = {
     ),
     "protocol": (
         "Your function returned something that is not plain data, or far too much of it.",
-        "Return only numbers, lists, tuples, dicts or numpy arrays of numbers, and no more than is asked for.",
+        "Return only numbers, lists, tuples, dicts or arrays of numbers, and no more than is asked for.",
         "NOT_PLAIN_DATA",
     ),
 }

@@ -232,11 +232,13 @@ def test_motor_response(submission):
 @pytest.mark.points(0)
 def test_motor_limits(submission):
     """Up to the limit of the dead band nothing happens, and a motor beyond u_max slows down gradually"""
-    calls = [(u, 0.1, 0.2, 10.0, 0.5) for u in (0.5, -0.5, 4.0, 0.52, -0.52)]
+    commands = (0.5, -0.5, 4.0, 0.52, -0.52)
     message = (
         "From a speed beyond u_max, with commands at the dead band's limit, the speed of the motor is wrong."
     )
-    actuators.expect_motor(submission, 25.0, calls, message)
+    for sign in (1.0, -1.0):
+        calls = [(sign * u, 0.1, 0.2, 10.0, 0.5) for u in commands]
+        actuators.expect_motor(submission, sign * 25.0, calls, message)
 
 
 @pytest.mark.task("backlash")

@@ -214,7 +214,7 @@ def _learning(submission):
         constant = abs(_share(submission, {**twins[-1], "sigma": 5 * twins[-1]["sigma"]}) - share) < 1e-6
         dropped = isinstance(twins[-1]["memory"], dict) and not twins[-1]["memory"]
         if constant or dropped:
-            return "SHARE_TOO_LARGE" if constant else "MEMORY_DROPPED"
+            return ("SHARE_TOO_LARGE" if share < 1.02 else "SHARE_OVER_ONE") if constant else "MEMORY_DROPPED"
     learned_well = abs(float(np.mean(friction[-20:])) - 0.8) < 0.08  # at first
     if (share > 0.6 or not learned_well) and _memory_unread(submission, twins[-1]):
         return "MEMORY_NOT_READ"

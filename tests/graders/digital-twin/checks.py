@@ -149,10 +149,11 @@ def test_motor_unknown(submission, rng):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(2)
 def test_motor_overspeed(submission, rng):
-    """A motor that spins faster than the largest command slows down gradually"""
+    """A motor that spins faster than the largest command, either way, slows down gradually"""
     tau, u_max = rng.uniform(0.1, 1.0), rng.uniform(5, 20)
-    calls = [(u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
-    actuators.expect_motor(submission, rng.uniform(1.5, 3.0) * u_max, calls, _MOTOR)
+    for sign in (1.0, -1.0):
+        calls = [(sign * u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
+        actuators.expect_motor(submission, sign * rng.uniform(1.5, 3.0) * u_max, calls, _MOTOR)
 
 
 # -- backlash -------------------------------------------------------------------------------------------

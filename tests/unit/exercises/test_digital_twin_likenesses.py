@@ -195,6 +195,7 @@ SYNC = [
     ("FRICTION_LEARNS_BACKWARDS", [("b - 0.15", "b + 0.15")]),
     ("LEARNS_FORWARDS_ONLY", [("* np.sign(v)", "")]),
     ("SHARE_TOO_LARGE", [("x + 0.3", "x + 0.7")]),
+    ("SHARE_OVER_ONE", [("x + 0.3", "x + 1.5")]),
 ]
 
 

@@ -145,8 +145,8 @@ _OTHER: dict[str, tuple[str, str, str]] = {
         "CRASHED",
     ),
     "protocol": (
-        "Your function returned something that is not plain data.",
-        "Return numbers, lists, tuples, dicts or numpy arrays of numbers, nothing else.",
+        "Your function returned something that is not plain data, or far too much of it.",
+        "Return only numbers, lists, tuples, dicts or arrays of numbers, and no more than is asked for.",
         "NOT_PLAIN_DATA",
     ),
 }

@@ -31,8 +31,22 @@ def of_motor(submission):
     if values[-2] == values[-1]:
         return named("LAG_WITHOUT_DT")
     shares = [(value - w) / (u - w) for value, (w, u) in zip(values, _WAYS, strict=False)]
-    steady = max(shares) - min(shares) < 1e-9
-    return named("LAG_SHARE_WRONG") if steady and abs(shares[0] - _SHARE) > 1e-6 else None
+    if max(shares) - min(shares) > 1e-9:
+        return None
+    if abs(shares[0] - _SHARE) > 1e-6:
+        return named("LAG_SHARE_WRONG")
+    return named("DEADBAND_WIDTH") if _other_width(submission) else None
+
+
+def _other_width(submission):
+    """Whether, for either sign, the dead band ends elsewhere than at its limit."""
+    commands = (0.2, -0.2, 1.7, -1.7, 2.3, -2.3, 8.0, -8.0)
+    calls = [(0.0, u, _DT, _TAU, 10.0, 2.0) for u in commands]
+    goals = np.array([kit.as_number(w, "w_next") for w in submission.call_each("motor_step", calls)]) / _SHARE
+    moved = np.abs(goals - commands) < 1e-6
+    still = np.abs(goals) < 1e-9
+    ends = all(still[:2]) and all(moved[6:]) and np.all(moved | still)
+    return bool(ends and (np.all(moved[2:4]) or np.all(still[4:6])))
 
 
 # -- backlash -------------------------------------------------------------------------------------------
@@ -60,20 +74,34 @@ def of_backlash(submission):
     if np.allclose(outputs, right, rtol=0, atol=1e-12):
         states = [kit.as_number(state, "state_next") for _, state in pairs]
         return None if np.allclose(states, outputs, rtol=0, atol=1e-12) else named("STATE_IS_NOT_OUTPUT")
-    if _off_centre(submission):
-        return named("SLOT_OFF_CENTRE")
-    # What it covers of the way to the edge of the gap is neither none nor all: it is a lag.
-    shares = [(y - s) / (r - s) for y, (_, s, r) in zip(outputs, _PLAY, strict=True) if abs(r - s) > 1e-9]
-    return named("BACKLASH_RATE_DEPENDENT") if all(0 < share < 1 for share in shares) else None
+    if ends := _of_ends(submission):
+        return named(ends)
+    return named("BACKLASH_RATE_DEPENDENT") if _counts_steps(submission) else None
 
 
-def _off_centre(submission):
-    """Whether a pin that is pushed far up stays as far behind each time, and pushed far down otherwise."""
+def _counts_steps(submission):
+    """Whether the same way in two steps ends elsewhere than in one."""
+
+    def read(x, state):
+        y, state = kit.as_tuple(submission.call("backlash", x, 1.0, state), ("y", "state_next"))
+        return kit.as_number(y, "y"), kit.as_number(state, "state_next")
+
+    ways = ((0.0, 2.0, 5.0), (0.0, -2.0, -5.0))
+    ends = [(read(far, read(half, start)[1])[0], read(far, start)[0]) for start, half, far in ways]
+    return all(abs(in_two - in_one) > 1e-9 for in_two, in_one in ends)
+
+
+def _of_ends(submission):
+    """What is wrong with the slot of a pin that, pushed far up or down, stays as far behind each time."""
     ways = ((5.0, 1.0), (7.0, -3.0), (-5.0, -1.0), (-6.0, 2.0))
     values = submission.call_each("backlash", [(x, 1.0, state) for x, state in ways])
     ends = [kit.as_number(kit.as_tuple(value, ("y", "state_next"))[0], "y") for value in values]
     up, far_up, down, far_down = (y - x for y, (x, _) in zip(ends, ways, strict=True))
-    return max(abs(up - far_up), abs(down - far_down)) < 1e-9 < abs(up + down)
+    if not max(abs(up - far_up), abs(down - far_down)) < 1e-9:
+        return None
+    if abs(up + down) > 1e-9:
+        return "SLOT_OFF_CENTRE"
+    return "GAP_SCALED" if up < -1e-9 and abs(up + 0.5) > 1e-9 else None
 
 
 def _remembers(submission):
@@ -96,7 +124,8 @@ def of_delay(submission):
     rows = [kit.as_vector(value, len(x), "the delayed signal") for value in values]
     if not np.all(np.isfinite(rows)):
         return None
-    if all(np.all(np.isin(row, [0.0, *x])) for row in rows) and len({tuple(row) for row in rows}) > 1:
+    shifts = [_shift(row, x) for row in rows]
+    if None not in shifts and shifts[2] > shifts[0]:
         return named("DELAY_WHOLE_SAMPLES")
     pulse = np.zeros(8)
     pulse[3] = 1.0
@@ -107,6 +136,11 @@ def of_delay(submission):
         return named("DELAY_SHARES_SWAPPED")
     first = [row[: round(late / dt + 0.4999)] for row, late in zip(rows, lates, strict=True)]
     return named("DELAY_HOLDS_FIRST") if all(np.all(part == x[0]) for part in first) else None
+
+
+def _shift(row, x):
+    """By how many whole samples ``row`` is x, later; None if it is by none."""
+    return next((n for n in range(len(x)) if np.array_equal(row[n:], x[: len(x) - n])), None)
 
 
 # -- differential drive ---------------------------------------------------------------------------------
@@ -166,15 +200,22 @@ def _of_slow_turns(submission):
         lines = [_along(headings + at * rate * dt, 0.5 * dt) for at in (0.0, 0.5, 1.0)]
         return any(np.allclose(ends, line, rtol=0, atol=1e-12) for line in lines)
 
+    def ragged(rate):
+        """Whether headings that hardly differ lead to places that do, as rounding makes them."""
+        calls = [((0.0, 0.0, 1.0 + 1e-9 * i), 0.5 - rate / 4, 0.5 + rate / 4, 0.5, dt) for i in range(6)]
+        ends = [kit.as_vector(end, 3, "pose")[:2] for end in submission.call_each("diff_drive_step", calls)]
+        return bool(np.max(np.ptp(ends, axis=0)) > 1e-7)
+
     ahead = worst(0.0)
     if not math.isfinite(ahead):
         return named("STRAIGHT_DIVIDES_BY_ZERO")
     if ahead > 1e-6:
-        return named("STRAIGHT_WRONG")
+        return named("SMALL_TURN_CANCELS" if ragged(0.0) else "STRAIGHT_WRONG")
     slow = [rate for rate in (1e-4, 1e-3, 1e-2, 0.1) if worst(rate) > 1e-6]
     if slow:
         return named("SLOW_TURN_AS_STRAIGHT") if all(map(straight, slow)) else None
-    return named("SMALL_TURN_CANCELS") if max(worst(1e-13), worst(1e-12)) > 1e-6 else None
+    cancels = any(worst(rate) > 1e-6 and ragged(rate) for rate in (1e-13, 1e-12))
+    return named("SMALL_TURN_CANCELS") if cancels else None
 
 
 def _along(headings, way):

@@ -163,7 +163,7 @@ def test_lidar_room(submission):
             input={"pose": pose, "r_max": 3.5, "sigma": 0.0, "room": "6 m by 4 m, door in the right wall"},
             message="In a known room, without noise, a distance is wrong.",
             help="Take one beam and one wall by hand, then the smallest of all hits.",
-            diagnose=lambda: sensors.sensors.of_lidar(submission),
+            diagnose=lambda: sensors.scanners.of_lidar(submission),
         )
 
 
@@ -186,7 +186,7 @@ def test_lidar_nearest(submission):
         input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
         message="Of several walls, the reading is not that of the nearest one that the beam hits.",
         help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
-        diagnose=lambda: sensors.sensors.of_lidar(submission),
+        diagnose=lambda: sensors.scanners.of_lidar(submission),
     )
 
 
@@ -231,10 +231,14 @@ def test_motor_response(submission):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(0)
 def test_motor_limits(submission):
-    """At the limit of the dead band nothing happens, and a motor beyond u_max slows down gradually"""
-    calls = [(0.5, 0.1, 0.2, 10.0, 0.5), (-0.5, 0.1, 0.2, 10.0, 0.5), (4.0, 0.1, 0.2, 10.0, 0.5)]
-    message = "A motor that was pushed beyond u_max does not run out as its lag says."
-    actuators.expect_motor(submission, 25.0, calls, message)
+    """Up to the limit of the dead band nothing happens, and a motor beyond u_max slows down gradually"""
+    commands = (0.5, -0.5, 4.0, 0.52, -0.52)
+    message = (
+        "From a speed beyond u_max, with commands at the dead band's limit, the speed of the motor is wrong."
+    )
+    for sign in (1.0, -1.0):
+        calls = [(sign * u, 0.1, 0.2, 10.0, 0.5) for u in commands]
+        actuators.expect_motor(submission, sign * 25.0, calls, message)
 
 
 @pytest.mark.task("backlash")

@@ -74,7 +74,7 @@ def _scans():
 
 def _commands():
     """Usual, too large, swallowed, at the edge, from beyond u_max; then short and long steps."""
-    usual, large, swallowed = (6.0, -6.0), (14.0, -14.0), (1.5, -1.5, 2.0, 0.7)
+    usual, large, swallowed = (6.0, -6.0), (14.0, -14.0), (1.5, -1.5, 2.0, 0.7, 1.9)
     for w, u in (*((1.0, u) for u in usual + large), *((4.0, u) for u in swallowed), (30.0, 5.0)):
         yield w, u, 0.3, 0.5, 10.0, 2.0
     for dt, tau in ((0.02, 0.7), (1.9, 0.3)):

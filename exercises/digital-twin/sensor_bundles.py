@@ -10,6 +10,7 @@ from course.grading import kit
 
 bundles = kit.companion("digital-twin", "bundles")
 scenes = kit.companion("digital-twin", "scenes")
+scanners = kit.companion("digital-twin", "lidar_probes")
 sensors = kit.companion("digital-twin", "sensor_probes")
 expect_clean = bundles.expect_clean
 
@@ -213,6 +214,19 @@ def expect_gyroscope_draws(submission, seed, dt):
         help="Draw two arrays of standard normal numbers, and sum up only one of them.",
         diagnose=lambda: sensors.of_imu(submission),
     )
+    sizes = ((white, 0.01 / math.sqrt(dt), "measured - bias"), (steps, 0.01 * math.sqrt(dt), "the steps"))
+    for values, expected, name in sizes:
+        kit.expect_close(
+            std(values),
+            expected,
+            rel=0.06,
+            source="five times the scatter of a std from 4000 samples",
+            quantity=f"std of {name}",
+            units="rad/s",
+            input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
+            message="With white noise and a walk together, the std of one of them is wrong.",
+            diagnose=lambda: sensors.of_imu(submission),
+        )
 
 
 def recordings(rng, count, make):
@@ -251,7 +265,8 @@ def expect_fits(submission, cases):
         off = np.log(np.array(found) / right)
         off[:, 2] = (np.array(found)[:, 2] - right[:, 2]) / np.sqrt(right[:, 0] * right[:, 1])
     off[~np.isfinite(off)] = np.inf
-    looks = (sensors.of_density, sensors.of_walk, sensors.of_bias0)
+    walk = np.array(found)[:, 1]
+    looks = (lambda *args: sensors.of_density(*args, walk), sensors.of_walk, sensors.of_bias0)
     units = ("log of a ratio", "log of a ratio", "sqrt(N K)")
     for column, key in enumerate(keys):
         i = int(np.argmax(np.abs(off[:, column])))
@@ -306,7 +321,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         exact = np.where(np.cos(fan) > 0, 3.0 / np.cos(fan), np.inf)
     hits = exact <= r_max
     given = {"r_max": r_max, "sigma": sigma, "beams": n}
-    ask = lambda: sensors.of_lidar(submission)  # noqa: E731
+    ask = lambda: scanners.of_lidar(submission)  # noqa: E731
     kit.expect_true(
         bool(np.all(wide[~hits] == r_max)),
         "A beam that hits nothing does not read r_max exactly.",
@@ -344,7 +359,8 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         "Very close to a wall, the noise makes readings negative."
         if negative
         else "Very close to a wall, too few readings are 0.",
-        help="A distance cannot be negative: apply np.maximum(..., 0.0) after the noise.",
+        help="A wall counts however near it is. A distance cannot be negative: apply np.maximum(..., 0.0) "
+        "after the noise.",
         input=given,
         diagnose=ask,
     )
@@ -360,11 +376,12 @@ def expect_scan_noise(submission, r_max, sigma, rng):
 def expect_scan_draws(submission, seed):
     """The generator that is passed in decides about the noise of a scan."""
     beams = np.linspace(-0.5, 0.5, 20)
-    calls = [(np.zeros(3), _WALL, beams, 9.0, 0.05, np.random.default_rng(s)) for s in (seed, seed, seed + 1)]
-    scans = [kit.as_vector(v, 20, "ranges") for v in submission.call_each("lidar", calls)]
+    seeds = (seed, seed, seed + 1, seed + 2, seed + 3)  # rounded readings may be equal once by chance
+    calls = [(np.zeros(3), _WALL, beams, 9.0, 0.05, np.random.default_rng(s)) for s in seeds]
+    first, again, *others = (kit.as_vector(v, 20, "ranges") for v in submission.call_each("lidar", calls))
     kit.expect_true(
-        np.array_equal(scans[0], scans[1]) and not np.any(scans[0] == scans[2]),
+        np.array_equal(first, again) and not np.any(np.all(first == others, axis=0)),
         "Some readings do not depend on the generator, or not on it alone.",
         help="Draw from rng and from nothing else.",
-        diagnose=lambda: sensors.of_scan_draws(submission),
+        diagnose=lambda: scanners.of_scan_draws(submission),
     )

@@ -30,7 +30,7 @@ def expect_words(i, gap):
     for key, known in words.WORDS.items():
         kit.expect_true(
             kit.as_text(gap[key], key) in known,
-            "A word of the plan is in none of the lists.",
+            "A word of the plan is not in the list of its key.",
             diagnose=named("UNKNOWN_WORD"),
             input={"gap": i, "key": key},
             expected=list(known),
@@ -189,7 +189,7 @@ def expect_accurate(estimates, carts, recordings=()):
             source="its definition, with room for a fit of its own",
             quantity="lag",
             units="s",
-            message="The first entry of lag is not the sum of those of tau and latency.",
+            message="lag does not go with tau and latency.",
             diagnose=lambda estimate=estimate: named(
                 "LAG_NOT_SUM"
                 if all(low <= v <= high for v, low, high in estimate.values())

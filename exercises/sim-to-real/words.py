@@ -63,7 +63,7 @@ def of_promise(metric, threshold):
     """What is wrong with a promise of the plan as a whole, (metric, threshold)."""
     if metric != "success":
         return named("METRIC_DOES_NOT_JUDGE")
-    if threshold < 0.90:
+    if not threshold >= 0.90:
         return named("PROMISE_TOO_SMALL")
     return named("PROMISE_NOT_A_SHARE" if threshold > 1.5 else "PROMISE_OF_PERFECTION")
 

@@ -140,9 +140,8 @@ _MOTOR = "The speed of an unknown motor is not what its command, limits and lag 
 def test_motor_unknown(submission, rng):
     """An unknown motor follows commands large and small, both ways, at steps short and long"""
     tau, u_max, dead = rng.uniform(0.05, 1.0), rng.uniform(5, 20), rng.uniform(0.5, 1.5)
-    commands = rng.permutation(
-        [*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, 0.5 * dead, -0.7 * dead, dead, -dead]
-    )
+    edges = [factor * dead for factor in (0.5, -0.7, 1.0, -1.0, 1.05, -1.05)]
+    commands = rng.permutation([*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, *edges])
     calls = [(float(u), tau * float(rng.choice([0.1, 0.7, 2.0, 5.0])), tau, u_max, dead) for u in commands]
     actuators.expect_motor(submission, 0.3 * u_max, calls, _MOTOR)
 
@@ -150,10 +149,11 @@ def test_motor_unknown(submission, rng):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(2)
 def test_motor_overspeed(submission, rng):
-    """A motor that spins faster than the largest command slows down gradually"""
+    """A motor that spins faster than the largest command, either way, slows down gradually"""
     tau, u_max = rng.uniform(0.1, 1.0), rng.uniform(5, 20)
-    calls = [(u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
-    actuators.expect_motor(submission, rng.uniform(1.5, 3.0) * u_max, calls, _MOTOR)
+    for sign in (1.0, -1.0):
+        calls = [(sign * u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
+        actuators.expect_motor(submission, sign * rng.uniform(1.5, 3.0) * u_max, calls, _MOTOR)
 
 
 # -- backlash -------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ import numpy as np
 from course.grading import kit
 
 actuators = kit.companion("digital-twin", "actuator_bundles")
-sensors = kit.companion("digital-twin", "sensor_probes")
+scanners = kit.companion("digital-twin", "lidar_probes")
 rays = kit.sibling(__file__, "rays")
 
 
@@ -24,7 +24,7 @@ def expect_ranges(submission, value, pose, walls, angles, r_max, message):
         input={"pose": pose, "segments": walls, "angles": angles, "r_max": r_max, "sigma": 0.0},
         message=message,
         help="Try a wall behind the robot, one that the beam misses, two behind each other, and none.",
-        diagnose=lambda: sensors.of_lidar(submission),
+        diagnose=lambda: scanners.of_lidar(submission),
     )
 
 

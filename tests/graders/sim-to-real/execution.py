@@ -146,11 +146,12 @@ _FAIR = {"m": 0.02, "b": 0.10, "Fc": 0.10, "tau": 0.10, "latency": 0.08}
 
 
 def box(submission):
-    """The plan's own box if it is one that sound tuning does well with, else the fleet's."""
+    """The plan's own box if it fits the fleet and sound tuning does well with it, else the fleet's."""
 
     def make():
         own = words.box_of(kit.as_record(plan(submission), words.PLAN_KEYS))
-        sound = reference.box_success(submission.seed, own) >= 0.97
+        fits = all(words.inside(k, *own[k]) >= 0.95 and words.width(k, *own[k]) <= 1.5 for k in cart.NAMES)
+        sound = fits and reference.box_success(submission.seed, own) >= 0.97
         return {k: list(ends) for k, ends in own.items()} if sound else None
 
     return _kept(submission, "box", lambda: kit.attempt(make)) or cart.MATCHED

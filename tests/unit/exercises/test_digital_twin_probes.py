@@ -24,6 +24,7 @@ spec.loader.exec_module(right)
 
 questions = kit.companion("digital-twin", "questions")
 table = read_table(ROOT / "exercises" / "digital-twin" / "hypotheses.json")
+scanners = kit.companion("digital-twin", "lidar_probes")
 sensors = kit.companion("digital-twin", "sensor_probes")
 actuators = kit.companion("digital-twin", "actuator_probes")
 twins = kit.companion("digital-twin", "twin_probes")
@@ -159,7 +160,7 @@ def test_a_scanner_that_errs_is_told_its_mistake(code, wrong):
     if code == "BEYOND_RANGE":  # without a hit it still says r_max
         reach = wrong
         wrong = lambda *args: np.where(reach(*args) > 6.5, args[3], reach(*args))  # noqa: E731
-    assert sensors.of_lidar(Fake("lidar", wrong)).code == code
+    assert scanners.of_lidar(Fake("lidar", wrong)).code == code
 
 
 def beams(direction):
@@ -195,11 +196,11 @@ DIRECTIONS = [
     ("code", "wrong"), DIRECTIONS, ids=[f"{i}-{c}" for i, (c, _) in enumerate(DIRECTIONS)]
 )
 def test_beams_that_go_astray_are_told_where_to_only_if_it_is_known(code, wrong):
-    assert code in recognised("lidar", wrong, sensors.of_lidar)
+    assert code in recognised("lidar", wrong, scanners.of_lidar)
 
 
 def test_a_scanner_that_never_moves_is_told_so():
-    assert sensors.of_lidar(Fake("lidar", moved)).code == "POSITION_IGNORED"
+    assert scanners.of_lidar(Fake("lidar", moved)).code == "POSITION_IGNORED"
 
 
 def test_the_room_of_the_checks_reads_as_the_model_solution_sees_it():
@@ -448,7 +449,7 @@ def test_a_right_twin_is_told_no_mistake():
     assert twins.of_sync(Fake()) is None
     assert twins.of_command(Fake()) is None
     assert sensors.of_imu(Fake()) is None
-    assert sensors.of_lidar(Fake()) is None
+    assert scanners.of_lidar(Fake()) is None
     assert actuators.of_drive(Fake()) is None
 
 

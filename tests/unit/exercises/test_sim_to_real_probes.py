@@ -318,3 +318,27 @@ def test_a_bench_run_is_known_to_show_nothing_of_what_does_not_move():
     assert reference.reach(0, "prbs", "noise", 20.0) == math.inf
     assert reference.reach(0, "rest", "m", 20.0) > 1.0
     assert reference.reach(0, "prbs", "lag", 20.0) < 0.02
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        _with(m=lambda p: 0.76 * p["m"]),  # one over the public cart's mass, by chance
+        _with(b=lambda p: 0.87 * p["b"], Fc=lambda p: 0.87 * p["Fc"]),  # divided by it
+    ],
+)
+def test_a_likeness_on_one_cart_alone_names_no_mistake(wrong):
+    truths = [cart.PUBLIC, cart.PUBLIC, cart.SHEET]
+    assert probes.of_values([wrong(truth) for truth in truths], truths) is None
+
+
+@pytest.mark.parametrize("threshold", [math.nan, 0.5])
+def test_a_threshold_that_is_no_promise_is_not_taken_for_perfection(threshold):
+    assert words.of_promise("success", threshold).code == "PROMISE_TOO_SMALL"
+
+
+def test_a_gain_that_is_too_large_is_not_said_to_be_no_number():
+    for gains, message in (((2e6, 1.0), "a million"), ((math.inf, 1.0), "not a finite number")):
+        with pytest.raises(kit.CheckFailed) as failed:
+            probes.gains_of(dict(zip(("kp", "kd"), gains, strict=True)))
+        assert message in failed.value.finding.message

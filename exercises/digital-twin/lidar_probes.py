@@ -1,0 +1,142 @@
+"""Finding out which mistake ``lidar`` of ``digital-twin`` makes: scenes of one wall or two, and a room."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.grading import kit
+
+draws = kit.companion("digital-twin", "sensor_probes")
+named = draws.named
+
+_WALL = np.array([[[2.0, -1.0], [2.0, 1.0]]])
+_ROW = np.array([[[2.0, -1.0], [2.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]], [[3.5, -1.0], [3.5, 1.0]]])
+_LONG = np.array([[[1.0, 0.5], [3.0, 0.5]]])  # parallel to a beam along x
+_ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
+
+#: Four beams in a crooked room, and how far off its walls are along each.
+_CORNERS = np.array([[-2.0, -1.5], [3.0, -1.0], [2.5, 2.0], [-1.5, 1.2]])
+_ROOM = np.stack((_CORNERS, np.roll(_CORNERS, -1, axis=0)), axis=1)
+_X, _Y, _HEADING = 0.4, 0.3, 0.7
+_FAN = np.array([-2.9, -0.8, 0.5, 2.1])
+_READS = (2.080981412770427, 2.4360363400828278, 1.4891209215957006, 2.0579057845480433)
+
+
+def _at(beam, *distances):
+    """What a beam reads of walls across the x axis."""
+    return tuple(x / math.cos(beam) for x in distances)
+
+
+#: code, position, walls, the one beam, the right reading, readings that only this mistake gives
+_SCENES = (
+    ("POSITION_IGNORED", (0.5, 0.1, 0.0), _WALL, 0.0, 1.5, (2.0,)),
+    ("WALLS_BEHIND_SEEN", _ORIGIN, _WALL, 3.0, _REACH, (0.0, *_at(3.0, 2.0, -2.0))),
+    ("WALLS_ENDLESS", _ORIGIN, _WALL, 1.0, _REACH, _at(1.0, 2.0)),
+    ("WALLS_ENDLESS", _ORIGIN, _WALL, -1.0, _REACH, _at(1.0, 2.0)),
+    ("NOT_THE_NEAREST", _ORIGIN, _ROW, 0.1, *_at(0.1, 1.0), _at(0.1, 2.0, 3.5)),
+    ("BEYOND_RANGE", _ORIGIN, _WALL + np.array([4.0, 0.0]), 0.01, _REACH, _at(0.01, 6.0)),
+)
+#: position, walls, the one beam, the right reading: a wall ahead, one wall along the beam, none within reach
+_PLAIN = (
+    (_ORIGIN, _WALL, 0.3, *_at(0.3, 2.0)),
+    (_ORIGIN, np.concatenate((_LONG, _WALL)), 0.0, 2.0),
+    (_ORIGIN, _WALL + np.array([40.0, 0.0]), 2.0, _REACH),
+)
+
+
+#: One wall in three places; what a beam at it reads has to differ.
+_SHIFTS = ((0.0, 0.0), (1.0, 0.0), (-0.7, 0.0))
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_lidar(submission):
+    """The mistake that ``lidar`` makes, from a room and from scenes with one wall or two, without noise.
+
+    A mistake is named where the readings are those that it gives, not only where they are wrong.
+    """
+    scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
+    beams = ((_HEADING, _FAN), (0.0, _FAN), (0.0, _FAN - _HEADING), (0.0, _FAN + _HEADING))
+    calls = [((_X, _Y, heading), _ROOM, fan) for heading, fan in beams]
+    calls += [((-0.5, 0.6, _HEADING), _ROOM, _FAN)]
+    calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
+    calls += [(_ORIGIN, _WALL + shift, np.array([0.05])) for shift in _SHIFTS]
+    calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
+    results = submission.call_each("lidar", calls)
+    *fans, moved = (kit.as_vector(result, len(_FAN), "ranges") for result in results[: len(beams) + 1])
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[len(beams) + 1 : -3]])
+    shifted = {float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-3:]}
+    if len(shifted) == 1 and shifted != {_REACH}:
+        return named("WALLS_NOT_READ")
+    right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
+    if np.all(right) and np.allclose(fans[0], _READS, rtol=0, atol=1e-9):
+        return of_lidar_noise(submission)
+    fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
+    return _of_scenes(readings, right, _turning(*fans), fixed)
+
+
+def _turning(turned, ahead, less, more):
+    """What turning the robot does to its beams, if not to turn them along; fans as they were asked for."""
+    if np.ptp(ahead) < 0.1 or np.allclose(turned, more, rtol=0, atol=1e-9):
+        return None
+    if np.allclose(turned, ahead, rtol=0, atol=1e-9):
+        return "HEADING_IGNORED"
+    return "HEADING_SUBTRACTED" if np.allclose(turned, less, rtol=0, atol=1e-9) else None
+
+
+def _of_scenes(readings, right, turning, fixed):
+    """From what was read in the scenes, and what turning the robot does to the beams of the room.
+
+    fixed: whether moving it changes nothing there
+    """
+    plain, parallel, nothing = right[-3:]
+    if not nothing:
+        return named("NO_HIT_NOT_MAX")
+    if not plain:
+        return None  # beams go astray, and not in a way that is known: nothing else can be told from them
+    if turning:
+        return named(turning)
+    if np.all(right[:-3]) and not parallel:
+        return named("PARALLEL_WALLS")
+    seen = zip(_SCENES, readings, strict=False)
+    codes = (code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9)
+    return next((named(code) for code in codes if fixed or code != "POSITION_IGNORED"), None)
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_lidar_noise(submission):
+    """The mistake in the noise of ``lidar``, from two fans of beams on one wall and one fan on none."""
+    fan = np.linspace(-0.4, 0.4, 2000)
+    near, none = (1.95, 0.0, 0.0), (-20.0, 0.0, 0.0)
+    ahead = np.linspace(-0.01, 0.01, 2000)
+    places = ((_ORIGIN, fan), (none, fan), (near, fan), ((-2.95, 0.0, 0.0), ahead))
+    calls = [
+        (pose, _WALL, beams, 5.0, 0.1, np.random.default_rng(seed))
+        for seed, (pose, beams) in enumerate(places)
+    ]
+    scans = [kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls)]
+    hits, misses, close, far = scans
+    noise = hits - 2.0 / np.cos(fan)
+    spread = float(np.std(noise))
+    if not np.all(misses == 5.0):
+        return named("LIDAR_NOISE_ON_MAX")
+    if spread < 1e-9:
+        return named("LIDAR_NOISE_SHARED" if abs(noise[0]) > 1e-9 else "LIDAR_NOISE_MISSING")
+    if np.any(close < 0):
+        return named("NEGATIVE_RANGE")
+    if not 0.09 < spread < 0.11:
+        return named("LIDAR_SIGMA_WRONG")
+    if not np.any(far > 5.0):  # the wall is 4.95 m away
+        return named("NOISE_CUT_AT_MAX")
+    return of_scan_draws(submission)
+
+
+@np.errstate(all="ignore")  # a submission may have returned anything
+def of_scan_draws(submission):
+    """Whether the noise of ``lidar`` comes from the generator that is passed in."""
+    calls = [(_ORIGIN, _WALL, _AHEAD, 5.0, 0.1, np.random.default_rng(seed)) for seed in draws.SEEDS]
+    return draws.of_draws([kit.as_vector(r, 8, "ranges") for r in submission.call_each("lidar", calls)])
+
+
+_AHEAD = np.linspace(-0.4, 0.4, 8)

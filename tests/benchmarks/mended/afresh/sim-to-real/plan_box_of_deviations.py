@@ -1,0 +1,29 @@
+"""A fifth more or less."""
+
+
+def plan():
+    def gap(source, parameter, mitigation, threshold, excitation="prbs", estimator="integral_least_squares"):
+        return {
+            "source": source,
+            "parameter": parameter,
+            "excitation": excitation,
+            "estimator": estimator,
+            "mitigation": mitigation,
+            "metric": "relative_half_width",
+            "threshold": threshold,
+            "unit": "%",
+        }
+
+    return {
+        "gaps": [
+            gap("environment", "m", "domain_randomization", 3.0),
+            gap("friction", "b", "system_identification", 10.0),
+            gap("friction", "Fc", "system_identification", 10.0),
+            gap("actuator_lag", "lag", "system_identification", 10.0, estimator="delay_grid"),
+            gap("sensor_noise", "noise", "noise_model", 5.0, "rest", "standard_deviation"),
+        ],
+        "excitation_budget_s": 20.0,
+        "randomization": {k: [-0.2, 0.2] for k in LOG_WIDTH},
+        "metric": "success",
+        "threshold": 0.94,
+    }

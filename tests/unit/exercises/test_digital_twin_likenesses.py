@@ -1,0 +1,242 @@
+"""Programs of ``digital-twin`` whose mistake has the effect of another: they are not told that one."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course.grading import kit
+
+ROOT = Path(__file__).resolve().parents[3]
+SOLUTION = ROOT / "solutions" / "digital-twin"
+spec = importlib.util.spec_from_file_location("digital_twin_again", SOLUTION / "digital_twin.py")
+right = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(right)
+
+actuators = kit.companion("digital-twin", "actuator_probes")
+scanners = kit.companion("digital-twin", "lidar_probes")
+sensors = kit.companion("digital-twin", "sensor_probes")
+sensor_bundles = kit.companion("digital-twin", "sensor_bundles")
+twins = kit.companion("digital-twin", "twin_probes")
+twin_bundles = kit.companion("digital-twin", "twin_bundles")
+
+
+class Fake:
+    """The model solution with one function replaced."""
+
+    def __init__(self, name, function):
+        self._name, self._function = name, function
+
+    def call(self, name, *args):
+        with np.errstate(all="ignore"):
+            return (self._function if name == self._name else getattr(right, name))(*args)
+
+    def call_each(self, name, calls):
+        return [self.call(name, *args) for args in calls]
+
+    def call_inspect(self, name, *args):
+        return kit.Inspected(self.call(name, *args), list(args), False)
+
+    def fold(self, name, state, calls, *, keep=None):
+        states = [state]
+        for args in calls:
+            states.append(self.call(name, states[-1], *args))
+        return states if keep is None else [{k: s[k] for k in keep} for s in states[:-1]] + states[-1:]
+
+
+def changed(task, *changes, source=None):
+    """A right function with each (old, new) of its source exchanged."""
+    source = inspect.getsource(getattr(right, task)) if source is None else source
+    for old, new in changes:
+        assert old in source, old
+        source = source.replace(old, new)
+    space = dict(vars(right))
+    exec(source, space)
+    return space[task]
+
+
+def shares(*changes):
+    """The same of the sync with constant shares."""
+    return changed("sync", *changes, source=(SOLUTION / "accepted/constant_shares.py").read_text("utf-8"))
+
+
+def told(task, function):
+    """The code that the probes of a task give a function."""
+    probe = {
+        "imu": sensors.of_imu,
+        "lidar": scanners.of_lidar,
+        "motor_step": actuators.of_motor,
+        "backlash": actuators.of_backlash,
+        "delay_line": actuators.of_delay,
+        "diff_drive_step": actuators.of_drive,
+        "sync": twins.of_sync,
+        "command": twins.of_command,
+    }[task]
+    return getattr(probe(Fake(task, function)), "code", None)
+
+
+STEPS, NOISE = "bias_random_walk * math.sqrt(dt)", "noise_density / math.sqrt(dt)"
+DRAWN = "rng.standard_normal(n - 1)"
+IMU = [
+    # The two strengths exchanged, or one of them used for both: the bias holds no white noise, and it moves.
+    (
+        "STRENGTHS_MIXED",
+        [(STEPS, "noise_density * math.sqrt(dt)"), (NOISE, "bias_random_walk / math.sqrt(dt)")],
+    ),
+    ("STRENGTHS_MIXED", [(NOISE, "bias_random_walk / math.sqrt(dt)")]),
+    ("STRENGTHS_MIXED", [(STEPS, "noise_density * math.sqrt(dt)")]),
+    ("STRENGTHS_MIXED", [(STEPS, "(noise_density + bias_random_walk) * math.sqrt(dt)")]),
+    # A number that is not random is no number that all samples share.
+    ("WHITE_NOISE_MISSING", [(NOISE + " * rng.standard_normal(n)", NOISE)]),
+    ("WHITE_NOISE_SHARED", [("rng.standard_normal(n)", "rng.standard_normal()")]),
+    ("BIAS_OUT_OF_STEP", [("(n), bias", "(n), np.full(n, bias0)")]),
+    ("BIAS_DRIFTS", [(DRAWN, "np.full(n - 1, rng.standard_normal())")]),
+    ("BIAS_STEPS_RELATED", [("np.cumsum(steps)", "np.cumsum(np.cumsum(steps))")]),
+    ("BIAS_STEPS_RELATED", [(DRAWN, "np.convolve(rng.standard_normal(n), (0.5, 0.5), 'valid')")]),
+    ("TRUE_RATE_MISSING", [("true + bias", "bias")]),
+    (None, [("true + bias", "dt * true + bias")]),
+    # Single precision is neither a step too many nor another bias.
+    (None, [("bias0 + np", "np.float32(bias0) + np")]),
+    (None, [("return true + bias", "return np.float32(true + bias)")]),
+    (None, [("bias0 + np", "2 * bias0 + np")]),
+]
+
+
+@pytest.mark.parametrize(("code", "changes"), IMU, ids=[f"{i}-{code}" for i, (code, _) in enumerate(IMU)])
+def test_a_gyroscope_is_told_no_other_mistake_of_the_same_effect(code, changes):
+    assert told("imu", changed("imu", *changes)) == code
+
+
+def test_a_bias_is_called_carried_over_only_if_it_starts_where_the_last_one_ended():
+    kept = {"last": 0.0}
+
+    def carrying(true, dt, density, walk, bias0, rng):
+        measured, bias = right.imu(true, dt, density, walk, kept["last"], rng)
+        kept["last"] = bias[-1]
+        return measured, bias
+
+    def fixed(true, dt, density, walk, bias0, rng):
+        return right.imu(true, dt, density, walk, 0.7, rng)
+
+    assert told("imu", carrying) == "BIAS_CARRIED_OVER"
+    assert told("imu", fixed) is None
+
+
+def test_densities_that_err_both_ways_and_densities_that_are_too_large_are_not_taken_for_each_other():
+    cases = sensor_bundles.recordings(np.random.default_rng(2), 8, lambda: (0.01, 0.002, 0.003, 0.05))
+    density, walk = np.full(8, 0.002), np.full(8, 0.003)
+
+    def code(found, beside=walk):
+        return sensors.of_density(found, cases, beside).code
+
+    assert code(1.5 * density) != "FIT_SWAPPED"  # though that is the walk's number
+    assert code(walk, density) == "FIT_SWAPPED"
+    assert code(density * np.tile([0.8, 1.2], 4)) == "DENSITY_SCATTERS"
+    small = walk * np.array([0.6, 0.5, 0.01, 0.02, 0.6, 0.05, 0.3, 0.01])
+    assert sensors.of_walk(small, cases).code == "WALK_TOO_SMALL"  # for all of them
+
+
+def test_a_scanner_that_ignores_one_coordinate_is_not_told_that_it_never_moves():
+    def sideways(pose, *rest):
+        return right.lidar((0.0, pose[1], pose[2]), *rest)
+
+    assert told("lidar", sideways) is None
+
+
+def test_readings_that_are_rounded_depend_on_the_generator():
+    def rounded(*args):
+        return np.round(right.lidar(*args), 3)
+
+    for seed in range(20):
+        sensor_bundles.expect_scan_draws(Fake("lidar", rounded), seed)
+
+
+ACTUATORS = [
+    ("DEADBAND_WIDTH", "motor_step", [("abs(u) <= deadband", "abs(u) <= 0.8 * deadband")]),
+    ("DEADBAND_WIDTH", "motor_step", [("abs(u) <= deadband", "abs(u) <= 1.2 * deadband")]),
+    (None, "motor_step", []),
+    ("GAP_SCALED", "backlash", [("gap / 2", "gap / math.sqrt(2)")]),
+    ("GAP_SCALED", "backlash", [("gap / 2", "0.6 * gap")]),
+    ("BACKLASH_RATE_DEPENDENT", "backlash", [("return y, y", "y = 0.5 * (y + state); return y, y")]),
+    (None, "delay_line", [("np.interp(t - latency, t, x, left=0.0)", "np.where(t >= latency, x, 0.0)")]),
+]
+
+
+@pytest.mark.parametrize(("code", "task", "changes"), ACTUATORS)
+def test_an_actuator_is_told_no_other_mistake_of_the_same_effect(code, task, changes):
+    assert told(task, changed(task, *changes)) == code
+
+
+@pytest.mark.parametrize("rate", ["w + 1e-12", "w + 2.2e-16", "(w if abs(w) > 1e-13 else 1e-13)"])
+def test_a_turn_rate_that_is_never_zero_is_no_code_for_straight_ahead(rate):
+    def by_the_radius(pose, v_left, v_right, track, dt):
+        x, y, h = pose
+        v, w = (v_left + v_right) / 2, (v_right - v_left) / track
+        w = eval(rate, {"w": w})
+        end = h + w * dt
+        return x + v / w * (math.sin(end) - math.sin(h)), y - v / w * (math.cos(end) - math.cos(h)), end
+
+    assert told("diff_drive_step", by_the_radius) == "SMALL_TURN_CANCELS"
+
+
+REST = '"t": t_measured'
+SYNC = [
+    (None, [(REST, '"t": twin["t"] + 0.3 * dt')]),  # it lags behind, and does not stand still
+    ("TIME_NOT_ADVANCED", [(REST, '"t": twin["t"]')]),
+    ("SMALL_SURPRISES_IGNORED", [("z - x", "(z - x) * (abs(z - x) > 3 * twin['sigma'])")]),
+    ("NO_CORRECTION", [("x + 0.3 * surprise", "x")]),
+    ("PREDICTS_TOO_LITTLE", [("dt / n * v", "dt / n * v / 2")]),
+    ("STEP_FIXED", [("n = max", "dt = min(dt, 0.1); n = max")]),
+    ("FRICTION_LEARNS_BACKWARDS", [("b - 0.15", "b + 0.15")]),
+    ("LEARNS_FORWARDS_ONLY", [("* np.sign(v)", "")]),
+    ("SHARE_TOO_LARGE", [("x + 0.3", "x + 0.7")]),
+    ("SHARE_OVER_ONE", [("x + 0.3", "x + 1.5")]),
+]
+
+
+@pytest.mark.parametrize(("code", "changes"), SYNC, ids=[f"{i}-{code}" for i, (code, _) in enumerate(SYNC)])
+def test_a_twin_is_told_no_other_mistake_of_the_same_effect(code, changes):
+    assert told("sync", shares(*changes)) == code
+
+
+def test_a_drive_that_is_remembered_is_not_one_that_is_ignored():
+    plain = shares()
+
+    def remembering(twin, z, t):
+        drive = twin["memory"].get("drive", twin["drive"])
+        found = plain({**twin, "drive": drive}, z, t)
+        return {**found, "drive": twin["drive"], "memory": {"drive": drive}}
+
+    assert told("sync", remembering) == "DRIVE_REMEMBERED"
+    assert told("sync", shares(('twin["drive"]', "0.0"))) == "DRIVE_NOT_USED"
+
+
+def test_a_history_that_only_late_measurements_read_is_read():
+    slow = shares(("b - 0.15", "b - 0.02"))
+
+    def with_history(twin, z, t):
+        past = [place for when, place in twin["memory"].get("past", []) if when <= t]
+        if t < twin["t"]:
+            moved = 0.1 * (z - past[-1]) if past else 0.0
+            return {**twin, "position": twin["position"] + moved}
+        found = slow(twin, z, t)
+        past = [*twin["memory"].get("past", []), (t, found["position"])][-10:]
+        return {**found, "memory": {"past": past}}
+
+    assert told("sync", with_history) == "FRICTION_LEARNS_SLOWLY"
+
+
+def test_a_large_memory_that_never_grows_is_told_its_size():
+    plain = shares()
+
+    def heavy(twin, z, t):
+        return {**plain(twin, z, t), "memory": {"past": np.zeros(1100)}}
+
+    with pytest.raises(kit.CheckFailed) as failed:
+        twin_bundles.expect_twin_contract(Fake("sync", heavy), np.random.default_rng(1))
+    assert failed.value.guess.code == "MEMORY_TOO_LARGE"

@@ -13,6 +13,7 @@ from course.catalog.load import Catalog
 from course.catalog.reading import read_text
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded, grade_all
+from course.isolation.keeping import kept_sandboxes
 from course.scoring.checks.collected import CollectedChecks
 from course.scoring.explain.calls import reached_from
 from course.scoring.judging.session import GradingSession, Submission, check_files
@@ -52,12 +53,13 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
     from course.engines.machine import this_machine
 
     graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
-    with _Sessions() as sessions:
-        models = {
-            exercise.id: _Model.graded(sessions, exercise)
-            for exercise in {exercise.id: exercise for exercise, _ in sources}.values()
-            if len(exercise.task) > 1  # where there is one function, every check asks for it
-        }
+    models: dict[str, _Model] = {}
+    with kept_sandboxes(), _Sessions() as sessions:
+        for exercise in {exercise.id: exercise for exercise, _ in sources}.values():
+            if len(exercise.task) > 1:  # where there is one function, every check asks for it
+                models[exercise.id] = _Model.graded(sessions, exercise)
+            if graders > 1:
+                sessions.close()
         entries = (
             Entry(
                 str(index), exercise, Submission({exercise.module: source}),
@@ -65,8 +67,6 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
             )
             for index, (exercise, source) in enumerate(sources)
         )  # fmt: skip
-        if graders > 1:
-            sessions.close()
         judged = sessions.grade(entries) if graders == 1 else grade_all(entries, Terms(), graders=graders)
         for graded in judged:
             verdict = graded.verdict

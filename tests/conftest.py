@@ -9,8 +9,10 @@ import gc
 import os
 import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 # Thousands of tests, and what they import, stay to the end. Looking through them for garbage every 700
@@ -26,6 +28,15 @@ settings.load_profile("course")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+
+@pytest.fixture(scope="module")
+def sandboxes() -> Iterator[None]:
+    """For a module whose sessions take their sandboxes over from each other, as a lesson's do."""
+    from course.isolation.keeping import kept_sandboxes
+
+    with kept_sandboxes():
+        yield
 
 
 def pytest_xdist_auto_num_workers() -> int:

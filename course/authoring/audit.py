@@ -166,8 +166,9 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
             audit_diagnoses(catalog, exercise, own)
             audit_style(catalog, exercise, own)
             proofs = plan(catalog, exercise, own)
-            # Checks that lack a marker would only fail again, all at once and less clearly.
-            if not own.of("check"):
+            # Checks that lack a marker would only fail again, all at once and less clearly; and a diagnosis
+            # without words breaks its check.
+            if not own.of("check", "words"):
                 declared_checks(exercise, catalog)
                 candidate = _Candidate(exercise, checks, proofs)
     except ContentError as error:

@@ -121,7 +121,7 @@ def in_cells(make: Callable[[], Figure], columns: int, rows: int = 0) -> Termina
         for axes in figure.axes:
             axes.tick_params(which="both", labelsize=size)
         canvas: Any = FigureCanvasAgg(figure)
-        canvas.draw()
+        figure.draw_without_rendering()  # it lays everything out
         labels = _labels(figure, canvas, columns, rows)
         _thicken(figure, 72.0 / dpi)
         canvas.draw()

@@ -18,7 +18,7 @@ from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.session import Connection, LoadRefusedError
 from course.isolation.spawn import Level, Spawner, spawner
 
-__all__ = ["Protection", "open_spawner", "probe"]
+__all__ = ["Protection", "open_spawner", "probe", "proves_itself"]
 
 _CANARY = b"""
 def canary(path):
@@ -102,6 +102,14 @@ def _proven(level: Level, imports: tuple[str, ...]) -> Spawner:
         found.close()
         raise
     return found
+
+
+def proves_itself(found: Spawner) -> bool:
+    """Whether a sandbox that was in use still keeps a canary in. At L1, where nothing holds one, it does."""
+    try:
+        return found.level is Level.L1 or not _escapes(found)
+    except IsolationError:
+        return False
 
 
 def _escapes(found: Spawner) -> list[str]:

@@ -43,7 +43,10 @@ def cross(a: Array, b: Array) -> Array:
     """Cross product along the last axis, shape (..., 3); faster on small arrays than NumPy's."""
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    x = ay * bz - az * by
+    vector = np.empty((*x.shape, 3))  # np.stack takes three times as long for a single vector
+    vector[..., 0], vector[..., 1], vector[..., 2] = x, az * bx - ax * bz, ax * by - ay * bx
+    return vector
 
 
 def product(p: Array, q: Array) -> Array:

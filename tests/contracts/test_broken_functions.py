@@ -63,11 +63,12 @@ def spoiled(value, bad):
     return value if isinstance(value, bool) else bad
 
 '''
-#: Seconds of CPU time a check waits. A right function needs far less; one that never answers is waited for by
-#: each check of its task. Checks of sim-to-real compute for a second.
+#: Seconds of CPU time a check waits; one that never answers is waited for by each check of its task. What a
+#: right solution takes for its longest check, with seven times that to spare: 0.07 s, and of these exercises
+#: 0.3 s, 0.7 s and, for all the tunings that a fleet of robots is driven by, more than a second.
 LATE = 60.0
-SOON = {"sim-to-real": 15.0}
-SOONEST = 2.0
+SOON = {"engine-comparison": 2.0, "validation": 5.0, "sim-to-real": 15.0}
+SOONEST = 0.5
 
 
 class Renamed(ast.NodeTransformer):

@@ -17,6 +17,7 @@ from course.figures.registry import figure_ids
 
 CATALOG = Catalog(content())
 LESSONS = CATALOG.lesson_ids()
+pytestmark = pytest.mark.usefixtures("sandboxes")
 
 
 def blocks_of(lesson_id: str) -> tuple[b.Block, ...]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
 
 CATALOG = Catalog()
+pytestmark = pytest.mark.usefixtures("sandboxes")
 
 HEAD = '''\
 import math

@@ -23,6 +23,7 @@ import pytest
 from course.progress.store import Store
 from tests.command_line import as_process, in_process
 
+pytestmark = pytest.mark.usefixtures("sandboxes")
 ROOT = Path(__file__).resolve().parents[2]
 MINI_COURSE = ROOT / "tests" / "fixtures" / "mini_course"
 WRONG = "def double(x):\n    return x * x\n\n\ndef doublings(x, n):\n    return [x]\n"

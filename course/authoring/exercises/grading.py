@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Self, TypeAlias
 
 import msgspec
 
@@ -12,14 +12,15 @@ from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
 from course.catalog.reading import read_text
 from course.grading.intake.students import Entry
-from course.grading.running.batch import grade_all
+from course.grading.running.batch import Graded, grade_all
+from course.isolation.keeping import kept_sandboxes
 from course.scoring.checks.collected import CollectedChecks
 from course.scoring.explain.calls import reached_from
 from course.scoring.judging.session import GradingSession, Submission, check_files
 from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from course.catalog.models import Exercise
     from course.scoring.checks.collected import Check
@@ -28,13 +29,13 @@ if TYPE_CHECKING:
 __all__ = ["GradeSources", "declared_checks", "grade_sources"]
 
 #: How many gradings of small exercises take as long as starting one more process.
-_WORTH_A_GRADER = 15
+_WORTH_A_GRADER = 25
 
 GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator[tuple[int, Verdict]]]"
 
 
 def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
-    """Grade sources as a grading run would, on every processor.
+    """Grade sources as a grading run would: a few in this process, more on every processor.
 
     The seed is fixed: the same files get the same verdicts, in any order. Most sources
     are the model solution with a few definitions after it. A check that uses none of the changed functions,
@@ -51,25 +52,56 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
     """
     from course.engines.machine import this_machine
 
-    catalog = Catalog()
-    models = {
-        exercise.id: _Model.graded(catalog, exercise)
-        for exercise in {exercise.id: exercise for exercise, _ in sources}.values()
-        if len(exercise.task) > 1  # where there is one function, every check asks for it
-    }
-    entries = (
-        Entry(
-            str(index), exercise, Submission({exercise.module: source}),
-            only=models[exercise.id].concerned(source) if exercise.id in models else (),
-        )
-        for index, (exercise, source) in enumerate(sources)
-    )  # fmt: skip
     graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
-    for graded in grade_all(entries, Terms(), graders=graders):
-        verdict = graded.verdict
-        if graded.entry.only and verdict.state == "graded":
-            verdict = models[graded.entry.exercise.id].completed(verdict, graded.entry.exercise)
-        yield int(graded.entry.student), verdict
+    models: dict[str, _Model] = {}
+    with kept_sandboxes(), _Sessions() as sessions:
+        for exercise in {exercise.id: exercise for exercise, _ in sources}.values():
+            if len(exercise.task) > 1:  # where there is one function, every check asks for it
+                models[exercise.id] = _Model.graded(sessions, exercise)
+            if graders > 1:
+                sessions.close()
+        entries = (
+            Entry(
+                str(index), exercise, Submission({exercise.module: source}),
+                only=models[exercise.id].concerned(source) if exercise.id in models else (),
+            )
+            for index, (exercise, source) in enumerate(sources)
+        )  # fmt: skip
+        judged = sessions.grade(entries) if graders == 1 else grade_all(entries, Terms(), graders=graders)
+        for graded in judged:
+            verdict = graded.verdict
+            if graded.entry.only and verdict.state == "graded":
+                verdict = models[graded.entry.exercise.id].completed(verdict, graded.entry.exercise)
+            yield int(graded.entry.student), verdict
+
+
+class _Sessions:
+    """A session of each exercise in this process, opened when first asked for."""
+
+    def __init__(self) -> None:
+        self.catalog = Catalog()
+        self._open: dict[str, GradingSession] = {}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def of(self, exercise: Exercise) -> GradingSession:
+        if exercise.id not in self._open:
+            self._open[exercise.id] = GradingSession(exercise, self.catalog, scope="full")
+        return self._open[exercise.id]
+
+    def grade(self, entries: Iterable[Entry]) -> Iterator[Graded]:
+        for entry in entries:
+            assert entry.submission is not None
+            yield Graded(entry, self.of(entry.exercise).grade(entry.submission, only=entry.only))
+
+    def close(self) -> None:
+        for session in self._open.values():
+            session.close()
+        self._open.clear()
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,11 +113,11 @@ class _Model:
     asked: dict[str, frozenset[str]]
 
     @classmethod
-    def graded(cls, catalog: Catalog, exercise: Exercise) -> _Model:
-        source = read_text(solution_path(catalog, exercise))
-        with GradingSession(exercise, catalog, scope="full") as session:
-            verdict = session.grade(Submission({exercise.module: source.encode()}))
-            return cls(source.rstrip(), verdict, dict(session.asked))
+    def graded(cls, sessions: _Sessions, exercise: Exercise) -> _Model:
+        source = read_text(solution_path(sessions.catalog, exercise))
+        session = sessions.of(exercise)
+        verdict = session.grade(Submission({exercise.module: source.encode()}))
+        return cls(source.rstrip(), verdict, dict(session.asked))
 
     def concerned(self, source: bytes) -> tuple[str, ...]:
         """Ids of the checks that a source's changes can affect; empty means all."""

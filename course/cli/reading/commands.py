@@ -218,8 +218,10 @@ def _read_by_line(
     console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, reader: Reader
 ) -> bool:
     from course.cli.reading.by_line import LineReader
+    from course.isolation.keeping import kept_sandboxes
 
-    return LineReader(console, here, catalog, chosen, reader).read()
+    with kept_sandboxes():  # its tasks are checked one after the other
+        return LineReader(console, here, catalog, chosen, reader).read()
 
 
 def _print_all(reader: Reader) -> bool:

@@ -68,12 +68,15 @@ def check(
     checked. If you worked in the notebook instead of the .py file, the notebook is checked.
     """
 
+    from course.isolation.keeping import kept_sandboxes
+
     form = known_format(form)
     console, here = current(), Here.load()
     if everything:
         if exercise is not None or only is not None:
             raise UsageError("--all takes neither an exercise nor --only.", help="Leave one of them out.")
-        return _check_all(console, here, verbose=verbose, form=form)
+        with kept_sandboxes():
+            return _check_all(console, here, verbose=verbose, form=form)
     chosen = chosen_work(here, *asked_for(here, exercise))
     reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
     if reply.next is not None and form == "text":

@@ -1,7 +1,7 @@
 """One grader process: reads jobs from standard input, writes verdicts to standard output.
 
 It is trusted, and only ever talks to the coordinator that started it. Frames are a 4-byte little-endian
-length and msgpack. Each exercise's checks are collected at its first job and kept.
+length and msgpack. Each exercise's checks are collected at its first job and kept for the next.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import msgspec
 from course.errors import CourseError, MissingCapabilityError
 from course.grading.pipes import read_frame, write_frame
 from course.handed_in.notebook import opened
+from course.isolation.keeping import kept_sandboxes
 from course.isolation.launch import keep_private
 from course.scoring.judging.submission import Submission
 from course.scoring.judging.terms import Terms
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from course.scoring.judging.session import GradingSession
 
 __all__ = ["Answer", "Config", "Job", "main"]
+
+#: Sessions, each with a sandbox of some 30 MB; more than a class has exercises. An audit has forty.
+_MOST_OPEN = 10
 
 
 class Config(msgspec.Struct, frozen=True):
@@ -88,8 +92,9 @@ def main() -> None:
     grader = _Grader(config)
     write_frame(sink, Answer())  # started: from here on a death is some submission's doing
     try:
-        while (frame := read_frame(source)) is not None:
-            write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))
+        with kept_sandboxes():
+            while (frame := read_frame(source)) is not None:
+                write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))
     except (KeyboardInterrupt, BrokenPipeError):
         pass  # the coordinator reports the interruption
     finally:
@@ -146,6 +151,8 @@ class _Grader:
         from course.scoring.judging.session import GradingSession
 
         if exercise not in self._sessions:
+            if len(self._sessions) == _MOST_OPEN:
+                self._sessions.pop(next(iter(self._sessions))).close()
             self._sessions[exercise] = GradingSession(
                 self._catalog.exercise(exercise),
                 self._catalog,

@@ -10,6 +10,7 @@ import ast
 import math
 import operator
 import warnings
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
@@ -87,6 +88,7 @@ def names(text: str) -> frozenset[str]:
     return frozenset(found - _CONSTANTS.keys())
 
 
+@lru_cache(maxsize=256)  # reading a scene asks for each of its formulas a dozen times
 def _tree(text: str) -> ast.expr:
     if len(text) > _MAX_LENGTH:
         raise _refused(text[:40] + "...", f"is longer than {_MAX_LENGTH} letters")

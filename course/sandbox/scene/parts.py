@@ -70,13 +70,14 @@ def layout(scene: Scene) -> tuple[Part, ...]:
     """
     chance = random.Random(scene.seed)
     parts: list[Part] = []
+    moving = 0
     for body in scene.body:
         material = scene.materials[body.material]
         for number, (name, x, y) in enumerate(_places(body, chance)):
-            moving = sum(not part.fixed for part in parts)
             colour = FIXED_COLOUR if body.fixed else PALETTE[moving % len(PALETTE)]
             part = _part(body, material, name, (x, y), body.colour or colour)
-            parts.append(replace(part, appears=number * body.interval))
+            parts.append(replace(part, appears=number * body.interval) if body.interval else part)
+            moving += not body.fixed
     return tuple(parts)
 
 

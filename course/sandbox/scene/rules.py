@@ -134,8 +134,9 @@ def _is_convex(points: tuple[tuple[float, float], ...]) -> bool:
 
 
 def _check_joints(document: Document[Scene]) -> None:
-    names = {part.name for part in layout(document.value)}
-    fixed = {part.name for part in layout(document.value) if part.fixed}
+    parts = layout(document.value)
+    names = {part.name for part in parts}
+    fixed = {part.name for part in parts if part.fixed}
     for i, joint in enumerate(document.value.joint):
         for side in ("a", "b"):
             name = getattr(joint, side)

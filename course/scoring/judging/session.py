@@ -18,8 +18,8 @@ import msgspec
 from course.errors import InternalError, MissingCapabilityError, UngradableError
 from course.figures.drawing.curves import compared, marched
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.keeping import open_sandbox
 from course.isolation.launch import keep_private
-from course.isolation.probe import open_spawner
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
@@ -369,7 +369,7 @@ def _open(imports: tuple[str, ...], terms: Terms) -> Spawner:
     lowest = Level(terms.level or terms.at_least)
     highest = Level.L3 if terms.level is None else lowest
     try:
-        return open_spawner(imports, at_least=lowest, at_most=highest)
+        return open_sandbox(imports, at_least=lowest, at_most=highest)
     except IsolationError as error:
         raise MissingCapabilityError(
             f"This machine cannot run submissions at protection level {lowest}: {error}.",

@@ -24,7 +24,7 @@ MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
 
 
 @pytest.fixture
-def mini(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def mini(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sandboxes: None) -> Path:
     """The folder of a private copy of the miniature course, in use as the course."""
     folder = (tmp_path / "mini").resolve()
     shutil.copytree(MINI, folder)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from unittest.mock import Mock
 
 import msgspec
+import pytest
 
+from course.authoring.exercises import grading
 from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path
 from course.catalog.load import Catalog
@@ -13,8 +16,6 @@ from course.scoring.judging.session import GradingSession, Submission
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    import pytest
 
     from course.scoring.verdict import Verdict
 
@@ -37,7 +38,12 @@ def plain(verdict: Verdict) -> Verdict:
     return msgspec.structs.replace(verdict, checks=checks)
 
 
-def test_every_source_gets_the_verdict_of_all_checks(mini: Path) -> None:
+@pytest.mark.parametrize("worth_a_grader", [5, 100], ids=["processes", "here"])
+def test_every_source_gets_the_verdict_of_all_checks(
+    mini: Path, monkeypatch: pytest.MonkeyPatch, worth_a_grader: int
+) -> None:
+    monkeypatch.setattr(grading, "_WORTH_A_GRADER", worth_a_grader)
+    monkeypatch.setattr(grading, "grade_all", used := Mock(wraps=grading.grade_all))
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise)
@@ -46,6 +52,7 @@ def test_every_source_gets_the_verdict_of_all_checks(mini: Path) -> None:
     sources += [f"{model.read_text('utf-8').rstrip()}\n\n\n{after}".encode() for after in AFTER.values()]
     sources += [exercise.stub_path.read_bytes(), b"def double(x):\n    return 2 * x\n", b"(", b""]
     found = dict(grade_sources([(exercise, source) for source in sources]))
+    assert used.called == (worth_a_grader == 5)
     with GradingSession(exercise, catalog, scope="full") as session:
         for index, source in enumerate(sources):
             whole = session.grade(Submission({exercise.module: source}))
@@ -55,24 +62,21 @@ def test_every_source_gets_the_verdict_of_all_checks(mini: Path) -> None:
 def test_a_check_that_cannot_see_a_change_is_not_run_again(
     mini: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from course.authoring.exercises import grading
+    asked: list[set[str] | None] = []
+    grade = GradingSession.grade
 
-    asked: dict[str, set[str] | None] = {}
-    grade_all = grading.grade_all
+    def watched(session, submission, *, only=()):
+        asked.append({check.split("_")[0] for check in only} or None)
+        return grade(session, submission, only=only)
 
-    def watched(entries, *rest, **named):
-        entries = list(entries)
-        for name, entry in zip(AFTER, entries, strict=True):
-            asked[name] = {check.split("_")[0] for check in entry.only} or None
-        return grade_all(entries, *rest, **named)
-
-    monkeypatch.setattr(grading, "grade_all", watched)
+    monkeypatch.setattr(GradingSession, "grade", watched)
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise).read_text("utf-8").rstrip()
     list(grade_sources([(exercise, f"{model}\n\n\n{after}".encode()) for after in AFTER.values()]))
-    assert asked["a function"] == {"double"}
-    assert asked["the other, by a helper"] == {"doublings"}
-    assert asked["a module they both use"] == {"doublings"}
+    of = dict(zip(["the model", *AFTER], asked, strict=True))
+    assert of["a function"] == {"double"}
+    assert of["the other, by a helper"] == {"doublings"}
+    assert of["a module they both use"] == {"doublings"}
     for name in ("nothing", "something inside a function", "an item of a table", "what does not load"):
-        assert asked[name] is None, name
+        assert of[name] is None, name

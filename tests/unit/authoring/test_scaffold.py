@@ -13,7 +13,10 @@ from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
+
+    from course.authoring.report import AuditReport
 
 SOLVED = {
     "exercises/tripling/exercise.toml": ["Tripling", "Three times.", "Three times a number"],
@@ -72,10 +75,13 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(mini: Path) -> None:
+def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
     new_exercise(Catalog(), "tripling")
     fill(mini)
-    report = audit(Catalog())
+    assert audit(Catalog(), "tripling").problems == ()
+    report = run()
     assert [f"{p.where} {p.message}" for p in report.problems] == []
     assert report.exercises == ("doubling", "halving", "tripling")
     assert Catalog().exercise("tripling").order == 3
@@ -96,12 +102,12 @@ def test_the_audit_names_every_blank_with_its_line(mini: Path) -> None:
     assert report.graded == 0
 
 
-def test_one_blank_left_over_is_one_problem(mini: Path) -> None:
+def test_one_blank_left_over_is_one_problem(mini: Path, run: Callable[..., AuditReport]) -> None:
     new_exercise(Catalog(), "tripling")
     fill(mini)
     path = mini / "solutions" / "tripling" / "README.md"
     path.write_text("<<FILL IN: why it works>>\n")
-    (problem,) = audit(Catalog()).problems
+    (problem,) = run().problems
     assert problem.where == "solutions/tripling/README.md:1"
     assert problem.message == "still to be filled in: why it works."
 
@@ -177,14 +183,16 @@ def test_a_name_that_cannot_be_used_is_refused(mini: Path, name: str) -> None:
     assert contents(mini) == before
 
 
-def test_a_new_lesson_passes_once_it_is_filled_and_listed(mini: Path) -> None:
+def test_a_new_lesson_passes_once_it_is_filled_and_listed(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
     (path,) = new_lesson(Catalog(), "three-times")
-    problems = audit(Catalog()).problems
+    problems = run().problems
     assert {p.code for p in problems} == {"blank", "syllabus"}
     path.write_text(BLANK.sub("Three times, 2026.", path.read_text()))
     syllabus = mini / "lessons" / "syllabus.toml"
     syllabus.write_text(syllabus.read_text().replace('"half-as-much"]', '"half-as-much", "three-times"]'))
-    assert audit(Catalog()).problems == ()
+    assert run().problems == ()
     with pytest.raises(UsageError, match="nothing is overwritten"):
         new_lesson(Catalog(), "three-times")
 
@@ -197,13 +205,13 @@ def test_a_student_has_no_place_for_new_exercises(mini: Path) -> None:
         new_lesson(Catalog(), "three-times")
 
 
-def test_a_new_question_passes_once_it_is_filled(mini: Path) -> None:
+def test_a_new_question_passes_once_it_is_filled(mini: Path, run: Callable[..., AuditReport]) -> None:
     (path,) = new_question(Catalog(), "twice-or-square")
-    blanks = [p for p in audit(Catalog()).problems if p.code == "blank"]
+    blanks = [p for p in run().problems if p.code == "blank"]
     assert {p.file for p in blanks} == {"quiz/twice-or-square.toml"}
     texts = iter(range(1000))  # texts of options must differ from each other
     filled = BLANK.sub(lambda _: f"Sentence number {next(texts)} of this question, 2026", path.read_text())
     path.write_text(filled)
-    assert [p.message for p in audit(Catalog()).problems] == []
+    assert [p.message for p in run().problems] == []
     with pytest.raises(UsageError, match="nothing is overwritten"):
         new_question(Catalog(), "twice-or-square")

@@ -41,7 +41,7 @@ class Drawn(NamedTuple):
 def drawn(figure_id: str) -> Drawn:
     figure = registry.build(figure_id)
     with house_style():
-        figure.canvas.draw()
+        figure.draw_without_rendering()  # it lays everything out
     words = [
         Text.get_window_extent(text)  # of the words alone: an annotation's own extent includes its line
         for axes in figure.axes

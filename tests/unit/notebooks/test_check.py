@@ -22,6 +22,7 @@ from course.progress.workspace import Workspace
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+pytestmark = pytest.mark.usefixtures("sandboxes")
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 DOUBLE = "def double(x):\n    return x + x"
 DOUBLINGS = "def doublings(x, n):\n    return [x * 2**k for k in range(n + 1)]"

@@ -149,7 +149,8 @@ author pack --solutions doubling -o released.coursepack
 
 
 def _stand_in_for_what_waits(monkeypatch):
-    """A watch ends at once, and what `course open` starts is there already."""
+    """A watch ends at once, what `course open` starts is there already, and no film is made."""
+    from course.cli.author import pictures
     from course.cli.work import watching
     from course.notebooks import server
 
@@ -158,6 +159,7 @@ def _stand_in_for_what_waits(monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(watching, "saves", ended)
+    monkeypatch.setattr(pictures, "PICTURES", {"sandbox.gif": (lambda: b"another film", bytes)})
     lab = server.Lab("http://localhost:8888/lab?token=1", None)
     monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))
     monkeypatch.setattr(server.Lab, "wait", lambda _: 0)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.usefixtures("sandboxes")
 CATALOG = Catalog()
 LESSON = "numerical-integration"
 OFFERS = re.compile(r"Here (1 2 3 say|r runs|start puts|check runs)")

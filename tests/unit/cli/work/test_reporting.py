@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+pytestmark = pytest.mark.usefixtures("sandboxes")
 RIGHT = "import numpy as np\n\n\ndef double(x):\n    return 2 * x\n\n\ndef doublings(x, n):\n"
 DOUBLINGS = "    return x * 2.0 ** np.arange(n + 1)\n"
 

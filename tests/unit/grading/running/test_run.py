@@ -230,7 +230,7 @@ def test_a_run_that_is_refused_leaves_its_name_free(
     with pytest.raises(MissingCapabilityError):
         grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
     assert not out.exists()
-    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None)
+    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=right)
     assert summary.states["graded"] == 2
 
     # What was there before, or has a result in it, stays.
@@ -239,7 +239,7 @@ def test_a_run_that_is_refused_leaves_its_name_free(
     assert (out / "gradebook.sqlite").exists()
 
     def broken_off(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
-        yield next(grade_all((entry for entry in entries if entry.submission is not None), terms))
+        yield next(right((entry for entry in entries if entry.submission is not None), terms))
         raise MissingCapabilityError("The scheduler is gone.", help="Start it.", code="no_scheduler")
 
     with pytest.raises(MissingCapabilityError):
@@ -323,7 +323,7 @@ def test_a_question_that_is_not_finished_stops_only_a_run_with_the_quiz(
         grade_class(tmp_path / "class", tmp_path / "out", Catalog(), RunOptions(), lambda *_: None)
     assert not (tmp_path / "out").exists()
     only = RunOptions(exercises=("doubling",))
-    grade_class(tmp_path / "class", tmp_path / "out", Catalog(), only, lambda *_: None)
+    grade_class(tmp_path / "class", tmp_path / "out", Catalog(), only, lambda *_: None, grade=right)
     assert len(scores(tmp_path / "out")) == 1
 
 

@@ -1,0 +1,103 @@
+"""Sandboxes that one session takes over from another: those of its kind, that still keep a canary in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.isolation import keeping
+from course.isolation.keeping import kept_sandboxes, open_sandbox
+from course.isolation.spawn import Level
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+class Sandbox:
+    """One of no kind in particular, which says what becomes of it."""
+
+    level = Level.L2
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+        self.proves = True
+
+    def spawn(self) -> None:
+        self.told.append("spawned")
+
+    def tidy(self) -> None:
+        self.told.append("tidied")
+
+    def close(self) -> None:
+        self.told.append("closed")
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Sandbox]]:
+    made: list[Sandbox] = []
+
+    def new(*_: object, **__: object) -> Sandbox:
+        made.append(Sandbox())
+        return made[-1]
+
+    monkeypatch.setattr(keeping, "open_spawner", new)
+    monkeypatch.setattr(keeping, "proves_itself", lambda one: one.proves)
+    yield made
+    assert {one.told.count("closed") for one in made} == {1}
+
+
+def test_one_session_takes_over_from_another_of_its_kind(opened: list[Sandbox]) -> None:
+    with kept_sandboxes():
+        for _ in range(3):
+            sandbox = open_sandbox(("numpy",))
+            sandbox.spawn()
+            sandbox.close()
+            sandbox.close()
+        assert [one.told for one in opened] == [["spawned"] * 3]
+        open_sandbox(("numpy", "scipy")).close()
+        open_sandbox(("numpy",), at_most=Level.L1).close()
+        assert len(opened) == 3
+
+
+def test_two_at_once_have_one_each(opened: list[Sandbox]) -> None:
+    with kept_sandboxes():
+        first, second = open_sandbox(("numpy",)), open_sandbox(("numpy",))
+        first.close()
+        second.close()
+        assert len(opened) == 2
+
+
+def test_what_no_longer_proves_itself_is_closed_and_replaced(opened: list[Sandbox]) -> None:
+    with kept_sandboxes():
+        open_sandbox(("numpy",)).close()
+        opened[0].proves = False
+        open_sandbox(("numpy",)).close()
+        assert [one.told for one in opened] == [["closed"], []]
+
+
+def test_what_is_still_in_use_at_the_end_is_closed_by_its_session(opened: list[Sandbox]) -> None:
+    with kept_sandboxes(), kept_sandboxes():
+        sandbox = open_sandbox(("numpy",))
+    assert opened[0].told == []
+    sandbox.close()
+
+
+def test_none_is_kept_unless_that_was_asked_for(opened: list[Sandbox]) -> None:
+    open_sandbox(("numpy",)).close()
+    open_sandbox(("numpy",)).close()
+    assert len(opened) == 2
+
+
+def test_one_whose_zygote_was_killed_serves_the_next_all_the_same() -> None:
+    with kept_sandboxes():
+        first = open_sandbox(("numpy",))
+        if first.level is Level.L1:
+            pytest.skip("at L1 there is no zygote")
+        real = first._real
+        real._process.kill()
+        real._process.wait()
+        first.close()
+        second = open_sandbox(("numpy",))
+        second.spawn().finish()
+        second.close()

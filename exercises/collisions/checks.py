@@ -70,7 +70,7 @@ def test_impulse_separating(submission, draw):
 @pytest.mark.task(bundles.IMPULSE)
 @pytest.mark.points(0)
 def test_impulse_walls(submission, draw):
-    """A wall: one of the masses is infinite (no points here, two in the grading run)"""
+    """A wall: one of the masses is infinite"""
     bundles.expect_walls(submission, bundles.IMPULSE, "impulse_walls", draw)
 
 
@@ -105,7 +105,7 @@ def test_resolve_separating(submission, draw):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(0)
 def test_resolve_walls(submission, draw):
-    """A wall: one of the masses is infinite (no points here, two in the grading run)"""
+    """A wall: one of the masses is infinite"""
     bundles.expect_walls(submission, bundles.RESOLVE, "resolve_walls", draw)
 
 
@@ -140,7 +140,7 @@ def test_friction_absent(submission, draw):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(0)
 def test_friction_walls(submission, draw):
-    """A rough wall: one of the masses is infinite (no points here, two in the grading run)"""
+    """A rough wall: one of the masses is infinite"""
     bundles.expect_walls(submission, bundles.FRICTION, "friction_walls", draw)
 
 
@@ -175,35 +175,35 @@ def test_moment_never(submission, draw):
 @pytest.mark.task(bundles.SPHERES)
 @pytest.mark.points(0)
 def test_sphere_arguments(submission, draw):
-    """detect_sphere_sphere leaves its arguments as they are (no points here, judged in the grading run)"""
+    """detect_sphere_sphere leaves its arguments as they are"""
     bundles.expect_kept(submission, bundles.SPHERES, bundles.asked("sphere_contact", draw)[0])
 
 
 @pytest.mark.task(bundles.PLANE)
 @pytest.mark.points(0)
 def test_plane_arguments(submission, draw):
-    """detect_sphere_plane leaves its arguments as they are (no points here, judged in the grading run)"""
+    """detect_sphere_plane leaves its arguments as they are"""
     bundles.expect_kept(submission, bundles.PLANE, bundles.asked("plane_contact", draw)[1])
 
 
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(0)
 def test_resolve_arguments(submission, draw):
-    """resolve leaves its arguments as they are (no points here, two in the grading run)"""
+    """resolve leaves its arguments as they are"""
     bundles.expect_kept(submission, bundles.RESOLVE, bundles.asked("resolve_oblique", draw)[1])
 
 
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(0)
 def test_friction_arguments(submission, draw):
-    """resolve_with_friction leaves its arguments as they are (no points here, one in the grading run)"""
+    """resolve_with_friction leaves its arguments as they are"""
     bundles.expect_kept(submission, bundles.FRICTION, bundles.asked("friction_regimes", draw)[1])
 
 
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(0)
 def test_moment_arguments(submission, draw):
-    """time_of_impact leaves its arguments as they are (no points here, judged in the grading run)"""
+    """time_of_impact leaves its arguments as they are"""
     bundles.expect_kept(submission, bundles.MOMENT, bundles.asked("moment_of_contact", draw)[2])
 
 
@@ -229,7 +229,7 @@ def test_head_on_mended(submission, draw):
 @pytest.mark.task(bundles.HEAD_ON)
 @pytest.mark.points(0)
 def test_head_on_arguments(submission, draw):
-    """simulate_head_on leaves its arguments as they are (no points here, judged in the grading run)"""
+    """simulate_head_on leaves its arguments as they are"""
     scene, _, h = bundles.asked("head_on_mended", draw)[1]
     value = bundles.expect_kept(submission, bundles.HEAD_ON, scene.args(20 * h, h))
     # A program that is not mended yet leaves them alone as well, and has its samples wrong.

@@ -187,6 +187,7 @@ def _only_where(task, calls, values, truth):
     special = (
         ("ONLY_WITHOUT_REBOUND", lambda call: call[4 if task == "impulse_1d" else 5] == 0.0),
         ("ONLY_NEARLY_EQUAL", lambda call: 0.99 < call[0] / call[1] < 1.01 and call[0] != call[1]),
+        ("ONLY_NEARLY_EQUAL", lambda call: 0.9999 < call[0] / call[1] < 1.0001 and call[0] != call[1]),
         ("ONLY_VERY_UNEQUAL", lambda call: max(call[:2]) > 1e4 * min(call[:2]) and math.inf not in call[:2]),
     )
     return next((code for code, is_so in special if list(map(is_so, calls)) == wrong), None)

@@ -51,6 +51,8 @@ FIXED = {
         # Touching exactly: whole numbers, 3-4-5, so that nothing is rounded. And a gap of 4 mm.
         ([1, 0, 0], 1.0, [4, 0, 4], 4.0),
         ([0, 0], 0.25, [0, 1.004], 0.75),
+        # Centres that nearly coincide: they have a direction.
+        ([0, 1, 0], 0.5, [3e-6, 1, 4e-6], 0.7),
     ),
     "plane_contact": _calls(
         ([3, 1, 0.3], 0.5, [0, 0, 0], [0, 0, 1]),
@@ -65,9 +67,10 @@ FIXED = {
         (1.0, 3.0, 2.0, -2.0, 0.5),
         (2.0, 1.0, 5.0, 1.0, 0.0),
         (1.0, 4.0, -1.0, -3.0, 0.8),
-        (2.0, 1.0, 0.01, 0.004, 0.5),
+        (2.0, 1.0, 0.01, 0.0096, 0.5),
         # Nearly the same mass, and one that is nearly a wall.
         (2.0, 2.015, 3.0, -1.0, 0.5),
+        (2.0, 2.00001, 3.0, -1.0, 0.5),
         (1.0, 50000.0, 3.0, -1.0, 0.5),
     ],
     "impulse_separating": [
@@ -81,8 +84,9 @@ FIXED = {
         (1.0, 1.0, [2, 1, 0], [-2, 0, 3], [1, 0, 0], 1.0),
         (1.0, 3.0, [4, 1, 2], [-1, 2, 0], [0.6, 0, 0.8], 0.5),
         (5.0, 0.5, [0, -3], [1, 2], [0.8, -0.6], 0.3),
-        (1.0, 2.0, [0.01, 1], [0.002, 0], [1, 0], 0.6),
+        (1.0, 2.0, [0.01, 1], [0.0097, 0], [1, 0], 0.6),
         (2.0, 2.015, [3, 1], [-1, 0], [1, 0], 0.5),
+        (2.0, 2.00001, [3, 1], [-1, 0], [1, 0], 0.5),
         (1.0, 50000.0, [3, 1], [-1, 0], [1, 0], 0.5),
     ),
     "resolve_separating": _calls(
@@ -99,7 +103,9 @@ FIXED = {
         *_calls(*((*_RUB, mu) for mu in (0.1, 0.3, 0.9, 4.0))),
         *_calls((2.0, 1.0, [1, -3], [0, 1], [0, -1], 0.2, 0.15)),
         *_calls((1.0, 2.0, [1, 9], [0, -8], [1, 0], 0.5, 2.5)),
-        *_calls(*((1.0, mb, [3, 1], [-1, 0], [1, 0], 0.5, 0.1) for mb in (1.008, 50000.0))),
+        # Sliding at 5 mm/s, and masses as above.
+        *_calls((1.0, 2.0, [1, 0.003], [-1, -0.002], [1, 0], 0.5, 0.3)),
+        *_calls(*((1.0, mb, [3, 1], [-1, 0], [1, 0], 0.5, 0.1) for mb in (1.008, 1.000005, 50000.0))),
     ],
     "friction_absent": _calls(
         (1.0, 2.0, [3, 1, 0], [0, 0, 2], [1, 0, 0], 0.5, 0.0),
@@ -132,22 +138,26 @@ FIXED = {
         ([0, 0, 0], [1, 0, 0], 0.5, [0.75, 0, 0], [0, 0, 0], 0.5, 1.0),
         ([0, 0, 0], [-1, 0, 0], 0.5, [0.75, 0, 0], [0, 0, 0], 0.5, 1.0),
     ),
-    # The README's example, a pair that meets within the first step, one behind the other, and a slow pair.
+    # The README's example, a pair that meets within the first step (for a duration whose quotient by h is not
+    # exact), one behind the other, a slow pair, and the first again: nothing that is kept may count.
     "head_on_mended": [
         *_e(1.0, 0.5, 0.0),
-        (paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5), 1.0, 0.05),
+        (paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5), 0.9, 0.03),
         (paths.HeadOn((2.0, 1.0), (-1.5, 0.53), (3.0, 1.0), 0.25, 0.5), 2.0, 0.05),
         (paths.HeadOn((1.0, 2.0), (-0.251, 0.2515), (0.002, -0.001), 0.25, 0.6), 2.0, 0.05),
+        *_e(1.0),
     ],
     "head_on_pymunk": [(paths.HeadOn((1.0, 3.0), (-5.0, 5.0), (2.0, -2.0), 0.5, 0.6), 4.8, 0.008)],
-    # Dropped, thrown upwards, thrown from the floor, for a duration whose quotient by h is not exact, and
-    # thrown up from just above the floor, so slowly that it is back within the step.
+    # Dropped, thrown upwards, thrown from the floor, for a duration whose quotient by h is not exact,
+    # thrown up from just above the floor, so slowly that it is back within the step, and dropped from so low
+    # that it rests at once, though it would lose nothing.
     "drop_bounces": [
         (_BALL, 4.0, 0.01),
         (paths.Drop(0.5, 3.0, 0.2, 0.5), 4.0, 0.01),
         (paths.Drop(0.2, 2.5, 0.2, 0.6), 1.5, 0.01),
         (paths.Drop(0.5, 0.0, 0.1, 0.6), 0.29, 0.01),
         (paths.Drop(0.1001, 0.02, 0.1, 0.6), 0.2, 0.01),
+        (paths.Drop(0.1004, 0.0, 0.1, 1.0), 0.28, 0.01),
     ],
     "drop_pymunk": [(_BALL, 0.9, 0.002)],  # it ends before the second contact, where pymunk's errors add up
 }

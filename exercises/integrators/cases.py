@@ -23,7 +23,7 @@ def refused(rng):
 
 
 def scattered(rng):
-    """(hs, errors) whose errors do not all grow with the step; that are tiny; of which two are equal."""
+    """(hs, errors) whose errors do not all grow with the step; tiny ones; two equal ones; falling ones."""
     hs = 0.3 * np.cumprod(rng.uniform(0.5, 0.8, 6))
     up_and_down = np.exp(rng.uniform(0.8, 1.6, 6) * np.array([-1, 1, -1, 1, -1, 1]))
     yield hs, rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 1.5) * up_and_down
@@ -34,6 +34,7 @@ def scattered(rng):
     errors = hs ** rng.uniform(0.8, 3.0) * np.exp(rng.normal(0.0, 0.2, 5))
     errors[2] = errors[1]
     yield hs, errors
+    yield hs, errors[::-1] * np.array([1.0, 1.1, 0.9, 1.1, 1.0])
 
 
 def starts(rng):
@@ -120,8 +121,22 @@ def expect_clean(submission, task, system, t, whole, h):
     )
     # The values of two calls in a row: the second must not change what the first returned.
     submission.call_each(task, [args, [system, t, args[3], args[2], h]])
+    _expect_whole(submission, task, system, [*args[1:2], *whole, h], wanted, given)
+    # An acceleration of whole numbers, too, must not leave the result without room for fractions.
+    floats = kit.as_pair(submission.call(task, _spring, *args[1:]), 2)
+    spring = {"accel": "-4 * q, of whole numbers", "t": t, "q": whole[0], "v": whole[1], "h": h}
+    _expect_whole(submission, task, _spring, [t, *whole, h], floats, spring)
+
+
+def _spring(t, q, v):
+    """-4 q, of the type that q has."""
+    return -4 * np.asarray(q)
+
+
+def _expect_whole(submission, task, accel, call, wanted, given):
+    """From whole numbers a step gives what it gives from floats (``wanted``)."""
     result = kit.expect_accepts(
-        lambda: submission.call(task, system, t, *whole, h),
+        lambda: submission.call(task, accel, *call),
         "TypeError",
         input=given,
         message="The step fails on a state of whole numbers.",

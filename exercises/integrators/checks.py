@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import cycle
 
 import numpy as np
 import pytest
@@ -208,7 +209,7 @@ def test_integrate_counts(submission, draw):
 @pytest.mark.task("integrate")
 @pytest.mark.points(0)
 def test_integrate_refusals(submission, draw):
-    """integrate refuses durations that are not a whole number of steps (no points here, two when graded)"""
+    """integrate refuses durations that are not a whole number of steps"""
     durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.000002, 0.2)) if draw is None else cases.refused(draw)
     cases.expect_refusals(submission, (np.array([1.0]), np.array([0.0])), durations)
 
@@ -253,11 +254,12 @@ def test_observed_order_slope(submission, draw):
 @pytest.mark.task("observed_order")
 @pytest.mark.points(0)
 def test_observed_order_scattered(submission, draw):
-    """All points count where they scatter, however small (no points here, six in the grading run)"""
+    """All points count where they scatter, however small"""
     points = [
         ([0.1, 0.05, 0.02, 0.01], [0.02, 0.03, 0.004, 0.006]),
         ([0.3, 0.04, 0.006, 0.0009], [2e-3, 9e-7, 3e-10, 4e-15]),
         ([0.2, 0.1, 0.05, 0.02], [0.03, 0.004, 0.004, 0.0005]),
+        ([0.4, 0.2, 0.1], [0.011, 0.02, 0.04]),
     ]
     if draw is not None:
         points = [(hs.tolist(), errors.tolist()) for hs, errors in cases.scattered(draw)]
@@ -307,7 +309,7 @@ def test_stable_step_verlet(submission, draw):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(0)
 def test_stable_step_ends(submission, draw):
-    """Zero, infinity, narrow unstable ranges, slow growth (no points here, seven in the grading run)"""
+    """Zero, infinity, narrow unstable ranges, slow growth"""
     euler = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
     calm = systems.LinearStep([0.5, 0.02], [0.1], [0.0], [0.4])
     starts, growing = (0.6, 0.92, 1.37, 2.15, 3.3, 8.2, 8.47, 8.74, 9.01), 2.6
@@ -317,7 +319,8 @@ def test_stable_step_ends(submission, draw):
         near, fast, beyond = draw.uniform((0.2, 45.0, 10.3), (0.5, 60.0, 12.0)).tolist()
     maps = [(euler, 1.3, 0.0, "one that is unstable at every step")]
     maps += [(calm, 1.3, math.inf, "one that never is")]
-    maps += [(cases.pocket(low), 1.3, low, "one that is unstable in a narrow range") for low in starts]
+    kind = "one that is unstable in a narrow range"
+    maps += [(cases.pocket(low), omega, low, kind) for low, omega in zip(starts, cycle((1.3, fast)))]
     maps += [(cases.slow_growth(growing), 1.3, growing, "one whose growth is slow")]
     maps += [(cases.slow_growth(near), fast, near, "one that is soon unstable, on a fast spring")]
     maps += [(cases.slow_growth(beyond), 1.3, math.inf, "one that is unstable beyond 10/omega only")]
@@ -341,35 +344,35 @@ def test_stable_step_ends(submission, draw):
 @pytest.mark.task("explicit_euler_step")
 @pytest.mark.points(0)
 def test_explicit_euler_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers"""
     _expect_clean(submission, "explicit_euler_step")
 
 
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(0)
 def test_semi_implicit_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers"""
     _expect_clean(submission, "semi_implicit_euler_step")
 
 
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(0)
 def test_verlet_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers"""
     _expect_clean(submission, "velocity_verlet_step")
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(0)
 def test_rk4_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers (no points here, two in the grading run)"""
+    """The step leaves q and v alone and takes whole numbers"""
     _expect_clean(submission, "rk4_step")
 
 
 @pytest.mark.task("integrate")
 @pytest.mark.points(0)
 def test_integrate_arguments(submission):
-    """integrate leaves q0 and v0 alone and takes whole numbers (no points here, two in the grading run)"""
+    """integrate leaves q0 and v0 alone and takes whole numbers"""
     q0, v0, h, n = np.array([2, -1]), np.array([1, 3]), 0.25, 4
     args = [_spiral(0.4, 0.98), systems.Oscillator(2.0), q0, v0, n * h, h]
     given = {"q0": q0, "v0": v0, "t_end": n * h, "h": h}
@@ -384,7 +387,7 @@ def test_integrate_arguments(submission):
     q = kit.as_array(q, (n + 1, 2), "q")
     kit.expect_true(
         not np.array_equal(q, np.trunc(q)),
-        "From an initial state of whole numbers, integrate produces whole numbers only.",
+        "From an initial state of whole numbers, all positions that integrate returns are whole numbers.",
         input=given,
         diagnose=lambda: probes.of_whole_rows(submission, args, q),
     )

@@ -208,7 +208,8 @@ def expect_line_symmetries(submission, rng):
             units="N s",
             input=bundles.shown(task, args),
             message=message,
-            help="Use only the difference of the velocities, and both masses in the same way.",
+            help="The right impulse depends on the difference of the velocities alone, and on both masses in "
+            "the same way.",
             diagnose=lambda code=code: (
                 probes.of_calls(task, calls, values, truth) or (code and bundles.named(code))
             ),
@@ -250,7 +251,8 @@ def expect_symmetries(submission, task, rng):
             task,
             given,
             message,
-            "Use the relative velocity and the normal as whole vectors, and nothing else.",
+            "What an impact does depends on the relative velocity and the normal, as whole vectors, and on "
+            "both masses in the same way.",
             look,
         )
         bundles.expect_velocities(found, true, finding, _speeds(given))

@@ -197,7 +197,7 @@ def expect_symplectic(submission, task, rng):
         source="finite differences leave 1e-8 or less",
         quantity="max |J^T Omega J - Omega|",
         input={**problem.input, "h": h},
-        message="One step on an orbit does not conserve the symplectic form, so energy and area will drift.",
+        message="One step on an orbit does not conserve the symplectic form, as this method does.",
         help="Each half of the state must change by a function of the other half alone.",
         diagnose=lambda: probes.of_step(submission, task),
     )

@@ -40,7 +40,7 @@ def asked(check, draw):
     """The inputs of a public check: fixed ones at home (``draw`` is None), drawn ones in a grading run."""
     if draw is None:
         return _questions.FIXED[check]
-    return kit.reference("collisions", "draws").PUBLIC[check](draw)
+    return kit.reference("collisions", "public").PUBLIC[check](draw)
 
 
 def right(task, calls, check=""):

@@ -384,7 +384,14 @@ def of_order(submission, value, hs, errors):
         value, convergence_order(list(last.values()), list(last)), abs_tol=1e-8
     ):
         return named("EQUAL_ERRORS_LOST")
-    return named("ORDER_ROUNDED") if _rounds(submission) else None
+    if math.isclose(value, -right, rel_tol=1e-6) and right < 0:
+        return named("SLOPE_WITHOUT_SIGN")
+    if _rounds(submission):
+        return named("ORDER_ROUNDED")
+    # Where the points lie on one line, any way of fitting would find its slope.
+    on_a_line = np.ptp(np.log(errors) - right * np.log(hs)) < 1e-9
+    near = on_a_line and math.isclose(value, right, rel_tol=1e-3)
+    return named("SLOPE_NEARLY_RIGHT") if near else None
 
 
 def _rounds(submission):

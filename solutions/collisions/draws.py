@@ -1,5 +1,4 @@
-"""Scenes of a grading run of ``collisions``, drawn from a seed: for the hidden checks, and in ``PUBLIC`` for
-the public ones.
+"""Scenes of a grading run of ``collisions``, drawn from a seed. What public checks ask is in ``public.py``.
 
 Exact grazes are never drawn, save where whole numbers make them exact: depths and misses keep a share of the
 radii between themselves and zero.
@@ -8,7 +7,6 @@ radii between themselves and zero.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -368,122 +366,8 @@ def rough(rng):
     return ma, mb, va, va - closing * n + slip, n, e, mu
 
 
-def _never(rng):
-    meets = passing(rng, 3, 0.4)
-    xa, va, ra, xb, vb, rb, dt = meets
-    overlaps = [overlap(rng, approach) for approach in (True, False)]
-    return [
-        passing(rng, 3, 1.5),
-        (xa, vb, ra, xb, va, rb, dt),
-        (xa, va, ra, xb, va, rb, dt),
-        (xa, va, ra, xb, vb, rb, 0.1 * dt),
-        meets,
-        (xa, va, ra, xb, vb, rb, 3 * dt),
-        *overlaps,
-    ]
-
-
 def carried(rng, call, way):
     """The same pair on a fast train that goes along the normal, or against it (``way`` 1.0 or -1.0)."""
     ma, mb, va, vb, n, *rest = call
     train = way * float(rng.uniform(8.0, 12.0)) * n
     return ma, mb, va + train, vb + train, n, *rest
-
-
-def _no_friction(rng):
-    smooth = (*impact(rng, 3), 0.0)
-    # Along an axis and in whole numbers the slip is exactly zero.
-    axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
-    n, va = side * np.eye(3)[axis], rng.integers(-4, 5, 3).astype(float)
-    straight = (*masses(rng), va, va - float(rng.integers(1, 6)) * n, n, float(rng.uniform(0.2, 0.8)), 0.4)
-    apart = [carried(rng, parting(friction(rng, 3, 0.6)), way) for way in (1.0, -1.0)]
-    return [smooth, straight, *apart, friction(rng, 3, 0.6)]
-
-
-def _mended(rng):
-    some = [(head_on(rng, "meet"), float(rng.uniform(0.006, 0.02))) for _ in range(3)]
-    ends = (1.0, some[1][0].restitution, 0.0)
-    pairs = [(replace(scene, restitution=e), h) for (scene, h), e in zip(some, ends, strict=True)]
-    pairs += [(head_on(rng, kind), float(rng.uniform(0.006, 0.02))) for kind in ("chase", "slow")]
-    cases = [(scene, 150 * h, h) for scene, h in pairs]
-    # The first one again: nothing that an earlier call left behind may count.
-    return [*cases, early(rng), cases[0]]
-
-
-def _beside_pymunk(rng):
-    scene, h = head_on(rng, "meet"), float(rng.uniform(0.004, 0.01))
-    return [(scene, 200 * h, h)]
-
-
-def _fall_beside_pymunk(rng):
-    scene, h = paths.Drop(float(rng.uniform(0.8, 1.5)), 0.0, 0.1, float(rng.uniform(0.5, 0.8))), 0.002
-    first, second = motions.contacts(scene, 10.0, 0.5)[0][:2]
-    return [(scene, int((0.3 * first + 0.7 * second) / h) * h, h)]
-
-
-def _decimal(rng):
-    n, h = awkward(rng)
-    scene = drop(rng, 0.0)[0]
-    return scene, round(n * h, 3), h
-
-
-#: What each public check asks in a grading run.
-PUBLIC = {
-    "sphere_contact": lambda rng: [
-        *(spheres(rng, d, share) for d, share in ((3, 0.6), (3, 1.8), (2, 0.85))),
-        exact_spheres(rng, 0.0),
-        exact_spheres(rng, gap(rng)),
-        near_centres(rng),
-    ],
-    "plane_contact": lambda rng: [
-        *(plane(rng, d, height) for d, height in ((3, 0.6), (3, 2.5), (3, -0.8), (2, 0.5))),
-        exact_plane(rng, 0.0),
-        exact_plane(rng, gap(rng)),
-    ],
-    "impulse_value": lambda rng: [
-        *(line(rng) for _ in range(3)),
-        slow_line(rng),
-        *ends(line(rng)),
-        *(change(rng, line(rng)) for change in (alike, twins, heavy)),
-    ],
-    "impulse_separating": lambda rng: [*(parting(line(rng)) for _ in range(3)), line(rng)],
-    "impulse_walls": lambda rng: [wall(line(rng), side) for side in (0, 1)],
-    "resolve_oblique": lambda rng: [
-        *(impact(rng, d) for d in (3, 3, 2)),
-        slow(rng, 2),
-        exchange(rng),
-        *(change(rng, impact(rng, 3)) for change in (alike, twins, heavy)),
-    ],
-    "resolve_separating": lambda rng: [
-        *(carried(rng, parting(impact(rng, d)), way) for d, way in ((3, 1.0), (2, -1.0))),
-        impact(rng, 3),
-    ],
-    "resolve_walls": lambda rng: [wall(impact(rng, d), side) for d, side in ((2, 0), (3, 1))],
-    "friction_regimes": lambda rng: [
-        *(friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
-        rough(rng),
-        creeping(rng),
-        *(change(rng, friction(rng, 3, 0.5)) for change in (alike, twins, heavy)),
-    ],
-    "friction_absent": _no_friction,
-    "friction_walls": lambda rng: [wall(friction(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))],
-    "moment_of_contact": lambda rng: [
-        late(rng),
-        shot(rng, 300.0),
-        passing(rng, 3, 0.6),
-        passing(rng, 2, 0.4),
-        shot(rng, float(10 ** rng.uniform(-2.7, -2.2))),
-    ],
-    "moment_never": _never,
-    "head_on_mended": _mended,
-    "head_on_pymunk": _beside_pymunk,
-    "drop_bounces": lambda rng: [
-        drop(rng, 0.0),
-        drop(rng, 1.0),
-        launched(rng),
-        _decimal(rng),
-        short_hop(rng),
-        settling_at_once(rng),
-    ],
-    "drop_pymunk": _fall_beside_pymunk,
-}

@@ -466,3 +466,25 @@ def test_velocities_that_count_downwards_are_told_from_a_wrong_flight():
     elastic = paths.Drop(1.0, 0.0, 0.1, 1.0)
     found = tracks.of_drop(elastic, motions.bounces(elastic, 1.0, h), t, *sliding, h)
     assert found is None or found.code != "SPEED_AT_STEP_END"
+
+
+def test_a_special_case_for_masses_that_are_very_nearly_equal_is_told_so():
+    rng = np.random.default_rng(4)
+    calls = [draws.line(rng), *(change(rng, draws.line(rng)) for change in (draws.alike, draws.twins))]
+    truth = [formulas.RIGHT["impulse_1d"](*call) for call in calls]
+    values = [*truth[:2], (1 + calls[2][4]) * (calls[2][2] - calls[2][3]) * calls[2][0] / 2]
+    assert probes.of_calls("impulse_1d", calls, values, truth).code == "ONLY_NEARLY_EQUAL"
+
+
+def test_a_ball_that_settles_at_once_would_still_fly_by_a_rule_that_is_not_that_of_g_h():
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        scene, t_end, h = draws.settling_at_once(rng)
+        n, slowest = round(t_end / h), scene.g * h
+        assert t_end / h > n
+        assert motions.bounces(scene, t_end, h).speeds == (0.0,)
+        # By g times the rest of the step it would rest at its third contact or later, and has to rest before.
+        for contact in (1, 3):
+            rest = math.ceil(contact * scene.fastest / slowest) - contact * scene.fastest / slowest
+            assert scene.fastest > slowest * rest
+        assert motions.bounces(scene, t_end, h).must < 5 * scene.fastest / scene.g

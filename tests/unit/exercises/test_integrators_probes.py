@@ -318,6 +318,21 @@ def test_a_wrong_slope_shows_what_it_shows(code, wrong):
     assert (found and found.code) == code
 
 
+@pytest.mark.parametrize(
+    ("code", "errors", "wrong"),
+    [
+        ("SLOPE_WITHOUT_SIGN", 1 / ERRORS, lambda x, y: abs(slope(x, y))),
+        ("SLOPE_NEARLY_RIGHT", 2.0 * HS**2.34567, lambda x, y: round(slope(x, y), 3)),
+        # Another way of fitting may come near the right slope where the points scatter.
+        (None, ERRORS, lambda x, y: slope(x, y) * 1.0001),
+    ],
+)
+def test_a_slope_without_its_sign_or_last_digits_is_told_so(code, errors, wrong):
+    fake = Fake(observed_order=lambda hs, errors: float(wrong(np.log(hs), np.log(errors))))
+    found = probes.of_order(fake, fake.call("observed_order", HS, errors), HS, errors)
+    assert (found and found.code) == code
+
+
 def search(size, dz=0.01, zero=0.0, infinity=math.inf):
     """A max_stable_step that walks up and asks ``size`` of the matrix to stay below one."""
 

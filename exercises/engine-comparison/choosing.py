@@ -35,6 +35,8 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
             kit.fail(
                 "No engine meets every requirement, but one is chosen."
                 if expected is None
+                else "None is returned, although an engine meets every requirement."
+                if answer is None
                 else "The chosen engine is not the cheapest that meets every requirement.",
                 help="Keep the engines that meet all requirements, then take the one with the lowest cost.",
                 diagnose=lambda: _of_choices(submission, questions, answers),
@@ -84,10 +86,16 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
             return named(code)
     if all(answer is None for answer in answers) and _never_chooses(submission):
         return named("NEVER_CHOOSES")
-    wrong = [
-        expected for (_, _, expected), answer in zip(questions, answers, strict=True) if answer != expected
-    ]
-    return named("NOTHING_FITS") if all(expected is None for expected in wrong) else None
+    wrong = [(q, answer) for q, answer in zip(questions, answers, strict=True) if answer != q[2]]
+    if all(_not_measured(reports, needs, answer) for (reports, needs, _), answer in wrong):
+        return named("IGNORES_MISSING")
+    return named("NOTHING_FITS") if all(expected is None for (_, _, expected), _ in wrong) else None
+
+
+def _not_measured(reports: Any, needs: Any, answer: Any) -> bool:
+    """Whether the engine that was chosen lacks a required value."""
+    chosen = reports.get(answer) if isinstance(answer, str) else None
+    return chosen is not None and any(chosen.get(need["key"]) is None for need in needs)
 
 
 def _never_chooses(submission: Any) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import Any
 
@@ -101,9 +102,11 @@ def _expect_kind(case: Any, key: str) -> None:
     case.report[key] = int(number)
 
 
-def expect_complete(found: list[Any]) -> None:
-    """Every engine has a report with the nine keys and no other, each with a value."""
+def expect_complete(submission: Any, found: list[Any]) -> None:
+    """Every engine has a report with the nine keys and no other, each with a value, which stays."""
     for case in bench.reported(found, 0):
         kit.as_record(case.report, bench.KEYS, "the report")
         for key in bench.KEYS:
             _expect_kind(case, key)
+    again = [dataclasses.replace(case, runs=[], through=[]) for case in found[:2]]
+    submission.call_each(bench.TASK, [(bench.engine(case),) for case in again])

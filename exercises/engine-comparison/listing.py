@@ -120,7 +120,7 @@ def expect_sources(listed: list[dict[str, Any]]) -> None:
         source = kit.as_text(entry["source"], "a source")
         if not _ADDRESS.fullmatch(source.strip()) or any(host in source for host in _NO_SOURCE):
             kit.fail(
-                "The source of a fact cannot be opened.",
+                "The source of a fact is not accepted as a web address.",
                 diagnose=named("SOURCE_NOT_A_URL"),
                 input=about,
                 actual=source,

@@ -145,6 +145,10 @@ def _numbers(key, known, ends):
         numbers += [float(min(map(_columns_at_one_half, cases))), float(any(map(_tiny_single_step, cases)))]
     if key == "rest_penetration":
         numbers.append(float(any(map(_pushed_upright, cases))))
+    if key == "friction_anisotropy":
+        numbers.append(float(max(map(_directions, cases))))
+    if key == "tunnelling_speed":
+        numbers.append(float(max(map(_starts, cases))))
     if key == "linear_damping":
         numbers.append(float(any(map(_short_free_steps, cases))))
     if key in _AT_DT:
@@ -188,6 +192,24 @@ def _tiny_single_step(case):
 def _pushed_upright(case):
     """Whether a body on the floor was pushed up or down, and not sideways."""
     return any(scene == "floor" and force[2] and not any(force[:2]) for scene, *_, force in case.runs)
+
+
+def _directions(case):
+    """How the body on the floor was pushed: 0 never, 1 along the axes and diagonals, 2 askew as well."""
+    pushes = [
+        sorted(map(abs, force[:2])) for scene, *_, force in case.runs if scene == "floor" and any(force)
+    ]
+    askew = any(1e-3 * most < least < 0.999 * most for least, most in pushes)
+    return 2 if askew else min(1, len(pushes))
+
+
+def _starts(case):
+    """From how many places, at most, a body was shot at the wall at one speed; two are several."""
+    starts = {}
+    for scene, q0, v0, *_ in case.runs:
+        if scene == "wall" and abs(v0[0]) > 2.5:
+            starts.setdefault(v0, set()).add(q0)
+    return min(2, max(map(len, starts.values()), default=0))
 
 
 def _short_free_steps(case):

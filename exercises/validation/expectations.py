@@ -34,7 +34,7 @@ def expect_rmse(submission, e):
         units="m",
         input={"e": e},
         message="The root mean square error is wrong.",
-        help="Square the errors, average the squares, then take the root.",
+        help="Square all the errors, average the squares, then take the root.",
     )
     expect_left_alone(inspected, [e], ["e"])
 

@@ -31,7 +31,7 @@ def expect_width(submission, rng, scale, offset):
         "one it is 0.22",
         quantity="mean width over true width",
         input=shown,
-        message="The intervals are not as wide as the scatter of the mean requires.",
+        message="The intervals do not have the width that the scatter of the mean requires.",
         help="The ends are quantiles of the statistic over resamples that are made of blocks of neighbours.",
         diagnose=lambda: probes.of_interval(submission, 1),
     )
@@ -75,7 +75,7 @@ def expect_centred(submission, ends, statistics, shown):
         source="correct variants stay below 0.2 over 200 seeds",
         quantity="distance of the middle from the statistic, in widths",
         input=shown,
-        message="The intervals are in the wrong place.",
+        message="The middle of the intervals is too far from the statistic of the series.",
         help="The ends are quantiles of the statistic over the resamples.",
         diagnose=lambda: probes.of_interval(submission, 1) or probes.named("NOT_CENTRED"),
     )

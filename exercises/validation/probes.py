@@ -371,7 +371,7 @@ class Folds:
         for fit, same in itertools.groupby(models, key=lambda m: tuple(sorted(self.fitted[m]))):
             alike = list(same)
             asked = {i for m in alike for i in self.asked[m]}
-            one = {*fit} == {*range(len(self.runs))} - asked
+            one = len(fit) > 0 and {*fit} == {*range(len(self.runs))} - asked
             for m in alike[:1] if one else alike:
                 yield fit, sorted(asked if one else {*self.asked[m]}), self._gains[m]
 

@@ -117,8 +117,8 @@ def of_interval(ends, right):
     if shares and max(shares) < 0:
         return named("RETURNS_SWAPPED")
     middles = [abs(sum(ends[key]) / 2 - right.numbers[key]) <= 0.01 * right.half(key) for key in NUMBERS]
-    alike = len(shares) > 1 and max(shares) <= 1.002 * min(shares)
-    return named("INTERVALS_SCALED") if alike and all(middles) and min(shares) > 0.01 else None
+    alike = len(shares) > 1 and 0.01 < max(shares) <= (1 + 1e-5) * min(shares)
+    return named("INTERVALS_SCALED") if alike and all(middles) and abs(shares[0] - 1) > 2e-3 else None
 
 
 def of_lag(value, half, right):

@@ -102,7 +102,7 @@ def test_hidden_deterministic(submission):
 @pytest.mark.points(3)
 def test_hidden_report_complete(submission):
     """Each of eight unknown engines gets a complete report"""
-    judging.expect_complete(unknown(submission))
+    judging.expect_complete(submission, unknown(submission))
 
 
 # -- the choice -----------------------------------------------------------------------------------------
@@ -123,6 +123,7 @@ def _questions(seed):
             choices.beyond_the_limit(rng, truths),
             choices.other_types(rng, truths),
             choices.priced_high(rng, telling[0]),
+            choices.priced_in_whole_numbers(telling[3]),
             choices.priced_alike(rng, telling[1]),
             choices.priced_at_nothing(rng, telling[2]),
             *choices.questions(rng, truths, 1, choices.all_count),
@@ -130,7 +131,7 @@ def _questions(seed):
         "gaps": [
             *(choices.with_gaps(rng, q) for q in telling[8:]),
             choices.beyond_reach(rng, truths),
-            choices.nothing_told(rng, truths),
+            *(choices.nothing_told(rng, truths, op) for op in ("==", ">=")),
         ],
         "renamed": [*right.retold(rng, real), *choices.famous(telling[:4])],
     }
@@ -235,7 +236,7 @@ def test_facts_users(submission):
         if facts.plain(language) not in facts.LANGUAGES[engine]:
             kit.fail(
                 "A language is not the one the engine is written in.",
-                help="Look at the files of its repository, not at the language you call it from.",
+                help="Look at the files of the engine itself, not of an interface in another language.",
                 input={"engine": engine},
                 expected=sorted(facts.LANGUAGES[engine]),
                 actual=language,

@@ -70,7 +70,7 @@ def all_count(reports, needs, answer):
 
 def with_gaps(rng, question):
     """The same question with cheaper engines that would fit, had they been measured: one key is gone from
-    one of them, and None in the other."""
+    one of them, and None in the other. In the right one a key is None that is not required."""
     reports, needs, answer = question
     key = str(rng.choice([n["key"] for n in needs]))
     reports = {name: dict(report) for name, report in reports.items()}
@@ -78,6 +78,7 @@ def with_gaps(rng, question):
     first, second = choosing.names(rng, 2)
     reports[first + "x"] = {**{k: v for k, v in fitting.items() if k != key}, "cost": 0.5}
     reports[second + "y"] = {**fitting, key: None, "cost": 0.7}
+    reports[answer] |= {"noise_db": None}
     shuffled = [str(name) for name in rng.permutation(list(reports))]
     return {name: reports[name] for name in shuffled}, needs, answer
 
@@ -136,6 +137,14 @@ def priced_high(rng, question):
     return {name: {**r, "cost": rate * r["cost"]} for name, r in reports.items()}, needs, answer
 
 
+def priced_in_whole_numbers(question):
+    """The same question with costs in whole numbers of which a float has not all digits."""
+    reports, needs, answer = question
+    ranks = {name: rank for rank, name in enumerate(sorted(reports, key=lambda name: reports[name]["cost"]))}
+    dear = {name: {**r, "cost": 2**60 + ranks[name]} for name, r in reports.items()}
+    return dict(sorted(dear.items(), key=lambda item: -item[1]["cost"])), needs, answer
+
+
 def famous(questions):
     """Questions in which the dearest engine that fits has the name of a famous one."""
     told = []
@@ -153,13 +162,13 @@ def beyond_reach(rng, truths):
     return reports, [need("order", ">=", 4), need("symplectic", "==", True)], None
 
 
-def nothing_told(rng, truths):
+def nothing_told(rng, truths, op):
     """A question about a key that some reports lack, and that is None in the others; zero is asked for."""
     reports = {
         name: r | ({"noise_db": None} if rng.random() < 0.5 else {})
         for name, r in reports_of(rng, truths).items()
     }
-    return reports, [need("noise_db", "==", rng.choice([0, 0.0, False]).item())], None
+    return reports, [need("noise_db", op, rng.choice([0, 0.0, False]).item())], None
 
 
 #: Further questions about the engines as measured: requirements, and the right name.

@@ -42,9 +42,9 @@ SINCE = {
     "mujoco": datetime.date(2022, 5, 23),
 }
 
-#: The language the engine is written in; ODE's and MuJoCo's interfaces are C.
+#: The language the engine is written in; that of ODE's interface, C, is none of it.
 LANGUAGES = {
-    "ode": {"c++", "c/c++", "c and c++"},
+    "ode": {"c++"},
     "bullet": {"c++"},
     "physx": {"c++"},
     "mujoco": {"c", "c++", "c/c++", "c and c++"},

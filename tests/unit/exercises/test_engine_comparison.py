@@ -169,7 +169,7 @@ def test_an_engine_that_brings_the_measurement_down_does_not_take_the_others_wit
     with pytest.raises(kit.StudentFailure):
         judging.expect_key(found, "order", 0)
     with pytest.raises(kit.StudentFailure):
-        judging.expect_complete(found)
+        judging.expect_complete(fake, found)
 
 
 def test_a_measurement_that_never_ends_leaves_time_for_the_other_functions():

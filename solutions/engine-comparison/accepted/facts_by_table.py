@@ -6,7 +6,7 @@ def engine_facts():
         (
             "ode",
             "BSD-3-Clause",
-            "C/C++",
+            "C++",
             None,
             ("Webots",),
             "https://github.com/odedevs/ode/blob/master/LICENSE-BSD.TXT",

@@ -20,7 +20,10 @@ AFRESH = Path(__file__).resolve().parents[2] / "benchmarks" / "mended" / "afresh
 #: What is said of the checks that fail: codes, None for no diagnosis.
 TOLD = {
     "engine-comparison": {
+        "choose_costs_as_floats": {"DEPENDS_ON_ORDER"},
+        "choose_missing_is_infinite": {"IGNORES_MISSING"},
         "choose_misspelt_operator": {"OPERATOR_NEVER_MET"},
+        "choose_only_fully_measured": {None},
         "damping_of_half_the_time": {"DAMPING_OF_ENERGY"},
         "damping_one_step_too_few": {None},
         "deterministic_two_rounds": {"DETERMINISM_TOLERANCE"},
@@ -30,6 +33,7 @@ TOLD = {
         "friction_by_braking": {None},
         "order_against_a_fading_spring": {"ORDER_AGAINST_UNDAMPED"},
         "penetration_in_fine_steps": {"OTHER_STEP_THAN_DT"},
+        "report_in_one_dict": {"RESULT_OVERWRITTEN"},
         "restitution_at_ten": {"RESTITUTION_WITH_DRAG"},
         "stable_columns_exchanged": {"TOLERANCE_TOO_TIGHT", None},
         "symplectic_if_undamped": {None},
@@ -41,14 +45,19 @@ TOLD = {
         "bootstrap_repeats_one_block": {"PART_OF_SERIES"},
         "bootstrap_resamples_by_blocks": {"OTHER_NUMBER_OF_RESAMPLES"},
         "bootstrap_shuffles_each_resample": {"IID_BOOTSTRAP"},
+        "energy_of_a_joule_at_least": {None},
         "folds_by_id": {"TRAINS_ON_TOO_LITTLE"},
         "force_above_a_tenth": {None},
         "lag_in_milliseconds": {"LAG_IN_SAMPLES"},
         "nees_of_the_first_row": {"SUMMED"},
+        "rmse_without_outliers": {None},
         "variance_without_outliers": {None},
         "verdict_bias_about_zero": {None},
+        "verdict_ends_not_covered": {None},
         "verdict_lists_what_both_have": {"OTHER_RUNS_LISTED", None},
+        "verdict_part_of_an_id": {None},
         "verdict_spread_about_the_number": {None},
+        "wrap_ten_turns": {None},
     },
 }
 

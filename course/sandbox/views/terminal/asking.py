@@ -11,7 +11,7 @@ from textual.binding import Binding
 from textual.containers import VerticalScroll
 from textual.widgets import Input, Static
 
-from course.full_screen import Overlay, TextOverlay
+from course.full_screen import Field, Overlay, TextOverlay
 from course.printable import command
 from course.sandbox.scene.predicting import NO_GUESS, guess_of
 from course.sandbox.views.terminal.words import KEYS, clean
@@ -43,7 +43,7 @@ class QuestionOverlay(Overlay[float]):
             box.border_subtitle = "Enter: run   Escape: run without a guess"
             yield Static(Text(clean(self._scene.note)))
             yield Static(Text(f"\n{clean(self._question)}", style="bold"))
-            entry = Input(placeholder=f"a number in {clean(self._unit)}", id="guess")
+            entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
             yield entry
             yield Static("", id="wrong", markup=False)

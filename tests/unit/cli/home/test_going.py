@@ -110,7 +110,8 @@ def test_go_and_the_dashboard_say_where_the_next_exercise_comes(course, tmp_path
     ahead = "Exercise 2, integrators, comes after lesson 3. To start it now: course start integrators\n"
     for line in ("go", ""):
         assert ahead in course(*line.split()).out
-    course("start", "integrators")
+    said = course("start", "integrators").out
+    assert re.search(r"It takes \d minutes to read; you can begin after the first function's section\.", said)
     for line in ("go", ""):
         said = course(*line.split()).out
         assert "integrators: started, not checked yet. To go on: course check integrators\n" in said

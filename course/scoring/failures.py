@@ -110,7 +110,7 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     if failure.type == "NotImplementedError":
         return Finding(
             message="This function is not written yet: it still raises NotImplementedError.",
-            help="Replace the `raise` line with your code; the docstring above it says what to return.",
+            help="Replace each `raise` line with your code; the docstring above it says what to return.",
             diagnosis="NOT_IMPLEMENTED",
         )
     places: Places = failure.places or Places()

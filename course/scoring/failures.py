@@ -126,7 +126,7 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception of its own"
     said = one_line(failure.message, _SAID).rstrip(" .") if shown else ""
-    begin = "Start at that line: print just before it what it uses, or call" if where else "Call"
+    begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     return Finding(
         message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
         help=f"{begin} the function yourself and read the traceback from the bottom up.",

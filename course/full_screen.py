@@ -14,7 +14,7 @@ from textual.app import App
 from textual.binding import Binding
 from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
-from textual.widgets import Static
+from textual.widgets import Input, Static
 
 if TYPE_CHECKING:
     import threading
@@ -22,8 +22,12 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
     from textual.app import ComposeResult
+    from textual.events import Key
+    from textual.widget import Widget as _Widget
+else:
+    _Widget = object  # Textual takes a widget's style from its first base that is one
 
-__all__ = ["FullScreenApp", "Overlay", "TextOverlay"]
+__all__ = ["Field", "FullScreenApp", "InOrder", "Overlay", "TextOverlay"]
 
 #: How long a message stays in the last line, in s.
 _MESSAGE = 4.0
@@ -137,6 +141,26 @@ class Overlay(ModalScreen[Answer | None]):
     def action_leave(self) -> None:
         """Close the box."""
         self.close(None)
+
+
+class InOrder(_Widget):
+    """Of a field to type in: its keys act in the order in which they were typed.
+
+    Textual's fields insert a letter as it arrives, but Backspace and the like first pass every parent, so in
+    a burst of keys the letters overtake them.
+    """
+
+    async def _on_key(self, event: Key) -> None:
+        bound = [] if event.is_printable else self._bindings.key_to_bindings.get(event.key, [])
+        for binding in bound:
+            event.stop()
+            event.prevent_default()
+            if await self.app.run_action(binding.action, self):
+                return
+
+
+class Field(InOrder, Input):
+    """A line to type in."""
 
 
 class TextOverlay(Overlay[str]):

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from course.printable import one_line
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -25,10 +27,12 @@ if TYPE_CHECKING:
         def actual(self) -> Any: ...
 
 
-__all__ = ["numbers_of"]
+__all__ = ["numbers_of", "raised_by"]
 
 #: Longest list and longest text that a sentence can hold.
 _ITEMS, _LETTERS = 8, 40
+#: The most of an exception that is kept, in characters.
+_RAISED = 120
 #: Numbers beyond it are not compared: they come from a program that ran away.
 _HUGE = 1e150
 
@@ -54,6 +58,13 @@ def numbers_of(check: Finding) -> dict[str, str]:
         ratio = _words(got / expected) if expected and got else ""
         fields["ratio"] = "" if ratio == "1" else ratio
     return {name: words for name, words in fields.items() if words}
+
+
+def raised_by(check: Finding) -> str:
+    """The exception that ended a public check, in its own words; "" if none did."""
+    if check.status != "error" or check.visibility != "public" or not isinstance(check.actual, str):
+        return ""
+    return one_line(check.actual, _RAISED)
 
 
 def _compared(expected: Any, got: Any) -> tuple[Any, Any, str]:

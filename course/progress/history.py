@@ -13,7 +13,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from course.progress.evidence import numbers_of
+from course.progress.evidence import numbers_of, raised_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -281,7 +281,7 @@ def check_data(
 
 def _kept(check: _Check) -> dict[str, object]:
     kept = {"id": check.id, "task": check.task, "status": str(check.status)}
-    more = {"diagnosis": check.diagnosis, "numbers": numbers_of(check)}
+    more = {"diagnosis": check.diagnosis, "numbers": numbers_of(check), "raised": raised_by(check)}
     return kept | {key: value for key, value in more.items() if value}
 
 

@@ -30,6 +30,7 @@ class Mistake:
         diagnosis: its code.
         first, last: the first and the last run that showed it, in UTC.
         runs: how many runs showed it.
+        raised: the exception that the last of them ended in; "" if it was none.
         mended: the run after which every check that showed it had passed; None while one has not.
     """
 
@@ -40,6 +41,7 @@ class Mistake:
     last: datetime
     runs: int
     mended: datetime | None
+    raised: str = ""
 
 
 @dataclass(slots=True)
@@ -49,6 +51,7 @@ class _Open:
     runs: int = 0
     checks: set[str] = field(default_factory=set)
     mended: datetime | None = None
+    raised: str = ""
 
 
 def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
@@ -60,21 +63,26 @@ def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
     for event in events:
         if event.kind == "check" and event.data.get("state") == "graded":
             _take(found, event)
-    return tuple(Mistake(*key, one.first, one.last, one.runs, one.mended) for key, one in found.items())
+    return tuple(
+        Mistake(*key, one.first, one.last, one.runs, one.mended, one.raised) for key, one in found.items()
+    )
 
 
 def _take(found: dict[tuple[str, str, str], _Open], event: Event) -> None:
     checks = [check for check in event.data.get("checks", ()) if isinstance(check, dict)]
     shown: dict[tuple[str, str, str], set[str]] = {}
+    raised: dict[tuple[str, str, str], str] = {}
     for check in checks:
         code = check.get("diagnosis")
         if isinstance(code, str) and code not in _NO_MISTAKE:
             key = (event.subject, str(check.get("task")), code)
             shown.setdefault(key, set()).add(str(check.get("id")))
+            raised.setdefault(key, str(check.get("raised", "")))
     for key, ids in shown.items():
         one = found.setdefault(key, _Open(event.at, event.at))
         one.last, one.mended = event.at, None
         one.runs += 1
+        one.raised = raised[key]
         one.checks |= ids
     passed = {str(check.get("id")) for check in checks if check.get("status") == "pass"}
     for (exercise, _, _), one in found.items():

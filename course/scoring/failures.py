@@ -60,6 +60,8 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         self.comparison = comparison
 
 
+#: The most of an exception's own message that a sentence repeats, in characters.
+_SAID = 200
 #: Beginning of the traceback in a result whose check, or whose probe, raised an exception on a student's
 #: value.
 OURS = "In the check's own code: "
@@ -75,13 +77,16 @@ def broke_at(error: BaseException) -> str:
     return f"{said} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else said
 
 
-def finding_of(failure: StudentFailure) -> Finding:
+def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     """A failure as words: what happened and what to do, without any value of the check's.
 
     The exception's own message is in ``actual``, which hidden checks do not show.
+
+    Args:
+        shown: no input is hidden, so the message repeats the exception's own.
     """
     if failure.kind == "error":
-        return _error_finding(failure)
+        return _error_finding(failure, shown=shown)
     if failure.kind == "missing":
         return Finding(
             message=f"Your file has no function `{failure.type}`.",
@@ -101,11 +106,11 @@ def _at(failure: StudentFailure) -> str:
     return ("in the loop that begins " if failure.type == LOOP else "") + places.phrase(failure.line)
 
 
-def _error_finding(failure: StudentFailure) -> Finding:
+def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     if failure.type == "NotImplementedError":
         return Finding(
             message="This function is not written yet: it still raises NotImplementedError.",
-            help="Replace the `raise` line with your code; the docstring above it says what to return.",
+            help="Replace each `raise` line with your code; the docstring above it says what to return.",
             diagnosis="NOT_IMPLEMENTED",
         )
     places: Places = failure.places or Places()
@@ -120,9 +125,11 @@ def _error_finding(failure: StudentFailure) -> Finding:
     # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception of its own"
+    said = one_line(failure.message, _SAID).rstrip(" .") if shown else ""
+    begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     return Finding(
-        message=f"Your code raised {name}{where}.",
-        help="Call the function yourself as the README's example does, and read the traceback from below.",
+        message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
+        help=f"{begin} the function yourself and read the traceback from the bottom up.",
         diagnosis="RAISED",
         actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
     )

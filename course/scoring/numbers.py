@@ -82,7 +82,8 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
     if check.actual is not None or check.expected is not None:
         # A function that gave no value was not measured; the reason takes its place.
         label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
-        rows.append((label, f"{actual}{unit(units)}"))
+        if not _is_said(check):
+            rows.append((label, f"{actual}{unit(units)}"))
     if check.expected is not None:
         within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
         rows.append(("expected", f"{expected}{unit(units)}{within}"))
@@ -95,3 +96,11 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
     if check.diagnosis:
         rows.append(("diagnosis", check.diagnosis))
     return rows
+
+
+def _is_said(check: CheckResult) -> bool:
+    """Whether the message repeats all that is known of an exception: its class and its own words."""
+    if check.status != "error" or not isinstance(check.actual, str):
+        return False
+    name, _, said = check.actual.partition(": ")
+    return f"raised {name}" in check.message and said.rstrip(" .") in check.message

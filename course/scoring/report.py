@@ -68,7 +68,7 @@ def finding_for(failure: StudentFailure | CheckFailed) -> Finding:
     """
     if isinstance(failure, CheckFailed):
         return failure.finding
-    finding = finding_of(failure)
+    finding = finding_of(failure, shown=True)
     functions = _FRAME.findall(failure.traceback)
     if failure.is_a("NotImplementedError") and functions:
         message = f"`{functions[-1]}` is not written yet: it still raises NotImplementedError."

@@ -14,7 +14,7 @@ from course.cli.setup.demo import TRIES
 from tests.command_line import as_process, in_process
 from tests.terminals import Terminal, needs_tmux
 
-ASKS = "Type this line as it should be: x = x + h * v_next"
+ASKS = "This line is wrong: x = x + h * v_next"
 
 
 class _Screen(io.StringIO):
@@ -47,7 +47,7 @@ def test_a_right_line_fixes_the_mistake_in_any_spelling(typing, line):
     assert ASKS in said
     assert f"+ {line.strip()}\n" in said
     assert "All 2 public checks pass" in said
-    assert "7.32 times its start" in said
+    assert "7.32 times its initial value" in said
     assert "Not yet" not in said
 
 
@@ -114,12 +114,15 @@ def test_on_a_terminal_a_person_fixes_it_and_sees_both_motions(tmp_path):
     terminal = Terminal(tmp_path, (80, 24))
     try:
         terminal.line(f"{sys.executable} -m course demo")
-        screen = terminal.wait("Enter alone shows the answer, q leaves:")
+        screen = terminal.wait("Type it as it should be (Enter shows the answer, q leaves):")
         assert "1. This function calls itself explicit Euler." in screen, "the whole finding fits on 24 lines"
         terminal.line("x = x + h * v")
         assert "+ x = x + h * v\n" in terminal.wait("Next: both motions.")
         terminal.keys("Enter")
-        assert "before" in terminal.wait("Next: course init my-course")
+        screen = terminal.wait("Next: course init my-course")
+        assert "3. What the mistake hid" in screen, "the picture and its words fit on 24 lines"
+        assert "before" in screen
+        assert "Grey: the motion of the other panel." in screen
     finally:
         terminal.close()
 

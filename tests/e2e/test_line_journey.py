@@ -104,7 +104,7 @@ def cell(lines: Lines, workspace: Workspace) -> None:
     stopped = lines.interrupt()
     assert "begun\nEnd of output\n" in stopped
     assert "Stopped.\n" in stopped
-    assert "The lesson's own code again." in lines.type("u")
+    assert "The lesson's own code is back." in lines.type("u")
     assert "and printed the same." in lines.type("r")
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from course.errors import CourseError
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history
+from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise
@@ -105,11 +106,13 @@ def next_in_course(here: Here) -> str:
 
 
 def exercise_ahead(here: Here, step: str) -> str:
-    """Where the next exercise comes and how to start it now, while ``step`` is about a lesson; else empty."""
+    """The exercise in progress, or where the next one comes, while ``step`` is about a lesson; else empty."""
     catalog, (_, kind, *names) = here.catalog, step.split()
     a_warm_up = bool(names) and names[0] in catalog.warm_up_ids()
     if kind != "lesson" and not a_warm_up:
         return ""
+    if going := _in_progress(here):
+        return going
     started = set(here.workspace.started())
     ahead = (one for one in catalog.exercises() if one.id not in started and here.history(one).last is None)
     exercise = next(ahead, None)
@@ -118,6 +121,22 @@ def exercise_ahead(here: Here, step: str) -> str:
     after = catalog.lesson_ids().index(exercise.lesson) + 1
     called = f"Exercise {exercise.number}, {exercise.id}," if exercise.number else f"Exercise {exercise.id}"
     return f"{called} comes after lesson {after}. To start it now: course start {exercise.id}"
+
+
+def _in_progress(here: Here) -> str:
+    """The exercise checked last, of those begun and not done, and how to go on; empty without one."""
+    begun: list[tuple[str, str]] = []
+    started = set(here.workspace.started())
+    for exercise in here.catalog.exercises():
+        history = here.history(exercise)
+        last, graded = history.last, history.last_graded
+        if (last is None and exercise.id not in started) or (graded is not None and graded.all_pass):
+            continue
+        points = graded and f"{format_points(graded.score)} of {format_points(graded.max_score)}"
+        state = f"in progress, {points} points" if points else "started, not checked yet"
+        go_on = f"{exercise.id}: {state}. To go on: course check {exercise.id}"
+        begun.append((last.at.isoformat() if last else "", go_on))
+    return max(begun, key=lambda one: one[0])[1] if begun else ""
 
 
 def _warm_up_step(here: Here, lesson: str, started: set[str]) -> str:

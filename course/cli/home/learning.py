@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
     from course.cli.frame.terminal.console import Console
+    from course.progress.mistakes import Mistake
     from course.progress.store import Event
     from course.reading.parts import Script
     from course.reading.predictions import RecordedPrediction
@@ -100,7 +101,7 @@ class Learning:
                 task=one.task,
                 title=exercise.task_titled(one.task),
                 diagnosis=one.diagnosis,
-                looks_like=_looks_like(exercise, one.diagnosis),
+                looks_like=_looks_like(exercise, one.diagnosis) or _raised(one),
                 read=exercise.where_to_read(one.task),
                 first_seen=one.first.isoformat(),
                 last_seen=one.last.isoformat(),
@@ -184,7 +185,10 @@ def _show_predictions(console: Console, predictions: PredictionsState) -> None:
 def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
     _show_some(console, "Mistakes", "made", [one for one in mistakes if not one.given])
     _show_some(
-        console, "Faults in the programs you were given", "found", [one for one in mistakes if one.given]
+        console,
+        "Faults in the programs you were given",
+        "found by a check",
+        [one for one in mistakes if one.given],
     )
 
 
@@ -238,6 +242,13 @@ def _looks_like(exercise: Exercise, code: str) -> str:
         return ""
     entry = read_words(path).entries.get(code)
     return entry.looks_like if entry else ""
+
+
+def _raised(mistake: Mistake) -> str:
+    """An exception in words; records of earlier versions do not say which."""
+    if mistake.diagnosis != "RAISED":
+        return ""
+    return f"Raised {mistake.raised.rstrip(' .') or 'an exception'}."
 
 
 def _day(said: RecordedPrediction) -> str:

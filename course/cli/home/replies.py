@@ -174,8 +174,8 @@ class MistakeState(msgspec.Struct, frozen=True, kw_only=True):
     """A mistake that checks recognised. ``read`` is where it is explained, as "lesson#section" or "lesson".
 
     ``given`` is True in a program that is handed out with faults.
-    ``mended_at`` is None while a check that showed it has not passed since; ``looks_like`` is "" where the
-    exercise keeps no words for the code.
+    ``mended_at`` is None while a check that showed it has not passed since. ``looks_like`` names the
+    exception if the code is RAISED; else it is "" where the exercise keeps no words for the code.
     """
 
     exercise: str

@@ -49,7 +49,7 @@ _WORDS = (
     ("/ and words", "where they are in this lesson"),
     ("r", "run the cell; r and a number runs that cell"),
     ("e", "put the cell into a file for your editor; r then runs what the file holds"),
-    ("u", "the lesson's own code again"),
+    ("u", "put the lesson's own code back into the cell"),
     ("1, 2, 3", "below an answer: you were right, nearly right, wrong"),
     ("start, check, hint", "for the warm-up or the exercise of this page"),
     ("q or Ctrl-C", "stop; your place is kept. While a cell runs, Ctrl-C stops the cell"),
@@ -162,7 +162,7 @@ class LineReader:
         task = self._task(number)
         if task is not None and self._here is not None:
             there = self._here.workspace.path(task.place, task.module).is_file()
-            begun = "check runs its checks, hint gives the hint that is due"
+            begun = "check runs its checks, hint gives its next hint"
             offers.append(begun if there else "start puts its file into your workspace")
         return offers
 
@@ -310,7 +310,7 @@ class LineReader:
     def _undo(self, cell: Cell) -> None:
         self._files.pop(cell.number, None)
         self._progress.edit(cell, cell.source)
-        self._say("The lesson's own code again.")
+        self._say("The lesson's own code is back.")
 
     # -- tasks -----------------------------------------------------------------------------------------
 

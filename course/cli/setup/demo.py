@@ -45,8 +45,8 @@ _NEXT = ("Next: course init my-course", "bold")
 #: Two panels stand side by side from this width on, in columns.
 _WIDE = 70
 _PANEL_ROWS = 17
-#: Lines beside the picture: the heading, the description, where to read on.
-_WORDS = 9
+#: Lines beside the picture: the heading, what grey is, the description, where to read on.
+_WORDS = 10
 
 
 @dataclass(frozen=True)
@@ -171,8 +171,8 @@ def _ask(bench: _Bench, mistaken: str, right: str) -> str:
     wrong = next(line for line in mistaken.splitlines() if line not in right.splitlines())
     indent = wrong[: len(wrong) - len(wrong.lstrip())]
     console.blank()
-    console.line(("Your turn. ", "bold"), f"Type this line as it should be: {wrong.strip()}")
-    question, tries = "Enter alone shows the answer, q leaves: ", 0
+    console.line(("Your turn. ", "bold"), f"This line is wrong: {wrong.strip()}")
+    question, tries = "Type it as it should be (Enter shows the answer, q leaves): ", 0
     while True:
         typed = console.ask(question)
         if typed is None or typed.lower() in {"q", "quit"}:
@@ -180,7 +180,9 @@ def _ask(bench: _Bench, mistaken: str, right: str) -> str:
         if not typed:
             return right
         if typed.split() == wrong.split():
-            question = "That is the line as it was. Enter alone shows the answer, q leaves: "
+            question = (
+                "That is the line as it was. Type it as it should be (Enter shows the answer, q leaves): "
+            )
             continue
         source = mistaken.replace(wrong, indent + typed)
         verdict = bench.verdict(source)
@@ -191,7 +193,7 @@ def _ask(bench: _Bench, mistaken: str, right: str) -> str:
         if tries == TRIES:
             console.line("This is the answer:")
             return right
-        question = "Type the line again; Enter alone shows the answer, q leaves: "
+        question = "Type the line again (Enter shows the answer, q leaves): "
 
 
 def _show_finding(console: Console, verdict: Verdict) -> None:
@@ -253,10 +255,10 @@ def _said(before: _Motion, after: _Motion) -> str:
     """The picture in words, with its numbers."""
     low, high = before.energy
     return (
-        f"Explicit Euler is supposed to gain energy: over {STEP * STEPS:g} s of this spring, the fixed "
-        f"function's grows to {after.energy[1]:.2f} times its start. The mistaken one's stays between "
-        f"{low:.2f} and {high:.2f} times, because it is another method. A comparison made with it would have "
-        "praised Euler for what Euler cannot do."
+        f"Explicit Euler gains energy: over {STEP * STEPS:g} s of this spring, the fixed function's energy "
+        f"grows to {after.energy[1]:.2f} times its initial value. With the mistake it stays between "
+        f"{low:.2f} and {high:.2f} times that value, because the steps are another method's. A comparison "
+        "would have credited explicit Euler with them."
     )
 
 
@@ -276,6 +278,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
     for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
         console.rich().print(line)
+    console.line(("Grey: the motion of the other panel.", "dim"))
 
 
 def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:

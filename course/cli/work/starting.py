@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 __all__ = ["put", "start"]
 
 
+#: How fast technical text is read. Brysbaert's mean for non-fiction is 238 (J. Mem. Lang. 109, 2019).
+_WORDS_A_MINUTE = 200
+#: Minutes from which on the length is told.
+_LONG = 3
+
+
 def start(exercise: OneExercise) -> int:
     """Put an exercise into the workspace.
 
@@ -26,7 +32,10 @@ def start(exercise: OneExercise) -> int:
     chosen = here.exercise(exercise)
     files = put(console, here, chosen)
     step = f"course watch {chosen.id}"
+    minutes = max(1, round(len(chosen.readme_path.read_text(encoding="utf-8").split()) / _WORDS_A_MINUTE))
     console.note(f"Read {chosen.place}/README.md, write your code in {chosen.place}/{chosen.module}.")
+    if minutes > _LONG:
+        console.note(f"It takes {minutes} minutes to read; you can begin after the first function's section.")
     if not console.led:
         console.note(f"Then check it on every save: {step}")
         console.note(f"Or once, now and then: course check {chosen.id}")

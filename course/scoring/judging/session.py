@@ -260,7 +260,7 @@ class GradingSession:
                 if status is Status.TIMEOUT:
                     self._hung.add(check.task)
                 traceback = places.trace(outcome.traceback) or None
-                finding = finding_of(outcome)
+                finding = finding_of(outcome, shown=check.visibility == "public")
                 return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
         where = broke_at(outcome)
         proven = self._passes_the_model(check)

@@ -1,4 +1,4 @@
-"""A fall, a collision and a spring. This program has six faults: one stops it, five make its numbers wrong.
+"""A fall, a collision and a spring. This program has six faults: one stops it, five spoil its results.
 
 Run it with `python first_program.py`. One small edit fixes each fault.
 """

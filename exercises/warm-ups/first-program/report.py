@@ -29,8 +29,9 @@ def _table(submission):
         "have said with that one fault mended.\n\n"
         "Two things to look at. The balls end up 8 cm short of 12 m: the program looks once a step and finds "
         "them 4 cm inside each other, which is what the lessons on contact are about. And the last number "
-        "has not changed: semi-implicit Euler runs half a step ahead of the truth, and was compared with a "
-        "moment a whole step later, half a step behind it. An answer that fits proves little.",
+        "has not changed. Semi-implicit Euler runs half a step ahead of the exact motion. It was compared "
+        "with the exact position one step later, so it seemed half a step behind: an error of the same size. "
+        "A number that looks right proves little.",
         columns=("what", "before", "now", "true"),
         rows=rows,
     )

@@ -254,6 +254,10 @@ def test_the_question_comes_first_and_the_comparison_after_and_both_can_be_left(
         page = app.screen.words
         for words in ("your guess", "theory", "simulation", "Your guess is right", "And now:"):
             assert words in page
+        await pilot.press("question_mark")
+        assert "reset: from the start" in app.screen.words, "the keys, not the picture"
+        await pilot.press("escape", "p")
+        assert "Your guess is right" in app.screen.words
         await pilot.press("r")
         assert not isinstance(app.screen, PageOverlay)
         app.frames(3)
@@ -297,6 +301,17 @@ def test_a_run_that_is_over_in_a_blink_starts_in_slow_motion():
         assert app.world.speed < 0.05
 
     play("bullet-wall", script)
+
+
+def test_help_says_how_to_set_what_has_no_key():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        assert isinstance(app.screen, PageOverlay)
+        assert (
+            "course sandbox play newtons-cradle --set gap=NUMBER; also angle, backwards" in app.screen.words
+        )
+
+    play("newtons-cradle", script)
 
 
 def test_help_names_every_key_and_time_stands_still_meanwhile():

@@ -201,7 +201,7 @@ class ReaderApp(TasksApp):
         question = self.progress.script.answered_at(item.block) if item is not None else None
         if item is not None and question is not None:
             self.progress.judge(question, _JUDGED[key])
-            self._rebuild(item.block)
+            self._rebuild(question.index, item.block)
 
     def action_open_figure(self) -> None:
         """The figure at hand in the system's viewer."""

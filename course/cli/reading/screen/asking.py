@@ -10,7 +10,7 @@ from textual.containers import Vertical, VerticalScroll
 from textual.widgets import Input, OptionList, Static, TextArea
 from textual.widgets.option_list import Option
 
-from course.full_screen import Overlay
+from course.full_screen import Field, InOrder, Overlay
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -35,7 +35,7 @@ class Predict(Overlay[str]):
             box.border_subtitle = "Enter: keep it and open the answer   Escape: not yet"
             yield Static(Text(self._question))
             yield Static("")
-            entry = Input(placeholder="a number with its unit, a choice, a sentence")
+            entry = Field(placeholder="a number with its unit, a choice, a sentence")
             entry.cursor_blink = False
             yield entry
 
@@ -107,7 +107,7 @@ class Find(Overlay[str]):
         with Vertical(classes="box") as box:
             box.border_title = "Search"
             box.border_subtitle = "Enter: look   Escape: back"
-            entry = Input(placeholder="words, in this lesson and in all")
+            entry = Field(placeholder="words, in this lesson and in all")
             entry.cursor_blink = False
             yield entry
             yield OptionList()
@@ -135,12 +135,15 @@ class Find(Overlay[str]):
         self.close(event.option.id)
 
 
-class _Code(TextArea):
+class _Code(InOrder, TextArea):
     """A field for Python: Enter indents the next line as Python's own editors do."""
 
     BINDINGS: ClassVar[list[Any]] = [
         Binding("ctrl+home", "to_start", show=False),
         Binding("ctrl+end", "to_end", show=False),
+        Binding("escape", "screen.keep", show=False),
+        Binding("ctrl+r,f5", "screen.run", show=False),
+        Binding("ctrl+d", "screen.drop", show=False),
     ]
 
     def action_to_start(self) -> None:
@@ -153,7 +156,7 @@ class _Code(TextArea):
 
     def _on_key(self, event: Key) -> None:  # type: ignore[override]
         if event.key != "enter":
-            return  # Textual goes on with the field's own
+            return  # Textual goes on with those of its bases
         event.stop()
         event.prevent_default()
         start, end = self.selection
@@ -178,20 +181,21 @@ class Edit(Overlay[tuple[str, bool]]):
     Edit > .box { height: 96%; }
     """
     BINDINGS: ClassVar[list[Any]] = [
-        Binding("escape", "keep", show=False, priority=True),
-        Binding("ctrl+r,f5", "run", show=False, priority=True),
-        Binding("ctrl+d", "drop", show=False, priority=True),
+        Binding("escape", "keep", show=False),
+        Binding("ctrl+r,f5", "run", show=False),
+        Binding("ctrl+d", "drop", show=False),
     ]
 
     def __init__(self, title: str, source: str, act: str, line: int = 1) -> None:
         super().__init__()
         self._title, self._source, self._act, self._line = title, source, act, line
+        self._asked = False
 
     def compose(self) -> ComposeResult:
         """The code, with the keys that end editing below it."""
         with Vertical(classes="box") as box:
             box.border_title = self._title
-            box.border_subtitle = f"Ctrl-R: keep and {self._act}   Escape: keep   Ctrl-D: drop the changes"
+            box.border_subtitle = self._keys()
             area = _Code(self._source, tab_behavior="indent", show_line_numbers=True)
             area.cursor_blink = False
             yield area
@@ -211,5 +215,22 @@ class Edit(Overlay[tuple[str, bool]]):
         self.close((self.query_one(TextArea).text, True))
 
     def action_drop(self) -> None:
-        """As it was."""
-        self.close(None)
+        """As it was; where something was changed, at the second press."""
+        if self._asked or self.query_one(TextArea).text == self._source:
+            self.close(None)
+        else:
+            self._ask(asked=True)
+
+    def on_text_area_changed(self) -> None:
+        """Who goes on typing does not drop anything."""
+        if self._asked:
+            self._ask(asked=False)
+
+    def _ask(self, *, asked: bool) -> None:
+        self._asked = asked
+        self.query_one(".box").border_subtitle = self._keys()
+
+    def _keys(self) -> str:
+        if self._asked:
+            return "Ctrl-D again: drop the changes   Escape: keep"
+        return f"Ctrl-R: keep and {self._act}   Escape: keep   Ctrl-D: drop the changes"

@@ -185,7 +185,7 @@ class CellsApp(LessonApp):
         if cell is not None:
             self.progress.edit(cell, cell.source)
             self._rebuild(cell.index)
-            self.say("The lesson's own code again.")
+            self.say("The lesson's own code is back.")
 
     def action_copy(self) -> None:
         """Copy the cell at hand."""

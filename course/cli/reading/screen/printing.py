@@ -38,6 +38,8 @@ __all__ = ["BlockRows", "Item", "ScreenPrinter"]
 COLUMN = 80
 _BESIDE = 2 * 58 + 3
 
+#: How right a reader was, in words.
+_JUDGED = {"right": "right", "nearly": "nearly right", "wrong": "wrong"}
 #: Lines of a run that are put beside a prediction.
 _MOST = 6
 Kind = Literal["link", "cell", "question", "answer", "figure", "task"]
@@ -227,7 +229,7 @@ class ScreenPrinter(FancyPrinter):
         if not self._script.gives_away(index):
             return self._block(block)
         if index == question.end - 1:
-            words = "What comes out is shown once you have predicted it, or skipped it: Enter, s."
+            words = "Predict what comes out (Enter) or skip it (s): then it is shown here."
             return Text(words, style="dim italic")
         return None
 
@@ -282,6 +284,10 @@ class ScreenPrinter(FancyPrinter):
             line = Text("Skipped.", style="dim")
         else:
             line = Text.assemble(("You said: ", "bold"), said.text)
+            if said.judged:
+                line.append(f"\nYou were {_JUDGED[said.judged]}.", style="dim")
+            elif question.answer is not None:
+                line.append("\nYou will see below whether you were right.", style="dim")
         return Group(shown, Text(""), line)
 
     def _compared(self, question: Question) -> RenderableType:
@@ -296,9 +302,8 @@ class ScreenPrinter(FancyPrinter):
                 gave = (ours or cell.output or "").strip("\n")
                 if gave:
                     facts.append(("Your run" if ours else "The run", _end_of(gave)))
-        judged = {"right": "right", "nearly": "nearly right", "wrong": "wrong"}
         if said.judged:
-            facts.append(("You were", judged[said.judged]))
+            facts.append(("You were", _JUDGED[said.judged]))
         else:
             facts.append(("Were you right?", "1 right   2 nearly   3 wrong"))
         grid = Table.grid(padding=(0, 2, 0, 0))

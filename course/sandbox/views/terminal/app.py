@@ -279,10 +279,12 @@ class SandboxApp(FullScreenApp):
         def read(key: str | None) -> None:
             if key == "r":
                 self.action_reset()
+            elif key == "?":
+                self.action_help()
 
         page = comparison(result, self.chosen.scene.after)
-        hint = "Enter: go on from here   r: once more"
-        self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r",), hint=hint), read)
+        hint = "Enter: go on   r: once more   ?: keys"
+        self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r", "?"), hint=hint), read)
 
     def action_question(self) -> None:
         """Show the question again, or its result."""

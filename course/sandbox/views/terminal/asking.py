@@ -11,7 +11,8 @@ from textual.binding import Binding
 from textual.containers import VerticalScroll
 from textual.widgets import Input, Static
 
-from course.full_screen import Overlay, TextOverlay
+from course.full_screen import Field, Overlay, TextOverlay
+from course.printable import command
 from course.sandbox.scene.predicting import NO_GUESS, guess_of
 from course.sandbox.views.terminal.words import KEYS, clean
 
@@ -42,7 +43,7 @@ class QuestionOverlay(Overlay[float]):
             box.border_subtitle = "Enter: run   Escape: run without a guess"
             yield Static(Text(clean(self._scene.note)))
             yield Static(Text(f"\n{clean(self._question)}", style="bold"))
-            entry = Input(placeholder=f"a number in {clean(self._unit)}", id="guess")
+            entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
             yield entry
             yield Static("", id="wrong", markup=False)
@@ -119,6 +120,16 @@ def comparison(result: dict[str, Any], after: str) -> Page:
     ]
 
 
+def _own_settings(scene: Scene) -> Page:
+    """How to start a scene with its own parameters, which have no keys."""
+    if not scene.parameter:
+        return ()
+    first, *more = (one.name for one in scene.parameter)
+    others = f"; also {', '.join(more)}" if more else ""
+    start = command("sandbox", "play", scene.id, "--set", f"{first}=NUMBER").strip("`")
+    return (("--set", f"for what has no key, when you start it: {start}{others}"),)
+
+
 def help_pages(scene: Scene, *, wheels: bool) -> Page:
     """All keys, what the mouse does, and what the scene is about."""
     keys = {key: value for key, value in KEYS.items() if wheels or key not in {"left", "right"}}
@@ -140,6 +151,7 @@ def help_pages(scene: Scene, *, wheels: bool) -> Page:
         "",
         ("Settings", ""),
         *offered,
+        *_own_settings(scene),
         "",
         ("Looking", ""),
         ("n", "names on every body, however small"),

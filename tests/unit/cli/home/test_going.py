@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from course.catalog.load import Catalog
@@ -108,8 +110,15 @@ def test_go_and_the_dashboard_say_where_the_next_exercise_comes(course, tmp_path
     ahead = "Exercise 2, integrators, comes after lesson 3. To start it now: course start integrators\n"
     for line in ("go", ""):
         assert ahead in course(*line.split()).out
-    course("start", "integrators")
-    assert "Exercise collisions comes after lesson 4. To start it now" in course("go").out
+    said = course("start", "integrators").out
+    assert re.search(r"It takes \d minutes to read; you can begin after the first function's section\.", said)
+    for line in ("go", ""):
+        said = course(*line.split()).out
+        assert "integrators: started, not checked yet. To go on: course check integrators\n" in said
+        assert "comes after lesson" not in said
+    course("check", "integrators")
+    going = r"integrators: in progress, 0 of \d+ points. To go on: course check integrators\n"
+    assert re.search(going, course("go").out)
 
 
 def test_the_dashboard_says_nothing_of_a_quiz_that_was_not_taken(course, tmp_path, monkeypatch):

@@ -87,6 +87,15 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     assert "Mistakes: 1 made, 1 fixed\n" in course("progress", "--plain").out
 
 
+def test_an_exception_is_named_among_the_mistakes(course, workspace):
+    store = Store(workspace / ".course" / "progress.sqlite")
+    check = {"id": "a", "task": "double", "status": "error", "diagnosis": "RAISED"}
+    for more in ({}, {"raised": "NameError: name 'v1v2' is not defined"}):
+        store.append("check", "doubling", {"state": "graded", "checks": [check | more]})
+        words = course("progress", "--json").json["mistakes"][0]["looks_like"]
+        assert words == f"Raised {more.get('raised', 'an exception')}."
+
+
 def test_a_function_that_was_to_be_written_has_mistakes_of_its_author(course, workspace, write):
     write("wrong", "RIGHT")
     course("check")

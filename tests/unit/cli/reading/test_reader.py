@@ -7,6 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from textual.events import Key
 
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
@@ -14,6 +15,7 @@ from course.cli.frame.app import run
 from course.cli.frame.terminal.half_blocks import half_blocks
 from course.cli.reading.screen import showing
 from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.telling import fitting
 from course.progress.store import Store
 from course.reading.pages import Place
@@ -112,7 +114,7 @@ def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
         recorded = cell.output.splitlines()[0]
         everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
         assert recorded not in everything
-        assert "shown once you have predicted" in everything
+        assert "then it is shown here" in everything
         await pilot.press("r")  # not yet
         assert app._bench is None or app._bench.cell is None
         await pilot.press("enter")
@@ -122,10 +124,14 @@ def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
         everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
         assert recorded in everything
         assert "You said" in everything
+        assert "You will see below whether you were right." in everything
         app._chosen(f"block:{question.answer}")
         await pilot.pause()
         await pilot.press("3")
         assert "wrong" in screen(app)
+        everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
+        assert "You were wrong." in everything, "below the question, too"
+        assert "You will see below" not in everything
 
     reading(catalog, journey, store=store)
     kept = [event.data for event in store.events("prediction")]
@@ -218,7 +224,7 @@ def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog, tmp_path):
 def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction(catalog):
     async def journey(app, pilot):
         await to_question(app, pilot, 9)
-        assert "shown once you have predicted" in screen(app)
+        assert "then it is shown here" in screen(app)
         assert "why not always" not in screen(app)
         await pilot.press("space")
         assert "So why not always step implicitly?" in screen(app)
@@ -248,9 +254,38 @@ def test_the_editor_keeps_runs_and_drops(catalog):
         await pilot.pause()
         await pilot.press("y", "ctrl+d")
         await pilot.pause()
+        assert "again" in app.screen.query_one(".box").border_subtitle, "it asks once"
+        await pilot.press("z")
+        await pilot.pause()
+        assert "again" not in app.screen.query_one(".box").border_subtitle
+        await pilot.press("ctrl+d", "ctrl+d")
+        await pilot.pause()
         assert app.progress.cell(cell).source.startswith("xf")
+        await pilot.press("e")
+        await pilot.pause()
+        await pilot.press("ctrl+d", "u")
         await pilot.press("u")
         assert app.progress.cell(cell).source == cell.source
+
+    reading(catalog, journey)
+
+
+def test_keys_that_come_in_a_burst_act_in_their_order(catalog):
+    """A terminal on a busy machine hands over many keys at once."""
+    typed = ["end", *["backspace"] * 6, *"v2, v1", "home", "#", "ctrl+r"]
+
+    async def journey(app, pilot):
+        edit = Edit("", "return v1, v2", "run")
+        kept = []
+        app.push_screen(edit, kept.append)
+        await pilot.pause()
+        for key in typed:
+            app.post_message(Key(key, key if len(key) == 1 else None))
+        for _ in range(200):
+            await pilot.pause(0.02)
+            if kept:
+                break
+        assert kept == [("#return v2, v1", True)]
 
     reading(catalog, journey)
 

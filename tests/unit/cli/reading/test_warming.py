@@ -209,12 +209,12 @@ def test_a_fault_of_a_program_that_was_given_is_nobody_s_mistake_and_another_is(
     write(workspace, "adding", "wrong", "RIGHT")
     warm("check", "adding")
     said = warm("progress").out
-    assert "Faults in the programs you were given: 1 found, 0 fixed" in said
+    assert "Faults in the programs you were given: 1 found by a check, 0 fixed" in said
     assert "Mistakes" not in said
     write(workspace, "adding", "RIGHT", "wrong")
     warm("check", "adding")
     said = warm("progress").out
-    assert "Faults in the programs you were given: 1 found, 1 fixed" in said
+    assert "Faults in the programs you were given: 1 found by a check, 1 fixed" in said
     assert "Mistakes: 1 made, 0 fixed" in said
     assert [one["given"] for one in warm("progress", "--json").json["mistakes"]] == [True, False]
 

@@ -215,6 +215,14 @@ def test_tracebacks_are_shown_on_request_and_offered_otherwise():
     assert "hello" in shown
 
 
+def test_an_exception_that_the_message_repeats_is_not_shown_again():
+    message = "Your code raised NameError on line 3 of your file: name 'a' is not defined."
+    check = _check("a", "euler", Status.ERROR, message=message, actual="NameError: name 'a' is not defined")
+    assert _shown(check).count("name 'a' is not defined") == 1
+    other = _check("a", "euler", Status.ERROR, message="It raised.", actual="NameError: name 'a'")
+    assert "raised: NameError: name 'a'" in _shown(other)
+
+
 def test_every_status_is_a_word_of_its_own():
     for status in Status:
         word = status if status in {"pass", "skip"} else status.upper()

@@ -13,7 +13,7 @@ from course import extras
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.here import load_catalog
 from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import in_words, show_change
+from course.cli.grade.changes import in_words, show_change, show_roster
 from course.cli.grade.options import (
     Jobs,
     Layout,
@@ -282,6 +282,8 @@ def _show_summary(
                 edited=tuple(summary.edited),
                 would_change=changes,
                 unsettled=summary.unsettled,
+                moved=tuple(summary.moved),
+                dropped=tuple(summary.dropped),
             )
         )
         return
@@ -299,6 +301,7 @@ def _show_summary(
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
     _show_people(console, summary)
+    show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
     if summary.unsettled:
         console.note(
             f"{command('grade', 'assign', out)} lists what there is for them, and how to settle each."

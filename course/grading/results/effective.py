@@ -144,18 +144,19 @@ class Results:
 
     def students(self) -> list[str]:
         """All students with a result, an override or a row in the roster, by name."""
-        return sorted({*self._known(), *self.absent()})
+        return sorted({*self.graded(), *self.absent()})
 
     def absent(self) -> list[str]:
         """The enrolled students without a folder, in the roster's order; empty without a roster."""
         if self.roster is None:
             return []
-        known = self._known()
+        known = self.graded()
         found, _ = self.roster.match(known, self.downloads)
         there = known | {person.student for person in found.values()}
         return [one.student for one in self.roster.people if one.student not in there]
 
-    def _known(self) -> set[str]:
+    def graded(self) -> set[str]:
+        """The students with a result or an override."""
         return {*self.book.student_ids(), *(name for name, _ in self._overrides)}
 
     def title(self, exercise: str) -> str:
@@ -188,7 +189,7 @@ class Results:
         """
         if self.roster is None:
             return set()
-        return {*self.absent(), *self.roster.match(self._known(), self.downloads)[0]}
+        return {*self.absent(), *self.roster.match(self.graded(), self.downloads)[0]}
 
     @cached_property
     def _asked(self) -> frozenset[str]:
@@ -258,7 +259,7 @@ class Results:
             return None
         person = self.person(key.student)
         names = (key.student, person.student) if person else (key.student,)
-        due = self.policy.due(key.exercise, names, person.extension_days if person else 0.0)
+        due = self.policy.due(key.exercise, names, person.extension_days or 0.0 if person else 0.0)
         return None if due is None else lateness(submitted, due)
 
     def _passes(self, result: Result, score: float | None, most: float) -> bool:

@@ -12,6 +12,9 @@ from course.scoring.failures import OURS
 
 if TYPE_CHECKING:
     from course.grading.results.effective import Results
+    from course.grading.results.journal import ScoreChange
+    from course.grading.results.merge import Merged
+    from course.grading.results.roster import Roster
 
 __all__ = ["Summary", "Ungraded"]
 
@@ -39,6 +42,8 @@ class Summary:
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
         unrecognised: files in the class folder with an unknown owner, one sentence each.
+        moved: scores that a second roster changed.
+        dropped: students of the earlier roster that it does not have.
         unjudged: how often a check broke on a submission's result: (exercise, check, where).
         graders: digest of the snapshot that judged.
         unsettled: entries that could not be graded and have no score by hand.
@@ -57,6 +62,8 @@ class Summary:
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
+    moved: list[ScoreChange] = field(default_factory=list)
+    dropped: list[str] = field(default_factory=list)
     unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     graders: str = ""
     unsettled: int = 0
@@ -71,6 +78,11 @@ class Summary:
         if self.states["grader_error"]:
             return 70
         return 6 if self.states["ungradable"] or self.unrecognised else 0
+
+    def enrol(self, found: Merged) -> Roster:
+        """Note what a roster changed; return what is now the roster."""
+        self.moved, self.dropped = found.moved, found.dropped
+        return found.roster
 
     def count(self, results: Results) -> None:
         """Count everything in a gradebook."""

@@ -163,7 +163,7 @@ def _graders(
 def _show_people(console: Console, summary: Summary) -> None:
     """Missing students, and submissions without a student."""
     for listed, words in (
-        (summary.missing, "enrolled and handed in nothing"),
+        (summary.missing, "handed in nothing to grade"),
         (summary.strangers, "not in the roster, or ambiguous there"),
         (summary.unrecognised, "unknown owner"),
     ):

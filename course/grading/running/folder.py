@@ -7,6 +7,8 @@ import shutil
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.html_report.write import write_pages
 from course.grading.exports.lines import write_csv, write_jsonl
@@ -24,7 +26,16 @@ if TYPE_CHECKING:
     from course.grading.results.merge import Merged
     from course.grading.results.roster import Roster
 
-__all__ = ["BOOK", "begin", "export_all", "open_results", "previewed", "remember", "taken_back"]
+__all__ = [
+    "BOOK",
+    "begin",
+    "export_all",
+    "note_without_work",
+    "open_results",
+    "previewed",
+    "remember",
+    "taken_back",
+]
 
 #: The gradebook's name in a run's folder.
 BOOK = "gradebook.sqlite"
@@ -160,3 +171,10 @@ def remember(book: Gradebook, new: Roster) -> Merged:
         book.set_meta(roster=text)
     found.moved = told.moved
     return found
+
+
+def note_without_work(book: Gradebook, students: set[str]) -> None:
+    """Keep the names of the students in whose folders there is nothing to grade: no result names them."""
+    known: list[str] = msgspec.json.decode(book.meta().get("without_work", "[]"))
+    names = sorted({*known, *students} - set(book.student_ids()))
+    book.set_meta(without_work=msgspec.json.encode(names).decode() if names else None)

@@ -22,7 +22,14 @@ from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Results
 from course.grading.results.journal import replacing
 from course.grading.running.batch import grade_all
-from course.grading.running.folder import BOOK, begin, export_all, remember, taken_back
+from course.grading.running.folder import (
+    BOOK,
+    begin,
+    export_all,
+    note_without_work,
+    remember,
+    taken_back,
+)
 from course.grading.running.snapshot import Snapshot, among_graders, frozen, kept
 from course.grading.running.summary import Summary
 from course.quizzing.attempt import needed
@@ -128,6 +135,7 @@ def grade_class(
         run.note_times()
         summary = run.summary
         summary.unrecognised = members.unrecognised
+        note_without_work(book, {student.name for student in members.students})
         results = Results(book, run.roster)
         summary.count(results)
         if options.resume:

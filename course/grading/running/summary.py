@@ -38,7 +38,7 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
-        missing: enrolled students who handed in nothing at all; empty without a roster.
+        missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
         unrecognised: files in the class folder with an unknown owner, one sentence each.

@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
 __all__ = ["results_body", "write_gradescope"]
 
+_WHAT_FOR = (
+    "Each JSON file is what an autograder leaves at /autograder/results/results.json for one submission; an "
+    "autograder of your own can hand them out. index.csv says whose is which. To grade in Gradescope itself, "
+    "use --format gradescope-autograder."
+)
 _LONGEST = 4000  # characters of one check's words: a student's function may return anything
 
 
@@ -49,6 +54,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
     index = folder / "index.csv"
     write_bytes(index, csv_bytes(["file", "student", "name", "email", "exercise", "score"], rows))
     selection.written.paths += [index, folder]
+    selection.written.notes.append(_WHAT_FOR)
     return selection.written
 
 

@@ -257,7 +257,7 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
         with pytest.raises(MissingCapabilityError) as stopped:
             export(results, "canvas", tmp_path, None, asked)
     assert stopped.value.message == (
-        f"roster.csv has no usable row for 1 of 4 students. In no row: 'hopper'. {tried} Nothing was written."
+        f"roster.csv has no usable row for 1 student. In no row: 'hopper'. {tried} Nothing was written."
     )
     assert "the columns student (the name in the gradebook) and canvas_id" in stopped.value.help
 

@@ -145,3 +145,43 @@ def test_an_id_that_the_new_file_gives_to_another_row_does_not_stay(tmp_path: Pa
     first = Roster((Person("ada", canvas_id="101"), Person("bob", canvas_id="102")))
     found = merge(tmp_path, first, "student,canvas_id\nada,\nbob,101\n")
     assert [(row.student, row.canvas_id) for row in found.roster.people] == [("ada", ""), ("bob", "101")]
+
+
+WORKSHEET = """Identifier,Full name,Email address,Status,Grade,Last modified (grade),Feedback comments
+Participant 500,A. Lovelace,ada@x.org,x,,-,
+Participant 501,Bob Byrne,bob2@x.org,x,,-,
+"""
+
+
+def test_a_worksheet_finds_plain_folders_by_address_or_name(course, out: Path) -> None:
+    assert course("grade", "late", "out", "--roster", "first.csv").code == 0
+    write(out.parent, "sheet.csv", WORKSHEET)
+    filled = ("grade", "export", "out", "--format", "moodle-worksheet", "--exercise", "doubling")
+    assert course(*filled, "--roster", "sheet.csv", "-o", "back.csv").code == 0
+    rows = (out.parent / "back.csv").read_text().splitlines()
+    assert [row.split(",")[4] for row in rows] == ["Grade", "10", "10"]
+    # The participant numbers are in no field of a user, by which Moodle's grade import looks.
+    ran = course("grade", "export", "out", "--format", "moodle", "-o", "moodle.csv")
+    assert '"500","A. Lovelace","ada@x.org","10"' in (out.parent / "moodle.csv").read_text("utf-8-sig")
+    for words in ("participant numbers", "other people", "--format moodle-worksheet", "'Email address'"):
+        assert words in " ".join(ran.out.split())
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("canvas", "first.csv has neither canvas_id nor sis_user_id, and Canvas needs one of them."),
+        ("moodle", "first.csv has no moodle_key, and Moodle needs it."),
+        ("moodle-worksheet", "first.csv has no moodle_key, and Moodle needs it."),
+    ],
+)
+def test_a_roster_without_the_column_is_refused_for_that(course, out: Path, name: str, says: str) -> None:
+    words = ("grade", "export", "out", "--format", name, "--roster", "first.csv", "--json")
+    error = course(*words).json["error"]
+    assert (error["code"], error["message"]) == ("unmatched_students", f"{says} Nothing was written.")
+    assert "worksheet" in error["help"] or "Canvas' gradebook export" in error["help"]
+
+
+def test_the_files_for_gradescope_say_what_they_are_for(course, out: Path) -> None:
+    ran = course("grade", "export", "out", "--format", "gradescope")
+    assert "/autograder/results/results.json" in ran.out

@@ -15,7 +15,7 @@ from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.changes import moved_scores, show_change, show_roster
 from course.cli.grade.changes import points as _points
 from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, Share, levels
-from course.cli.grade.running import score_of
+from course.cli.grade.running import checks_gave
 from course.errors import UsageError
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.lines import grade_line, utc
@@ -124,7 +124,8 @@ def override(
         float | None, typer.Option("--score", metavar="X", help="The points that count.")
     ] = None,
     reason: Annotated[
-        str, typer.Option("--reason", metavar="TEXT", help="Shown wherever the score is.")
+        str,
+        typer.Option("--reason", metavar="TEXT", help="Shown with the score, to the student too."),
     ] = "",
     lift: Annotated[bool, typer.Option("--lift", help="Remove the override again.")] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what would count; keep nothing.")] = False,
@@ -152,8 +153,12 @@ def override(
     if now is None:
         console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
-        counts = f"{_points(now.score)} of {format_points(now.max_score)} counts"
-        console.line((f"{one_line(student)} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
+        counts = (
+            f"{_points(now.score)} of {format_points(now.max_score)} {'would count' if dry_run else 'counts'}"
+        )
+        console.line((f"{one_line(student)} {exercise}: {counts}; {checks_gave(now)}.", "bold"))
+        if score is not None:
+            console.note("The student can read the reason: it is on their page and in exports for students.")
     if dry_run:
         console.note("Nothing was changed; leave out --dry-run to change it.")
     return 0

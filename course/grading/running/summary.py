@@ -46,6 +46,7 @@ class Summary:
         dropped: students of the earlier roster that it does not have.
         unjudged: how often a check broke on a submission's result: (exercise, check, where).
         graders: digest of the snapshot that judged.
+        pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
         elapsed_s: wall seconds.
@@ -66,6 +67,7 @@ class Summary:
     dropped: list[str] = field(default_factory=list)
     unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     graders: str = ""
+    pass_marks: list[tuple[float, float]] = field(default_factory=list)
     unsettled: int = 0
     edited: list[str] = field(default_factory=list)
     seed: int = 0
@@ -86,6 +88,12 @@ class Summary:
 
     def count(self, results: Results) -> None:
         """Count everything in a gradebook."""
+        there = set(results.book.exercise_ids())
+        self.pass_marks = [
+            (item.pass_share * item.max_points, item.max_points)
+            for item in results.exercises()
+            if item.id in there
+        ]
         self.missing = results.absent()
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:

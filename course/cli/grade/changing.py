@@ -27,7 +27,7 @@ from course.grading.results.roster import read_roster
 from course.grading.results.times import read_times
 from course.grading.similar.page import page
 from course.printable import one_line
-from course.scoring.numbers import format_points
+from course.scoring.numbers import format_points, in_points
 
 if TYPE_CHECKING:
     from course.cli.grade.replies import LateOne
@@ -290,11 +290,12 @@ def _show_late(
         if item.late is None:
             words = "late, says the download, and not by how much; give its time with --times"
         else:
-            cost = f"{format_points(item.penalty)} points" if item.penalty else "no penalty"
+            cost = in_points(item.penalty) if item.penalty else "no penalty"
             words = f"{in_days(item.late)} late, {cost} ({item.submitted_at}, by {item.witness})"
         console.item(f"{one_line(item.student)} {item.exercise}", words)
     if results.policy is not None:
-        console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
+        count = sum(item.late is not None for item in found)
+        console.line((f"{count} {'is' if count == 1 else 'are'} late.", "bold"))
         if unknown_time:
             console.note(f"{unknown_time} have no trusted submission time; they count as on time.")
     for name in unknown:

@@ -31,7 +31,7 @@ from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.printable import command, one_line
 from course.scoring.judging.terms import Terms
-from course.scoring.numbers import LARGEST_SEED, format_points
+from course.scoring.numbers import LARGEST_SEED, format_points, in_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -392,7 +392,7 @@ def _show_result(
         show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
     else:
         for check in verdict.checks:
-            worth = f"  [{format_points(check.points)}/{format_points(check.max_points)} points]"
+            worth = f"  [{format_points(check.points)}/{in_points(check.max_points)}]"
             console.item(check.status.value, check.title, (worth, "dim"), width=10)
 
 

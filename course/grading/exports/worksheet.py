@@ -21,6 +21,7 @@ from course.grading.exports.cells import for_moodle, number, safe_cell, write_by
 from course.grading.exports.handout import problem_for_student
 from course.grading.exports.selection import ExportOptions, Needs, Written, check_zeros, select
 from course.grading.results.roster import moodle_key, read_text
+from course.scoring.numbers import in_points
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -126,7 +127,7 @@ def _feedback(effective: Effective) -> str:
     problem = problem_for_student(verdict)
     told = [f"{number(effective.score)} of {number(effective.max_score)} points."]
     if effective.penalty:
-        told.append(f"{number(effective.penalty)} points were taken off for lateness.")
+        told.append(f"Lateness cost {in_points(effective.penalty)}.")
     if effective.override is not None:
         told.append(f"Set by the instructor: {effective.override.reason}")
     elif problem is not None:

@@ -117,10 +117,17 @@ def _joined(before: Person, row: Person, new: Roster, student: str) -> Person:
     kept["student"] = student
     if row.extension_days is not None:
         kept["extension_days"] = row.extension_days
-    ids = {getattr(row, name).casefold() for name in ("student", *_IDS)}
-    if before.name and ("name" not in new.columns or row.name.casefold() in ids):
+    if before.name and ("name" not in new.columns or _is_poorer(row, before.name)):
         kept["name"] = before.name
     for name in _IDS:
         if not getattr(row, name) and new.having(name, kept[name]):
             kept[name] = ""  # the new file says that it is another student's
     return Person(**kept)
+
+
+def _is_poorer(row: Person, name: str) -> bool:
+    """Whether a row's name is only an id, or the known name as a platform sorts it: "Lovelace, Ada"."""
+    if row.name.casefold() in {getattr(row, column).casefold() for column in ("student", *_IDS)}:
+        return True
+    words = sorted(row.name.replace(",", " ").casefold().split())
+    return "," in row.name and words == sorted(name.casefold().split())

@@ -98,6 +98,8 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
     assert "2 have no trusted submission time" in ran.out
     assert "no student nobody" in ran.err
     assert grades(out / "grades.csv")["ada"]["score"] == "8"
+    ran = course("grade", "late", "out", "--roster", "roster.csv", "--dry-run")
+    assert "1 is late." in ran.out
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--json")
     assert [(one["student"], one["late"]) for one in ran.json["late"]] == [("ada", 2 * DAY)]
     times = out.parent / "times.csv"

@@ -245,7 +245,7 @@ def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
             assert all(isinstance(tag, str) for tag in test["tags"])
     by_name = {row["student"]: json.loads((folder / row["file"]).read_bytes()) for row in index}
     assert by_name["late"]["score"] == 8
-    assert "taken off for lateness" in by_name["late"]["output"]
+    assert "Lateness cost 2 points." in by_name["late"]["output"]
     assert "oral" not in by_name["set"]["output"]
     assert "Score set by the instructor" in by_name["set"]["output"]
     assert [test["visibility"] for test in by_name["late"]["tests"]] == ["visible", "after_due_date"]

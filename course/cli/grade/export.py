@@ -9,7 +9,7 @@ import typer
 
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import show_roster
+from course.cli.grade.changes import moved_scores, show_roster
 from course.cli.grade.options import Exercises, Missing, one_of
 from course.errors import CourseError, UsageError
 from course.grading.exports.autograder import write_autograder
@@ -119,6 +119,10 @@ def _from_gradebook(
         if not console.json:
             show_roster(console, found.roster.file, found.moved, found.dropped)
         if console.json and name == "jsonl" and output is None:
+            for line in moved_scores(found.moved):
+                console.warn(f"With {found.roster.file}, a score changes: {line}")
+            for student in found.dropped:
+                console.warn(f"Not in {found.roster.file}, leaves the roster: {one_line(student)}")
             _print_lines(console, results, options)
             return None, found
         written = write(results, name, out, output, options)

@@ -80,6 +80,11 @@ def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out: 
         "With next.csv, 1 score changes:\n  bob doubling: 10 -> 8\n"
         "1 student is not in next.csv and leaves the roster: gus\n"
     )
+    lines = course(
+        "grade", "export", "out", "--format", "jsonl", "--roster", "next.csv", "--partial", "--json"
+    )
+    assert "With next.csv, a score changes: bob doubling: 10 -> 8" in lines.err
+    assert "leaves the roster: gus" in lines.err
     ran = course(*TO_CANVAS, "next.csv", "-o", "a.csv")
     assert (ran.code, ran.out) == (0, f"{told}Wrote a.csv.\n")
     assert "bob doubling 10 -> bob doubling 8" in course("grade", "log", "out").out

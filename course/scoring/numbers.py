@@ -30,6 +30,12 @@ def format_points(points: float) -> str:
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
+def in_points(points: float) -> str:
+    """Points with their noun: 1 point, 2.5 points."""
+    told = format_points(points)
+    return f"{told} point" if told == "1" else f"{told} points"
+
+
 def format_value(value: Any, digits: int = _DIGITS) -> str:
     """A plain value; numbers with so many significant digits."""
     if isinstance(value, bool) or value is None:

@@ -10,13 +10,16 @@ from course.printable import one_line
 from course.scoring.numbers import format_points
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from course.cli.frame.terminal.console import Console
+    from course.grading.results.journal import ScoreChange
     from course.grading.running.rerun import Change
 
-__all__ = ["in_words", "points", "show_change"]
+__all__ = ["in_words", "moved_scores", "points", "show_change", "show_roster"]
 
-#: Characters of what a decision keeps, and scores of a class, that one line names.
-_SHOWN, _FEW = 200, 5
+#: Characters of what a decision keeps, and scores of a class, that one line names; students in a list.
+_SHOWN, _FEW, _MOST = 200, 5, 20
 
 
 def show_change(console: Console, change: Change) -> None:
@@ -34,6 +37,31 @@ def show_change(console: Console, change: Change) -> None:
         console.item(
             check.id, f"{check.before or 'no such check'} -> {check.after or 'gone'}{delta}", indent=4
         )
+
+
+def moved_scores(moved: Sequence[ScoreChange]) -> Iterator[str]:
+    """Whose score changes, and how, one line each."""
+    for one in moved[:_MOST]:
+        yield f"{one_line(one.student)} {one.exercise}: {points(one.before)} -> {points(one.after)}"
+    if len(moved) > _MOST:
+        yield f"and {len(moved) - _MOST} more"
+
+
+def show_roster(console: Console, file: str, moved: Sequence[ScoreChange], dropped: Sequence[str]) -> None:
+    """What a roster changes, if anything: scores, and who is enrolled."""
+    if moved:
+        scores = "1 score changes" if len(moved) == 1 else f"{len(moved)} scores change"
+        console.line((f"With {file}, {scores}:", "bold"))
+    for line in moved_scores(moved):
+        console.line(line, indent=2)
+    if dropped:
+        leave = (
+            f"1 student is not in {file} and leaves"
+            if len(dropped) == 1
+            else f"{len(dropped)} students are not in {file} and leave"
+        )
+        more = f" and {len(dropped) - _MOST} more" if dropped[_MOST:] else ""
+        console.line(f"{leave} the roster: {', '.join(map(one_line, dropped[:_MOST]))}{more}")
 
 
 def points(score: float | None) -> str:

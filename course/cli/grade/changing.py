@@ -12,21 +12,22 @@ import typer
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.here import load_catalog
 from course.cli.frame.terminal.console import Console, current
+from course.cli.grade.changes import moved_scores, show_change, show_roster
 from course.cli.grade.changes import points as _points
-from course.cli.grade.changes import show_change
 from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, Share, levels
-from course.cli.grade.running import score_of
+from course.cli.grade.running import checks_gave
 from course.errors import UsageError
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.lines import grade_line, utc
 from course.grading.results import override as overriding
 from course.grading.results.effective import Results
 from course.grading.results.late import in_days, read_policy, unknown_names
+from course.grading.results.merge import merged
 from course.grading.results.roster import read_roster
 from course.grading.results.times import read_times
 from course.grading.similar.page import page
 from course.printable import one_line
-from course.scoring.numbers import format_points
+from course.scoring.numbers import format_points, in_points
 
 if TYPE_CHECKING:
     from course.cli.grade.replies import LateOne
@@ -123,7 +124,8 @@ def override(
         float | None, typer.Option("--score", metavar="X", help="The points that count.")
     ] = None,
     reason: Annotated[
-        str, typer.Option("--reason", metavar="TEXT", help="Shown wherever the score is.")
+        str,
+        typer.Option("--reason", metavar="TEXT", help="Shown with the score, to the student too."),
     ] = "",
     lift: Annotated[bool, typer.Option("--lift", help="Remove the override again.")] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what would count; keep nothing.")] = False,
@@ -151,8 +153,12 @@ def override(
     if now is None:
         console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
-        counts = f"{_points(now.score)} of {format_points(now.max_score)} counts"
-        console.line((f"{one_line(student)} {exercise}: {counts}; the checks gave {score_of(now)}.", "bold"))
+        counts = (
+            f"{_points(now.score)} of {format_points(now.max_score)} {'would count' if dry_run else 'counts'}"
+        )
+        console.line((f"{one_line(student)} {exercise}: {counts}; {checks_gave(now)}.", "bold"))
+        if score is not None:
+            console.note("The student can read the reason: it is on their page and in exports for students.")
     if dry_run:
         console.note("Nothing was changed; leave out --dry-run to change it.")
     return 0
@@ -168,7 +174,8 @@ def late(
         typer.Option("--times", metavar="FILE", help="CSV: student, exercise, submitted_at (ISO 8601)."),
     ] = None,
     roster: Annotated[
-        Path | None, typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days.")
+        Path | None,
+        typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days."),
     ] = None,
     clear: Annotated[bool, typer.Option("--clear", help="Remove the late policy.")] = False,
     reason: Reason = "",
@@ -198,7 +205,7 @@ def late(
         with recorded(book, "late", why) if changes else nullcontext(Recording()) as told:
             if text is not None or clear:
                 book.set_meta(late_policy=text)
-            _take_in(book, people, known)
+            dropped = _take_in(book, people, known)
         results = Results(book)
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
         unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
@@ -212,30 +219,34 @@ def late(
                 unknown_names=tuple(unknown),
                 dry_run=dry_run,
                 moved=tuple(told.moved),
+                dropped=tuple(dropped),
             )
         )
     else:
         _show_late(console, results, found, unknown_time, unknown)
+        show_roster(console, people.file if people else "", (), dropped)
         _show_moved(console, told.moved, dry_run=dry_run)
     return 0
 
 
 def _show_moved(console: Console, moved: list[ScoreChange], *, dry_run: bool) -> None:
-    for one in moved[:_SHOWN]:
-        scores = f"{_points(one.before)} -> {_points(one.after)}"
-        console.item(f"{one_line(one.student)} {one.exercise}", scores)
-    if len(moved) > _SHOWN:
-        console.line(f"and {len(moved) - _SHOWN} more", indent=2)
+    for line in moved_scores(moved):
+        console.line(line, indent=2)
     if moved or dry_run:
         would = "would change" if dry_run else "changed"
         console.line((f"{len(moved)} {'score' if len(moved) == 1 else 'scores'} {would}.", "bold"))
 
 
-def _take_in(book: Gradebook, people: Roster | None, times: list[SubmittedAt]) -> None:
+def _take_in(book: Gradebook, people: Roster | None, times: list[SubmittedAt]) -> list[str]:
+    """Keep a roster and times; the students who leave the roster."""
+    dropped = []
     if people is not None:
-        book.set_meta(roster=people.dump())
+        found = merged(Results(book), people)
+        book.set_meta(roster=found.roster.dump())
+        dropped = found.dropped
     if times:
         book.add_times(times, replace=True)
+    return dropped
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
@@ -279,11 +290,12 @@ def _show_late(
         if item.late is None:
             words = "late, says the download, and not by how much; give its time with --times"
         else:
-            cost = f"{format_points(item.penalty)} points" if item.penalty else "no penalty"
+            cost = in_points(item.penalty) if item.penalty else "no penalty"
             words = f"{in_days(item.late)} late, {cost} ({item.submitted_at}, by {item.witness})"
         console.item(f"{one_line(item.student)} {item.exercise}", words)
     if results.policy is not None:
-        console.line((f"{sum(item.late is not None for item in found)} are late.", "bold"))
+        count = sum(item.late is not None for item in found)
+        console.line((f"{count} {'is' if count == 1 else 'are'} late.", "bold"))
         if unknown_time:
             console.note(f"{unknown_time} have no trusted submission time; they count as on time.")
     for name in unknown:

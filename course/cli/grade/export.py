@@ -9,6 +9,7 @@ import typer
 
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.terminal.console import Console, current
+from course.cli.grade.changes import moved_scores, show_roster
 from course.cli.grade.options import Exercises, Missing, one_of
 from course.errors import CourseError, UsageError
 from course.grading.exports.autograder import write_autograder
@@ -17,13 +18,14 @@ from course.grading.exports.formats import export as write
 from course.grading.exports.lines import grade_line
 from course.grading.exports.selection import ExportOptions, select
 from course.grading.results.effective import Results
-from course.grading.results.roster import read_roster
+from course.grading.results.journal import counting, moved
+from course.grading.results.merge import Merged, merged
+from course.grading.results.roster import Roster, read_roster
 from course.printable import command, one_line
 from course.scoring.numbers import LARGEST_SEED
 
 if TYPE_CHECKING:
     from course.grading.exports.selection import Written
-    from course.grading.results.roster import Roster
 
 __all__ = ["export"]
 
@@ -44,7 +46,7 @@ def export(
     ] = None,
     roster: Annotated[
         Path | None,
-        typer.Option("--roster", metavar="FILE", help="Who is enrolled; remembered for later exports."),
+        typer.Option("--roster", metavar="FILE", help="Who is enrolled; merged into the stored roster."),
     ] = None,
     assignment: Annotated[
         list[str] | None,
@@ -77,6 +79,7 @@ def export(
     """
     console = current()
     exercises = tuple(exercise or ())
+    found = Merged(Roster(()))
     if format == AUTOGRADER:
         written: Written | None = _autograder(out, output, exercises, seed, timeout)
     elif out is None:
@@ -90,9 +93,9 @@ def export(
         sheet = roster if format == "moodle-worksheet" else None
         given = _assignments(assignment or [])
         options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet)
-        written = _from_gradebook(console, out, format, output, people, options)
+        written, found = _from_gradebook(console, out, format, output, people, options)
     if written is not None:
-        _show(console, format, written, out)
+        _show(console, format, written, out, found)
     return 0
 
 
@@ -103,17 +106,27 @@ def _from_gradebook(
     output: Path | None,
     people: Roster | None,
     options: ExportOptions,
-) -> Written | None:
-    """Write it; None if it was printed."""
+) -> tuple[Written | None, Merged]:
+    """Write it, and say first what the roster changes; nothing is written if it was printed."""
     from course.grading.running.folder import open_results, remember
 
     with open_results(out) as opened:
-        results = Results(opened.book, people) if people else opened
+        found, results = Merged(opened.roster or Roster(())), opened
+        if people is not None:
+            found = merged(opened, people)
+            results = Results(opened.book, found.roster)
+            found.moved = moved(counting(opened), counting(results))
+        if not console.json:
+            show_roster(console, found.roster.file, found.moved, found.dropped)
         if console.json and name == "jsonl" and output is None:
+            for line in moved_scores(found.moved):
+                console.warn(f"With {found.roster.file}, a score changes: {line}")
+            for student in found.dropped:
+                console.warn(f"Not in {found.roster.file}, leaves the roster: {one_line(student)}")
             _print_lines(console, results, options)
-            return None
+            return None, found
         written = write(results, name, out, output, options)
-        is_new = people is not None and opened.book.meta().get("roster") != people.dump()
+        is_new = people is not None and opened.book.meta().get("roster") != found.roster.dump()
     if people is not None and is_new:
         try:
             # Its extensions count, so the files beside the gradebook are written again.
@@ -121,7 +134,7 @@ def _from_gradebook(
                 remember(opened.book, people)
         except CourseError as error:  # the export itself is complete
             console.warn(f"The roster was not remembered: {error.message}")
-    return written
+    return written, found
 
 
 def _print_lines(console: Console, results: Results, options: ExportOptions) -> None:
@@ -165,7 +178,7 @@ def _autograder(
     return write_autograder(target, catalog, chosen, seed=drawn, timeout=timeout, asked=bool(exercises))
 
 
-def _show(console: Console, name: str, written: Written, out: Path | None) -> None:
+def _show(console: Console, name: str, written: Written, out: Path | None, found: Merged) -> None:
     if console.json:
         from course.cli.grade.replies import GradeExport
 
@@ -177,6 +190,8 @@ def _show(console: Console, name: str, written: Written, out: Path | None) -> No
                 unmatched=tuple(written.unmatched),
                 without_grade=tuple(written.without_grade),
                 notes=tuple(written.notes),
+                moved=tuple(found.moved),
+                dropped=tuple(found.dropped),
             )
         )
         return

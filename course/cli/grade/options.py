@@ -81,7 +81,7 @@ Protection = Annotated[
     one_of(
         "--isolation",
         *_LEVELS,
-        help="auto: the best level, L2 at least. strict: L3. process: L1, no protection of files.",
+        help="auto: the best level, L2 at least. strict: L3. process: L1, which does not protect your files.",
     ),
 ]
 Reason = Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the change.")]

@@ -50,6 +50,8 @@ class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=
     edited: tuple[str, ...] = ()
     would_change: tuple[Change, ...] = ()
     unsettled: int = 0
+    moved: tuple[ScoreChange, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):
@@ -140,10 +142,14 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
     unknown_names: tuple[str, ...]
     dry_run: bool = False
     moved: tuple[ScoreChange, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):
-    """The export. ``unmatched`` are students without a row in the roster, left out with ``--partial``."""
+    """The export. ``unmatched`` are students without a row in the roster, left out with ``--partial``.
+
+    ``moved`` are the scores that a second roster changed, ``dropped`` the students whom it does not have.
+    """
 
     format: str
     paths: tuple[str, ...]
@@ -151,6 +157,8 @@ class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=Tr
     unmatched: tuple[str, ...]
     without_grade: tuple[str, ...]
     notes: tuple[str, ...]
+    moved: tuple[ScoreChange, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 class SimilarPair(msgspec.Struct, frozen=True, kw_only=True):

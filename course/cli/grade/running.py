@@ -13,7 +13,7 @@ from course import extras
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.here import load_catalog
 from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import in_words, show_change
+from course.cli.grade.changes import in_words, show_change, show_roster
 from course.cli.grade.options import (
     Jobs,
     Layout,
@@ -26,11 +26,12 @@ from course.cli.grade.options import (
 from course.cli.work.verdict.screen import show_everything
 from course.errors import NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
+from course.grading.results.effective import MISSING
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.printable import command, one_line
 from course.scoring.judging.terms import Terms
-from course.scoring.numbers import LARGEST_SEED, format_points
+from course.scoring.numbers import LARGEST_SEED, format_points, in_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
     from course.grading.running.run import GradeAll, RunOptions
     from course.grading.running.summary import Summary
 
-__all__ = ["explain", "run", "score_of"]
+__all__ = ["checks_gave", "explain", "run", "score_of"]
 
 _MOST_TROUBLED = 20
 
@@ -163,7 +164,7 @@ def _graders(
 def _show_people(console: Console, summary: Summary) -> None:
     """Missing students, and submissions without a student."""
     for listed, words in (
-        (summary.missing, "enrolled and handed in nothing"),
+        (summary.missing, "handed in nothing to grade"),
         (summary.strangers, "not in the roster, or ambiguous there"),
         (summary.unrecognised, "unknown owner"),
     ):
@@ -282,11 +283,18 @@ def _show_summary(
                 edited=tuple(summary.edited),
                 would_change=changes,
                 unsettled=summary.unsettled,
+                moved=tuple(summary.moved),
+                dropped=tuple(summary.dropped),
             )
         )
         return
     graded = summary.states["graded"]
-    console.line((f"{graded} graded, {summary.passed} of them pass. {summary.elapsed_s:.1f} s.", "bold"))
+    console.line(
+        (
+            f"{graded} graded, {summary.passed} of them pass{_mark(summary)}. {summary.elapsed_s:.1f} s.",
+            "bold",
+        )
+    )
     for state, words in (
         ("ungradable", "could not be graded"),
         ("grader_error", "hit a fault of the grader and are marked for regrading"),
@@ -298,22 +306,35 @@ def _show_summary(
             console.item(f"{one_line(row.student)} {row.exercise}", f"{row.code}: {one_line(row.message)}")
         if len(rows) > _MOST_TROUBLED:
             console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
-    _show_people(console, summary)
     if summary.unsettled:
-        console.note(
-            f"{command('grade', 'assign', out)} lists what there is for them, and how to settle each."
-        )
+        assign = command("grade", "assign", out)
+        console.note(f"{assign} lists the files of those that could not be graded, and how to settle each.")
+    _show_people(console, summary)
+    show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
     _show_unjudged(console, list(_unjudged(summary)))
     _show_edited(console, summary, changes, out)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
-    levels = ", ".join(f"{level} for {count}" for level, count in sorted(summary.levels.items()))
-    if levels:
-        console.note(f"Protection: {levels}.")
+    for level, count in sorted(summary.levels.items()):
+        console.note(
+            f"{count} {'submission' if count == 1 else 'submissions'} ran at protection level {level}."
+        )
     if options.terms.at_least == "L1":
         console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
     files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
     console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
+
+
+def _mark(summary: Summary) -> str:
+    """The pass mark in words: in points for one exercise, else as a share if there is one for all."""
+    if len(summary.pass_marks) == 1:
+        mark, most = summary.pass_marks[0]
+        return f" (pass mark: {format_points(mark)} of {format_points(most)})"
+    shares = sorted({mark / most for mark, most in summary.pass_marks if most})
+    if not shares:
+        return ""
+    highest = f" to {shares[-1]:.0%}" if f"{shares[-1]:.0%}" != f"{shares[0]:.0%}" else ""
+    return f" (pass mark: {shares[0]:.0%}{highest} of the points)"
 
 
 def _show_unjudged(console: Console, sentences: list[str]) -> None:
@@ -342,9 +363,7 @@ def _show_result(
     console.item("score", f"{score} of {format_points(found.max_score)}, {passed}", width=10)
     if found.override is not None:
         at = found.override.at
-        console.item(
-            "override", f"{found.override.reason} (set {at}; the checks gave {score_of(found)})", width=10
-        )
+        console.item("override", f"{found.override.reason} (set {at}; {checks_gave(found)})", width=10)
     if found.late is not None:
         cost = (
             f"{format_points(found.penalty)} points off {score_of(found)}" if found.penalty else "no penalty"
@@ -373,8 +392,15 @@ def _show_result(
         show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
     else:
         for check in verdict.checks:
-            worth = f"  [{format_points(check.points)}/{format_points(check.max_points)} points]"
+            worth = f"  [{format_points(check.points)}/{in_points(check.max_points)}]"
             console.item(check.status.value, check.title, (worth, "dim"), width=10)
+
+
+def checks_gave(found: Effective) -> str:
+    """What the graders said of work that has a score by hand."""
+    if found.verdict.state in {"ungradable", MISSING}:
+        return "no check ran"
+    return f"the checks gave {score_of(found)}"
 
 
 def score_of(found: Effective) -> str:

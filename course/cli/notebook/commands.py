@@ -179,7 +179,10 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
         console.line(_sentence(folder, files[-1]))
     changed = sum(file.action != "current" for file in files)
     count = "1 notebook" if len(files) == 1 else f"{len(files)} notebooks"
-    console.line((f"{count} in {folder}, {changed} of them new or changed.", "bold"))
+    new = f"{changed} of them new or changed"
+    if len(files) == 1:
+        new = "new or changed" if changed else "not changed"
+    console.line((f"{count} in {folder}, {new}.", "bold"))
     console.note(f"Open them with: jupyter lab {folder}")
     console.emit(
         Notebook(

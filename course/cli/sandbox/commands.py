@@ -182,7 +182,8 @@ def replay(
     for name, (then, here) in difference.versions.items():
         console.line(f"Recorded with {name} {then}; here it is {here}.")
     if difference.same:
-        console.line(f"The same, bit by bit: {recorded.ticks} steps, {difference.checked} states compared.")
+        states = "1 state" if difference.checked == 1 else f"{difference.checked} states"
+        console.line(f"The same, bit by bit: {recorded.ticks} steps, {states} compared.")
     else:
         console.line(
             f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "

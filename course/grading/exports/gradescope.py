@@ -15,6 +15,7 @@ from course.grading.exports.cells import csv_bytes, number, write_bytes
 from course.grading.exports.handout import checks_for_student, problem_for_student
 from course.grading.exports.selection import ExportOptions, Written, check_zeros, select
 from course.printable import one_line
+from course.scoring.numbers import in_points
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ if TYPE_CHECKING:
 
 __all__ = ["results_body", "write_gradescope"]
 
+_WHAT_FOR = (
+    "Each JSON file is what an autograder leaves at /autograder/results/results.json for one submission; an "
+    "autograder of your own can hand them out. index.csv says whose is which. To grade in Gradescope itself, "
+    "use --format gradescope-autograder."
+)
 _LONGEST = 4000  # characters of one check's words: a student's function may return anything
 
 
@@ -49,6 +55,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
     index = folder / "index.csv"
     write_bytes(index, csv_bytes(["file", "student", "name", "email", "exercise", "score"], rows))
     selection.written.paths += [index, folder]
+    selection.written.notes.append(_WHAT_FOR)
     return selection.written
 
 
@@ -92,7 +99,7 @@ def _words(effective: Effective) -> str:
     if problem is not None:
         said += [problem.message, problem.help]
     if effective.penalty:
-        said.append(f"{number(effective.penalty)} points were taken off for lateness.")
+        said.append(f"Lateness cost {in_points(effective.penalty)}.")
     if effective.override is not None:
         said.append(f"Score set by the instructor: {effective.override.reason}")
     return _plain("\n".join(part for part in (*said, *verdict.warnings) if part))

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 
 from course.errors import UsageError
 from course.grading.exports.cells import csv_bytes, for_moodle, is_safe, number, write_bytes
-from course.grading.exports.selection import ExportOptions, Selection, Written, check_zeros, select
+from course.grading.exports.selection import (
+    ExportOptions,
+    Needs,
+    Selection,
+    Written,
+    check_zeros,
+    select,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,6 +26,16 @@ if TYPE_CHECKING:
     from course.grading.results.roster import Person
 
 __all__ = ["write_canvas", "write_moodle"]
+
+_CANVAS = Needs(
+    ("canvas_id", "sis_user_id"), "Canvas", "Give Canvas' gradebook export with --roster, or add the column."
+)
+_MOODLE = Needs(
+    ("moodle_key",),
+    "Moodle",
+    "Add the column: each student's user name, ID number or e-mail address in Moodle. Or fill in Moodle's "
+    "grading worksheet: --format moodle-worksheet --roster FILE.",
+)
 
 
 def write_canvas(path: Path, results: Results, options: ExportOptions) -> Written:
@@ -32,7 +49,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
         MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
             cannot be written.
     """
-    selection = select(results, options, usable=_has_canvas_id, needs="canvas_id or sis_user_id")
+    selection = select(results, options, usable=_has_canvas_id, needs=_CANVAS)
     missing = [name for name in selection.exercises if name not in options.assignments]
     if missing:
         raise UsageError(
@@ -76,19 +93,35 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
         MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
             cannot be written.
     """
-    selection = select(results, options, usable=_has_moodle_key, needs="moodle_key")
+    selection = select(results, options, usable=_has_moodle_key, needs=_MOODLE)
     check_zeros(selection, options)
-    headings = ["moodle_key", "name", *(results.title(name) for name in selection.exercises)]
+    headings = ["moodle_key", "name", "email", *(results.title(name) for name in selection.exercises)]
     rows = []
     for student, scores in _table(selection).items():
         person = selection.people[student]
-        rows.append([person.moodle_key, for_moodle(person.name), *scores])
+        rows.append([person.moodle_key, for_moodle(person.name), _address(person), *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
-    selection.written.notes.append(
-        "In Moodle, map the column moodle_key to the field that your roster has in it."
-    )
+    selection.written.notes.append(_how_to_map(rows))
     return selection.written
+
+
+def _address(person: Person) -> str:
+    """The e-mail address, if Moodle gets it unchanged."""
+    mail = person.email
+    return mail if is_safe(mail) and for_moodle(mail) == mail else ""
+
+
+def _how_to_map(rows: list[list[str]]) -> str:
+    """What to tell Moodle about the columns: a participant's number is in no field of a user."""
+    if all(key.isdigit() for key, *_ in rows):
+        mail = ", or map email to 'Email address'" if all(mail for _, _, mail, *_ in rows) else ""
+        return (
+            "moodle_key has only numbers. Map ID numbers to 'ID number'. Numbers from a grading worksheet are"
+            " participant numbers, which no user has as a field; mapped to 'User ID' they would grade other"
+            f" people. For these use --format moodle-worksheet{mail}."
+        )
+    return "In Moodle, map moodle_key to the field that it was taken from: user name, ID number or email."
 
 
 def _has_moodle_key(person: Person) -> bool:

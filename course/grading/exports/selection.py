@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from course.grading.results.effective import Effective, Results
-    from course.grading.results.roster import Person
+    from course.grading.results.roster import Person, Roster
 
-__all__ = ["ExportOptions", "Selection", "Written", "check_zeros", "is_part", "select"]
+__all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_zeros", "is_part", "select"]
 
 _SHOWN = 10
 
@@ -40,6 +40,27 @@ class ExportOptions:
     missing: str = "blank"
     zeros: bool = False
     worksheet: Path | None = None
+
+
+@dataclass(frozen=True)
+class Needs:
+    """The key by which a platform finds a student.
+
+    Attributes:
+        columns: of our own roster, one of which has to have it.
+        platform: its name.
+        give: where to get the key, as the beginning of a sentence.
+    """
+
+    columns: tuple[str, ...]
+    platform: str
+    give: str
+
+    def absent(self) -> str:
+        """What a roster lacks that has none of the columns."""
+        if len(self.columns) == 1:
+            return f"has no {self.columns[0]}, and {self.platform} needs it"
+        return f"has neither {' nor '.join(self.columns)}, and {self.platform} needs one of them"
 
 
 @dataclass
@@ -96,14 +117,14 @@ def select(
     results: Results,
     options: ExportOptions,
     usable: Callable[[Person], bool] | None = None,
-    needs: str = "",
+    needs: Needs | None = None,
 ) -> Selection:
     """Select the content of an export.
 
     Args:
         usable: whether a row of the roster has the key this format finds people by; without it a roster is
             not needed.
-        needs: the columns of our own roster that have this key, in words.
+        needs: that key.
 
     Raises:
         NotFoundError: no such exercise.
@@ -126,14 +147,17 @@ def select(
         )
     written = Written()
     people: dict[str, Person] = {}
+    key = " or ".join(needs.columns) if needs else ""
     if results.roster is not None:
+        if needs is not None and not options.partial:
+            _has_column(results.roster, needs)
         people, unmatched = results.roster.match(results.students(), results.downloads)
         if usable is not None:
             keyless = [student for student, person in people.items() if not usable(person)]
-            unmatched |= dict.fromkeys(keyless, f"No usable {needs}")
+            unmatched |= dict.fromkeys(keyless, f"No usable {key}")
             people = {student: person for student, person in people.items() if usable(person)}
         if unmatched and not options.partial:
-            raise _unmatched(results, unmatched, needs)
+            raise _unmatched(results, unmatched, key)
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     return Selection(results, exercises, people, written, options.missing == "zero")
@@ -171,6 +195,16 @@ def is_part(results: Results, options: ExportOptions) -> bool:
     return options.partial and bool(results.unmatched(results.students()))
 
 
+def _has_column(roster: Roster, needs: Needs) -> None:
+    """Refuse a roster in which nobody has the platform's key: a list of all students would hide that."""
+    if not any(getattr(person, name) for person in roster.people for name in needs.columns):
+        raise MissingCapabilityError(
+            f"{roster.called} {needs.absent()}. Nothing was written.",
+            help=needs.give,
+            code="unmatched_students",
+        )
+
+
 def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapabilityError:
     assert results.roster is not None
     by_reason: dict[str, list[str]] = {}
@@ -182,7 +216,7 @@ def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapa
         for reason, names in by_reason.items()
     )
     key = f" and {needs}" if needs else ""
-    about = f"{len(why)} of {len(results.students())} students"
+    about = "1 student" if len(why) == 1 else f"{len(why)} students"
     return MissingCapabilityError(
         f"{results.roster.called} has no usable row for {about}. {listed} "
         f"{results.roster.compared(why, results.downloads)} Nothing was written.",

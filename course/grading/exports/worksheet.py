@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 from course.errors import UsageError
 from course.grading.exports.cells import for_moodle, number, safe_cell, write_bytes
 from course.grading.exports.handout import problem_for_student
-from course.grading.exports.selection import ExportOptions, Written, check_zeros, select
+from course.grading.exports.selection import ExportOptions, Needs, Written, check_zeros, select
 from course.grading.results.roster import moodle_key, read_text
+from course.scoring.numbers import in_points
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["write_worksheet"]
 
 _KEY, _GRADE, _MOST = "Identifier", "Grade", "Maximum Grade"
+_NEEDS = Needs(("moodle_key",), "Moodle", "Give the worksheet of Moodle's 'Download grading worksheet'.")
 _MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Grade can be changed"
 
 
@@ -46,7 +48,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
             help="Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'.",
             code="needs_roster",
         )
-    selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs="moodle_key")
+    selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs=_NEEDS)
     if len(selection.exercises) != 1:
         raise UsageError(
             f"A worksheet is about one assignment, and this is about {len(selection.exercises)} exercises.",
@@ -125,7 +127,7 @@ def _feedback(effective: Effective) -> str:
     problem = problem_for_student(verdict)
     told = [f"{number(effective.score)} of {number(effective.max_score)} points."]
     if effective.penalty:
-        told.append(f"{number(effective.penalty)} points were taken off for lateness.")
+        told.append(f"Lateness cost {in_points(effective.penalty)}.")
     if effective.override is not None:
         told.append(f"Set by the instructor: {effective.override.reason}")
     elif problem is not None:

@@ -194,7 +194,7 @@ def _recognised(folder: Path, names: list[str]) -> str:
         listed = ", ".join(_text(name) for name in odd[:_SHOWN]) + (", ..." if len(odd) > _SHOWN else "")
         raise UsageError(
             f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
-            help=f"Move those away, or say what it is with --layout folders or --layout {layout}.",
+            help=f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}.",
             code="mixed_layout",
         )
     return layout

@@ -3,8 +3,9 @@
 A gradebook keeps the graders' results, the instructor's decisions and the late policy apart. ``Results``
 combines them, in the same way for every export and report. The newest grading of each student and exercise
 counts, less the penalty for lateness; an override replaces it and is final, whatever the lateness. A fault of
-ours is never a zero: its score is None until it is graded or overridden. With a roster, enrolled students who
-handed in nothing have a result too: ``missing``, without a score; an option decides how an export writes it.
+ours is never a zero: its score is None until it is graded or overridden. Enrolled students who handed in
+nothing, or without a roster those whose folder held no work, have a result too: ``missing``, without a score;
+an option decides how an export writes it.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
+
+import msgspec
 
 from course.catalog.models import CourseRef
 from course.grading.gradebook.book import Gradebook
@@ -112,6 +115,7 @@ class Results:
         self.seed = int(meta.get("seed", 0))
         self.policy: Policy | None = parse_policy(meta["late_policy"]) if "late_policy" in meta else None
         self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
+        self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
         self.downloads = book.students()
         self._exercises = {exercise.id: exercise for exercise in book.exercises()}
         self._overrides: dict[tuple[str, str], Override] = {}
@@ -143,19 +147,20 @@ class Results:
         return tuple(self._exercises.values())
 
     def students(self) -> list[str]:
-        """All students with a result, an override or a row in the roster, by name."""
-        return sorted({*self._known(), *self.absent()})
+        """All students with a result, an override, a row in the roster or a folder, by name."""
+        return sorted({*self.graded(), *self.absent()})
 
     def absent(self) -> list[str]:
-        """The enrolled students without a folder, in the roster's order; empty without a roster."""
+        """The students without work: of the roster, in its order, or those whose folder held none."""
+        known = self.graded()
         if self.roster is None:
-            return []
-        known = self._known()
+            return sorted(self._without_work - known)
         found, _ = self.roster.match(known, self.downloads)
         there = known | {person.student for person in found.values()}
         return [one.student for one in self.roster.people if one.student not in there]
 
-    def _known(self) -> set[str]:
+    def graded(self) -> set[str]:
+        """The students with a result or an override."""
         return {*self.book.student_ids(), *(name for name, _ in self._overrides)}
 
     def title(self, exercise: str) -> str:
@@ -182,13 +187,13 @@ class Results:
 
     @cached_property
     def _enrolled(self) -> set[str]:
-        """The students with a row of the roster, absent or not; empty without a roster.
+        """The students with a row of the roster, absent or not; without a roster only the absent ones.
 
         Found once: one student's results are asked for as often as there are students.
         """
         if self.roster is None:
-            return set()
-        return {*self.absent(), *self.roster.match(self._known(), self.downloads)[0]}
+            return set(self.absent())
+        return {*self.absent(), *self.roster.match(self.graded(), self.downloads)[0]}
 
     @cached_property
     def _asked(self) -> frozenset[str]:
@@ -258,7 +263,7 @@ class Results:
             return None
         person = self.person(key.student)
         names = (key.student, person.student) if person else (key.student,)
-        due = self.policy.due(key.exercise, names, person.extension_days if person else 0.0)
+        due = self.policy.due(key.exercise, names, person.extension_days or 0.0 if person else 0.0)
         return None if due is None else lateness(submitted, due)
 
     def _passes(self, result: Result, score: float | None, most: float) -> bool:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from course.grading.gradebook.records import Key
     from course.grading.results.effective import Effective
 
-__all__ = ["Recording", "ScoreChange", "counted", "counting", "recorded", "replacing"]
+__all__ = ["Recording", "ScoreChange", "counted", "counting", "moved", "recorded", "replacing"]
 
 Scores = dict[tuple[str, str], float | None]
 
@@ -44,6 +44,15 @@ def counting(results: Results) -> Scores:
     return {(item.student, item.exercise): item.score for item in results.all()}
 
 
+def moved(before: Scores, after: Scores) -> list[ScoreChange]:
+    """The scores that are not the same, by student."""
+    return [
+        ScoreChange(*key, before.get(key), after.get(key))
+        for key in sorted({*before, *after})
+        if before.get(key) != after.get(key)
+    ]
+
+
 @contextlib.contextmanager
 def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
     """Record which scores the decision in this block changed.
@@ -54,12 +63,7 @@ def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
     told = Recording()
     before = counting(Results(book))
     yield told
-    after = counting(Results(book))
-    told.moved = [
-        ScoreChange(*key, before.get(key), after.get(key))
-        for key in sorted({*before, *after})
-        if before.get(key) != after.get(key)
-    ]
+    told.moved = moved(before, counting(Results(book)))
     old = [(one.student, one.exercise, one.before) for one in told.moved]
     new = [(one.student, one.exercise, one.after) for one in told.moved]
     texts = (msgspec.json.encode(old).decode(), msgspec.json.encode(new).decode())

@@ -62,8 +62,8 @@ _GRADESCOPE = {"sis_user_id": "SID", "email": "Email", "name": "Name"}
 _NAMED = 8
 
 
-class Person(msgspec.Struct, frozen=True):
-    """One row of a roster."""
+class Person(msgspec.Struct, frozen=True, omit_defaults=True):
+    """One row of a roster; ``extension_days`` is None where it says nothing about them."""
 
     student: str
     name: str = ""
@@ -72,7 +72,7 @@ class Person(msgspec.Struct, frozen=True):
     sis_user_id: str = ""
     section: str = ""
     moodle_key: str = ""
-    extension_days: float = 0.0
+    extension_days: float | None = None
     login: str = ""
 
 
@@ -108,10 +108,10 @@ class Roster:
 
     def find(self, student: str, download: PlatformIdentity | None = None) -> Person | None:
         """The one row about a student of the gradebook; None if there is none, or more than one."""
-        found = self._rows(student, download)
+        found = self.rows(student, download)
         return found[0] if len(found) == 1 else None
 
-    def _rows(self, student: str, download: PlatformIdentity | None) -> list[Person]:
+    def rows(self, student: str, download: PlatformIdentity | None = None) -> list[Person]:
         """The rows that may be about a student of the gradebook."""
         if found := self._by.get(("student", _key("student", student)), []):
             return found
@@ -123,6 +123,10 @@ class Roster:
                 return found
         return []
 
+    def having(self, column: str, value: str) -> list[Person]:
+        """The rows with this value in a column; none for an empty one."""
+        return self._by.get((column, _key(column, value)), [])
+
     def match(
         self, students: Iterable[str], downloads: Mapping[str, PlatformIdentity]
     ) -> tuple[dict[str, Person], dict[str, str]]:
@@ -130,7 +134,7 @@ class Roster:
         found: dict[str, Person] = {}
         unmatched: dict[str, str] = {}
         for student in students:
-            rows = self._rows(student, downloads.get(student))
+            rows = self.rows(student, downloads.get(student))
             if len(rows) == 1:
                 found[student] = rows[0]
             else:
@@ -285,12 +289,12 @@ def _from_ours(path: Path, line: int, row: dict[str, str]) -> Person:
         raise _wrong(path, f"line {line}: it names no student")
     if cells.get("canvas_id") and not re.fullmatch(r"[0-9]{1,20}", cells["canvas_id"]):
         raise _wrong(path, f"line {line}: canvas_id {cells['canvas_id']!r} is not a number")
-    days = cells.pop("extension_days", "") or "0"
+    days = cells.pop("extension_days", "")
     try:
-        granted = float(days)
+        granted = float(days) if days else None
     except ValueError:
         granted = -1.0
-    if not 0 <= granted <= 3660:
+    if granted is not None and not 0 <= granted <= 3660:
         raise _wrong(path, f"line {line}: extension_days is {days!r}, not a number of days")
     return Person(**cells, extension_days=granted)
 

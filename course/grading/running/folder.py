@@ -7,6 +7,8 @@ import shutil
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.html_report.write import write_pages
 from course.grading.exports.lines import write_csv, write_jsonl
@@ -14,15 +16,26 @@ from course.grading.gradebook.backup import back_up
 from course.grading.gradebook.book import Gradebook
 from course.grading.results.effective import Results
 from course.grading.results.journal import recorded
+from course.grading.results.merge import merged
 from course.isolation.launch import private_folder, remove_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from course.grading.results.merge import Merged
     from course.grading.results.roster import Roster
 
-__all__ = ["BOOK", "begin", "export_all", "open_results", "previewed", "remember", "taken_back"]
+__all__ = [
+    "BOOK",
+    "begin",
+    "export_all",
+    "note_without_work",
+    "open_results",
+    "previewed",
+    "remember",
+    "taken_back",
+]
 
 #: The gradebook's name in a run's folder.
 BOOK = "gradebook.sqlite"
@@ -145,13 +158,23 @@ def previewed(out: Path) -> Iterator[Results]:
         remove_tree(folder)
 
 
-def remember(book: Gradebook, roster: Roster) -> None:
-    """Keep the roster; if a score changes because of it (through an extension), record the change."""
-    text, before = roster.dump(), book.meta().get("roster")
+def remember(book: Gradebook, new: Roster) -> Merged:
+    """Merge a roster into the stored one; the scores that change by it (an extension) are recorded."""
+    found = merged(Results(book), new)
+    text, before = found.roster.dump(), book.meta().get("roster")
     if text == before:
-        return
+        return found
     if before is None and not book.exercise_ids():
         book.set_meta(roster=text)
-        return
-    with recorded(book, "roster", "another roster"):
+        return found
+    with recorded(book, "roster", f"roster {new.file}" if new.file else "another roster") as told:
         book.set_meta(roster=text)
+    found.moved = told.moved
+    return found
+
+
+def note_without_work(book: Gradebook, students: set[str]) -> None:
+    """Keep the names of the students in whose folders there is nothing to grade: no result names them."""
+    known: list[str] = msgspec.json.decode(book.meta().get("without_work", "[]"))
+    names = sorted({*known, *students} - set(book.student_ids()))
+    book.set_meta(without_work=msgspec.json.encode(names).decode() if names else None)

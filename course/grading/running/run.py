@@ -22,7 +22,14 @@ from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Results
 from course.grading.results.journal import replacing
 from course.grading.running.batch import grade_all
-from course.grading.running.folder import BOOK, begin, export_all, remember, taken_back
+from course.grading.running.folder import (
+    BOOK,
+    begin,
+    export_all,
+    note_without_work,
+    remember,
+    taken_back,
+)
 from course.grading.running.snapshot import Snapshot, among_graders, frozen, kept
 from course.grading.running.summary import Summary
 from course.quizzing.attempt import needed
@@ -71,7 +78,7 @@ class RunOptions:
         terms: protection and deadline; their seed is ignored.
         seed: of the run; None draws one, and a resumed run keeps its own.
         layout: what kind of folder it is; "auto" finds out.
-        roster: who is enrolled; None keeps the gradebook's own.
+        roster: who is enrolled, merged into the gradebook's own; None keeps that.
     """
 
     exercises: tuple[str, ...] = ()
@@ -128,7 +135,8 @@ def grade_class(
         run.note_times()
         summary = run.summary
         summary.unrecognised = members.unrecognised
-        results = Results(book, options.roster)
+        note_without_work(book, {student.name for student in members.students})
+        results = Results(book, run.roster)
         summary.count(results)
         if options.resume:
             summary.edited = edited_since(results, catalog)
@@ -179,6 +187,7 @@ class _Run:
         self._bank = _bank(self._catalog) if asked else Bank(())
         self._with_quiz = bool(self._bank.ids)
         self.summary = Summary(seed=_seed(book, options), graders=graders.snapshot.sha256)
+        self.roster: Roster | None = None
         self.done = 0
         self._open: Counter[str] = Counter()
         self._found = set(book.found())
@@ -190,8 +199,6 @@ class _Run:
         options, book = self._options, self._book
         course = self._catalog
         book.set_meta(seed=str(self.summary.seed), course=course.course_id, version=course.version)
-        if options.roster is not None:
-            remember(book, options.roster)
         terms = options.terms
         facts = {
             "level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout,
@@ -203,6 +210,8 @@ class _Run:
             book.begin_run("run", facts)
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
+        if options.roster is not None:
+            self.roster = self.summary.enrol(remember(book, options.roster))
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
         """Grade the work that is left; each verdict comes with its submission."""

@@ -12,6 +12,9 @@ from course.scoring.failures import OURS
 
 if TYPE_CHECKING:
     from course.grading.results.effective import Results
+    from course.grading.results.journal import ScoreChange
+    from course.grading.results.merge import Merged
+    from course.grading.results.roster import Roster
 
 __all__ = ["Summary", "Ungraded"]
 
@@ -35,12 +38,15 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
-        missing: enrolled students who handed in nothing at all; empty without a roster.
+        missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
         unrecognised: files in the class folder with an unknown owner, one sentence each.
+        moved: scores that a second roster changed.
+        dropped: students of the earlier roster that it does not have.
         unjudged: how often a check broke on a submission's result: (exercise, check, where).
         graders: digest of the snapshot that judged.
+        pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
         elapsed_s: wall seconds.
@@ -57,8 +63,11 @@ class Summary:
     already: int = 0
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
+    moved: list[ScoreChange] = field(default_factory=list)
+    dropped: list[str] = field(default_factory=list)
     unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     graders: str = ""
+    pass_marks: list[tuple[float, float]] = field(default_factory=list)
     unsettled: int = 0
     edited: list[str] = field(default_factory=list)
     seed: int = 0
@@ -72,8 +81,19 @@ class Summary:
             return 70
         return 6 if self.states["ungradable"] or self.unrecognised else 0
 
+    def enrol(self, found: Merged) -> Roster:
+        """Note what a roster changed; return what is now the roster."""
+        self.moved, self.dropped = found.moved, found.dropped
+        return found.roster
+
     def count(self, results: Results) -> None:
         """Count everything in a gradebook."""
+        there = set(results.book.exercise_ids())
+        self.pass_marks = [
+            (item.pass_share * item.max_points, item.max_points)
+            for item in results.exercises()
+            if item.id in there
+        ]
         self.missing = results.absent()
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:

@@ -257,7 +257,7 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
         with pytest.raises(MissingCapabilityError) as stopped:
             export(results, "canvas", tmp_path, None, asked)
     assert stopped.value.message == (
-        f"roster.csv has no usable row for 1 of 4 students. In no row: 'hopper'. {tried} Nothing was written."
+        f"roster.csv has no usable row for 1 student. In no row: 'hopper'. {tried} Nothing was written."
     )
     assert "the columns student (the name in the gradebook) and canvas_id" in stopped.value.help
 
@@ -353,3 +353,19 @@ def test_a_lifted_override_leaves_a_student_missing(tmp_path: Path, catalog: Cat
         results.book.add_override(Override("bob", "doubling", 7.0, "oral"))
         results.book.add_override(Override("bob", "doubling", None, ""))
     assert rows(out / "grades.csv")["bob"]["state"] == "missing"
+
+
+def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog: Catalog) -> None:
+    submissions, _ = made(tmp_path, "folders")
+    (submissions / "eva").mkdir()
+    options = RunOptions(terms=Terms(), seed=1)
+    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    assert (summary.missing, summary.exit_code) == (["eva"], 0)
+    found = rows(tmp_path / "out" / "grades.csv")
+    assert {name: row["state"] for name, row in found.items()} == {
+        "ada": "graded", "eva": "missing", "grace": "graded",
+    }  # fmt: skip
+    (submissions / "eva" / "doubling.py").write_text("double = abs\n")
+    again = RunOptions(terms=Terms(), resume=True)
+    summary = grade_class(submissions, tmp_path / "out", catalog, again, lambda *_: None, grade=right)
+    assert (summary.missing, rows(tmp_path / "out" / "grades.csv")["eva"]["state"]) == ([], "graded")

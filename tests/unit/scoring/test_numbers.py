@@ -6,7 +6,14 @@ import math
 
 import pytest
 
-from course.scoring.numbers import format_input, format_pair, format_points, format_tolerance, format_value
+from course.scoring.numbers import (
+    format_input,
+    format_pair,
+    format_points,
+    format_tolerance,
+    format_value,
+    in_points,
+)
 from course.scoring.verdict import Tolerance
 
 
@@ -56,3 +63,9 @@ def test_an_input_reads_like_a_sentence():
 )
 def test_a_tolerance_says_how_much_and_why(tolerance, units, text):
     assert format_tolerance(tolerance, units) == text
+
+
+def test_one_point_is_singular() -> None:
+    assert [in_points(value) for value in (1.0, 2, 0, 0.5, 1.004)] == [
+        "1 point", "2 points", "0 points", "0.5 points", "1 point",
+    ]  # fmt: skip

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from course.cli.frame.terminal.console import STATUS_STYLE, Console
 from course.cli.work.verdict.prints import show_lines, show_unshown
-from course.scoring.numbers import format_points, numbers_of
+from course.scoring.numbers import format_points, in_points, numbers_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -316,7 +316,7 @@ def _all_alike(checks: Sequence[CheckResult]) -> bool:
 
 def _points(checks: Sequence[CheckResult]) -> str:
     points = format_points(sum(check.points for check in checks))
-    return f"{points}/{format_points(sum(check.max_points for check in checks))} points"
+    return f"{points}/{in_points(sum(check.max_points for check in checks))}"
 
 
 def _capital(text: str) -> str:

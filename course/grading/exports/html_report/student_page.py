@@ -13,7 +13,7 @@ from course.grading.exports.handout import checks_for_student, problem_for_stude
 from course.grading.exports.html_report.rendering import render, shortened
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.printable import one_line
-from course.scoring.numbers import numbers_of
+from course.scoring.numbers import in_points, numbers_of
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility
 
 if TYPE_CHECKING:
@@ -126,9 +126,7 @@ def _state_of(check: CheckResult, quiz: bool) -> tuple[str, str]:
 
 def _share_of(check: CheckResult) -> str:
     kept_back = ", hidden check" if check.visibility is Visibility.HIDDEN else ""
-    points = (
-        f"{number(check.points)} of {number(check.max_points)} points" if check.max_points else "no points"
-    )
+    points = f"{number(check.points)} of {in_points(check.max_points)}" if check.max_points else "no points"
     return f"{points}{kept_back}"
 
 

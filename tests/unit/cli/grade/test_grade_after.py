@@ -44,7 +44,10 @@ def grades(path: Path) -> dict[str, dict[str, str]]:
 def test_an_override_is_in_every_file_at_once_and_can_be_lifted(course, out: Path) -> None:
     ran = course("grade", "override", "out", "bob", "doubling", "--score", "9", "--reason", "oral exam")
     assert (ran.code, ran.err) == (0, "")
-    assert ran.out == "bob doubling: 9 of 10 counts; the checks gave 5.\n"
+    told = "The student can read the reason: it is on their page and in exports for students.\n"
+    assert ran.out == f"bob doubling: 9 of 10 counts; the checks gave 5.\n{told}"
+    words = ("grade", "override", "out", "cy", "doubling", "--score", "9", "--reason", "x", "--dry-run")
+    assert course(*words).out.startswith("cy doubling: 9 of 10 would count; no check ran.\n")
     assert grades(out / "grades.csv")["bob"]["override_reason"] == "oral exam"
     assert '"reason":"oral exam"' in (out / "results.jsonl").read_text()
     assert "oral exam" in course("grade", "explain", "out", "bob", "doubling").out
@@ -95,6 +98,8 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
     assert "2 have no trusted submission time" in ran.out
     assert "no student nobody" in ran.err
     assert grades(out / "grades.csv")["ada"]["score"] == "8"
+    ran = course("grade", "late", "out", "--roster", "roster.csv", "--dry-run")
+    assert "1 is late." in ran.out
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--json")
     assert [(one["student"], one["late"]) for one in ran.json["late"]] == [("ada", 2 * DAY)]
     times = out.parent / "times.csv"

@@ -144,7 +144,7 @@ def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
 def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) -> None:
     before = book(here)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x", "--dry-run")
-    assert "3 of 10 counts" in ran.out
+    assert "3 of 10 would count" in ran.out
     (here / "late.toml").write_text(
         'format_version = 1\npoints_per_day = 1\ntrust = ["list"]\n'
         '[[deadline]]\nexercise = "*"\ndue = 2026-01-01T00:00:00Z\n'
@@ -191,3 +191,12 @@ def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -
     assert course("grade", "salvage", "out", "--to", "new", "--json").json["error"]["code"] == "out_exists"
     assert course("grade", "salvage", "nowhere", "--to", "newer").code == 5
     assert not (here / "newer").exists()
+
+
+def test_the_summary_says_what_passes_and_whose_files_there_are(course, here: Path) -> None:
+    ran = course("grade", "run", "class", "--out", "again", "--exercise", "doubling")
+    assert "1 graded, 1 of them pass (pass mark: 7 of 10)." in ran.out
+    listed = "lists the files of those that could not be graded"
+    assert listed in " ".join(ran.out.split())
+    ran = course("grade", "override", "again", "cy", "doubling", "--score", "0", "--reason", "x", "--dry-run")
+    assert "0 of 10 would count; no check ran." in ran.out

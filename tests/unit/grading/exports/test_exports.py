@@ -245,7 +245,7 @@ def test_gradescope_files_have_only_its_fields_and_say_whose_they_are(
             assert all(isinstance(tag, str) for tag in test["tags"])
     by_name = {row["student"]: json.loads((folder / row["file"]).read_bytes()) for row in index}
     assert by_name["late"]["score"] == 8
-    assert "taken off for lateness" in by_name["late"]["output"]
+    assert "Lateness cost 2 points." in by_name["late"]["output"]
     assert "oral" not in by_name["set"]["output"]
     assert "Score set by the instructor" in by_name["set"]["output"]
     assert [test["visibility"] for test in by_name["late"]["tests"]] == ["visible", "after_due_date"]
@@ -305,9 +305,10 @@ def test_moodle_finds_its_students_by_their_key(results: Results, tmp_path: Path
     and ``check_user_exists``; moodle/lib/csvlib.class.php, to which a row of another length spoils the file.
     """
     head, *rows = read_by_php(write(results, "moodle", tmp_path).read_bytes().decode("utf-8-sig"))
-    assert head == ["moodle_key", "name", "Doubling"]
+    assert head == ["moodle_key", "name", "email", "Doubling"]
     assert [row for row in rows if len(row) != len(head)] == []
-    grades = {key: grade for key, _, grade in rows}
+    grades = {key: grade for key, _, _, grade in rows}
+    assert [mail for _, _, mail, _ in rows if mail.endswith("@x.org")]
     assert len(grades) == len(HOSTILE) + 3
     assert grades[f"key{len(HOSTILE)}"] == "8"
     assert grades[f"key{len(HOSTILE) + 2}"] == ""

@@ -1,0 +1,193 @@
+"""A later roster is merged into the stored one: what it does not say stays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.grading.gradebook.records import PlatformIdentity, SubmittedAt
+from course.grading.results.effective import Results
+from course.grading.results.merge import merged
+from course.grading.results.roster import Person, Roster, read_roster
+from course.grading.running import batch
+from course.grading.running.folder import open_results
+from tests.unit.cli.grade.test_grade_after import grades
+from tests.unit.grading.made import HALF, RIGHT, digest, make_book
+from tests.unit.grading.running.test_run import right
+from tests.unit.grading.test_results import DAY, DUE, POLICY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FIRST = """student,name,email,extension_days
+ada,Ada Lovelace,ada@x.org,
+bob,Bob Byrne,bob@x.org,2
+gus,Gus Petit,gus@x.org,
+"""
+CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,Doubling (4711)
+    Points Possible,,,,,10
+"Lovelace, Ada",101,S1,ada,A,
+"Byrne, Bob",102,S2,bob,A,
+"Petit, Gus",107,S7,gus,A,
+"""
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    with make_book(tmp_path / "out", {"ada": RIGHT, "bob": RIGHT}) as book:
+        at = DUE.timestamp() + 2 * DAY
+        book.add_times([SubmittedAt("bob", "doubling", digest("bob"), "gradescope", at)])
+    write(tmp_path, "first.csv", FIRST)
+    write(tmp_path, "canvas.csv", CANVAS)
+    write(tmp_path, "late.toml", POLICY[: POLICY.index("[[extension]]")])
+    return tmp_path / "out"
+
+
+def write(folder: Path, name: str, text: str) -> Path:
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_text(text, "utf-8")
+    return folder / name
+
+
+TO_CANVAS = (
+    "grade", "export", "out", "--format", "canvas", "--exercise", "doubling",
+    "--assignment", "doubling=4711", "--roster",
+)  # fmt: skip
+
+
+def test_a_second_roster_takes_nothing_away(course, out: Path) -> None:
+    set_up = ("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv")
+    assert course(*set_up).code == 0
+    before = grades(out / "grades.csv")
+    assert before["bob"]["score"] == "10"
+    ran = course(*TO_CANVAS, "canvas.csv")
+    assert (ran.code, ran.err, ran.out) == (0, "", "Wrote out/canvas.csv.\n")
+    after = grades(out / "grades.csv")
+    kept = ("score", "name", "email")
+    assert {name: [row[key] for key in kept] for name, row in after.items()} == {
+        name: [row[key] for key in kept] for name, row in before.items()
+    }
+    assert after["gus"]["section"] == "A"
+    line = '"Bob Byrne","102","S2","","A","10"'
+    assert line in (out / "canvas.csv").read_text().splitlines()
+
+
+def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out: Path) -> None:
+    assert course("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv").code == 0
+    write(out.parent, "next.csv", "student,canvas_id,extension_days\nada,101,\nbob,102,0\n")
+    told = (
+        "With next.csv, 1 score changes:\n  bob doubling: 10 -> 8\n"
+        "1 student is not in next.csv and leaves the roster: gus\n"
+    )
+    lines = course(
+        "grade", "export", "out", "--format", "jsonl", "--roster", "next.csv", "--partial", "--json"
+    )
+    assert "With next.csv, a score changes: bob doubling: 10 -> 8" in lines.err
+    assert "leaves the roster: gus" in lines.err
+    ran = course(*TO_CANVAS, "next.csv", "-o", "a.csv")
+    assert (ran.code, ran.out) == (0, f"{told}Wrote a.csv.\n")
+    assert "bob doubling 10 -> bob doubling 8" in course("grade", "log", "out").out
+    ran = course("grade", "export", "out", "--roster", "first.csv", "-o", "b.csv", "--json")
+    assert (ran.json["moved"], ran.json["dropped"]) == (
+        [{"student": "bob", "exercise": "doubling", "before": 8.0, "after": 10.0}], [],
+    )  # fmt: skip
+
+
+def test_late_and_a_resumed_run_say_the_same(course, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: right(entries, terms))
+    assert course("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv").code == 0
+    write(out.parent, "next.csv", "student,extension_days\nada,\nbob,0\n")
+    ran = course("grade", "late", "out", "--roster", "next.csv", "--dry-run")
+    assert "1 student is not in next.csv and leaves the roster: gus" in ran.out
+    assert "bob doubling: 10 -> 8" in ran.out
+    ran = course("grade", "late", "out", "--roster", "next.csv", "--dry-run", "--json")
+    assert ran.json["dropped"] == ["gus"]
+    write(out.parent, "class/ada/doubling.py", "def double(x):\n    return x + x\n")
+    run = ("grade", "run", "class", "--out", "out", "--resume", "--exercise", "doubling", "--roster")
+    ran = course(*run, "next.csv")
+    assert ("bob doubling: 10 -> 8" in ran.out, "leaves the roster: gus" in ran.out) == (True, True), ran.err
+    with open_results(out) as results:
+        assert results.person("ada").email == "ada@x.org"
+
+
+def merge(tmp_path: Path, first: Roster, second: str, downloads: dict[str, PlatformIdentity] | None = None):
+    with make_book(tmp_path / str(len(second)), {"ada": RIGHT, "bob": HALF}) as book:
+        book.set_students(downloads or {})
+        return merged(Results(book, first), read_roster(write(tmp_path, "second.csv", second)))
+
+
+def test_a_name_is_not_replaced_by_an_id(tmp_path: Path) -> None:
+    first = Roster((Person("ada", "Ada Lovelace", "ada@x.org", login="ada"),))
+    found = merge(tmp_path, first, "student,name,section\nada,ada,B\n")
+    assert found.roster.people == (Person("ada", "Ada Lovelace", "ada@x.org", section="B", login="ada"),)
+    assert found.roster.columns["email"] == "email"
+
+
+def test_an_anonymous_worksheet_has_no_names(tmp_path: Path) -> None:
+    first = Roster((Person("Ada Lovelace_7", "Ada Lovelace", "ada@x.org", moodle_key="7"),))
+    found = merge(tmp_path, first, "Identifier,Status,Grade\nParticipant 7,x,\n")
+    assert found.roster.people == first.people
+
+
+def test_a_policy_finds_a_downloads_student_by_the_name_in_the_first_roster(tmp_path: Path) -> None:
+    first = Roster((Person("ada_l", "Ada", canvas_id="101"),))
+    downloads = {"ada": PlatformIdentity("canvas", "101", "x")}
+    (person,) = merge(tmp_path, first, CANVAS.partition('"Byrne')[0], downloads).roster.people
+    assert (person.student, person.login, person.section) == ("ada_l", "ada", "A")
+    worksheet = Roster((Person("ada", "Ada", canvas_id="101"),))
+    (person,) = merge(tmp_path, worksheet, "student,canvas_id\nada_l,101\n", downloads).roster.people
+    assert (person.student, person.name) == ("ada_l", "Ada")
+
+
+def test_who_could_be_two_rows_inherits_from_neither(tmp_path: Path) -> None:
+    first = Roster((Person("x1", "Ada L", "a@x.org"), Person("x2", "Ada L", "b@x.org"), Person("x3", "C")))
+    found = merge(tmp_path, first, "student,name\ny1,Ada L\ny2,C\ny3,C\n")
+    assert [(row.student, row.email) for row in found.roster.people] == [("y1", ""), ("y2", ""), ("y3", "")]
+    assert found.dropped == ["x1", "x2", "x3"]
+
+
+def test_an_id_that_the_new_file_gives_to_another_row_does_not_stay(tmp_path: Path) -> None:
+    first = Roster((Person("ada", canvas_id="101"), Person("bob", canvas_id="102")))
+    found = merge(tmp_path, first, "student,canvas_id\nada,\nbob,101\n")
+    assert [(row.student, row.canvas_id) for row in found.roster.people] == [("ada", ""), ("bob", "101")]
+
+
+WORKSHEET = """Identifier,Full name,Email address,Status,Grade,Last modified (grade),Feedback comments
+Participant 500,A. Lovelace,ada@x.org,x,,-,
+Participant 501,Bob Byrne,bob2@x.org,x,,-,
+"""
+
+
+def test_a_worksheet_finds_plain_folders_by_address_or_name(course, out: Path) -> None:
+    assert course("grade", "late", "out", "--roster", "first.csv").code == 0
+    write(out.parent, "sheet.csv", WORKSHEET)
+    filled = ("grade", "export", "out", "--format", "moodle-worksheet", "--exercise", "doubling")
+    assert course(*filled, "--roster", "sheet.csv", "-o", "back.csv").code == 0
+    rows = (out.parent / "back.csv").read_text().splitlines()
+    assert [row.split(",")[4] for row in rows] == ["Grade", "10", "10"]
+    # The participant numbers are in no field of a user, by which Moodle's grade import looks.
+    ran = course("grade", "export", "out", "--format", "moodle", "-o", "moodle.csv")
+    assert '"500","A. Lovelace","ada@x.org","10"' in (out.parent / "moodle.csv").read_text("utf-8-sig")
+    for words in ("participant numbers", "other people", "--format moodle-worksheet", "'Email address'"):
+        assert words in " ".join(ran.out.split())
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("canvas", "first.csv has neither canvas_id nor sis_user_id, and Canvas needs one of them."),
+        ("moodle", "first.csv has no moodle_key, and Moodle needs it."),
+        ("moodle-worksheet", "first.csv has no moodle_key, and Moodle needs it."),
+    ],
+)
+def test_a_roster_without_the_column_is_refused_for_that(course, out: Path, name: str, says: str) -> None:
+    words = ("grade", "export", "out", "--format", name, "--roster", "first.csv", "--json")
+    error = course(*words).json["error"]
+    assert (error["code"], error["message"]) == ("unmatched_students", f"{says} Nothing was written.")
+    assert "worksheet" in error["help"] or "Canvas' gradebook export" in error["help"]
+
+
+def test_the_files_for_gradescope_say_what_they_are_for(course, out: Path) -> None:
+    ran = course("grade", "export", "out", "--format", "gradescope")
+    assert "/autograder/results/results.json" in ran.out

@@ -60,7 +60,7 @@ def command_of(value, seconds, u_max):
         source="the bench's force, with room for rounding",
         quantity="largest force",
         units="N",
-        message="The excitation commands more force than the bench can give.",
+        message="The excitation commands more force than u_max.",
         diagnose=named("EXCITATION_SATURATES"),
         input=given,
     )

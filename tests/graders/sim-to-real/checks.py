@@ -75,14 +75,18 @@ def test_excitation_shows_all(submission):
 def test_excitation_other_bench(submission, rng):
     """On a bench with other limits the excitation stays within them and still shows everything"""
     seconds, u_max = _uneven(rng, 15.0, 18.0), float(rng.uniform(2.4, 2.8))
-    value = submission.call("design_excitation", seconds, u_max, rng)
-    carts = reference.realities(submission.seed)[1:2]
-    judge.expect_shows(probes.command_of(value, seconds, u_max), carts, u_max)
+    cases = [
+        (seconds, u_max),
+        (_uneven(rng, 8.0, 20.0, count=lambda s: len(np.arange(0, s, cart.H))), float(rng.uniform(1.7, 3.0))),
+    ]
+    values = submission.call_each("design_excitation", [(*case, rng) for case in cases])
+    found, _ = (probes.command_of(value, *case) for value, case in zip(values, cases, strict=True))
+    judge.expect_shows(found, reference.realities(submission.seed), u_max)
 
 
-def _uneven(rng, low, high):
-    """A time in hundredths of a second of which int(100 * time) is one hundredth too few."""
-    times = [k / 100 for k in range(round(100 * low), round(100 * high)) if int(100 * (k / 100)) < k]
+def _uneven(rng, low, high, count=lambda s: int(100 * s)):
+    """A time in hundredths of a second of which ``count`` gives another number of them."""
+    times = [k / 100 for k in range(round(100 * low), round(100 * high)) if count(k / 100) != k]
     return float(rng.choice(times))
 
 

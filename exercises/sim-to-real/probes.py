@@ -130,7 +130,7 @@ def of_command(u, carts=(), u_max=cart.U_BENCH, enough=lambda u: False):
         ("EXCITATION_ZERO", lambda: peak == 0.0),
         ("EXCITATION_RESTS", lambda: np.mean(u == 0.0) > 0.6),
         ("EXCITATION_CONSTANT", lambda: np.count_nonzero(np.diff(u)) <= 2),
-        ("EXCITATION_TOO_WEAK", lambda: peak < 2.5 * cart.SHEET["Fc"]),
+        ("EXCITATION_TOO_WEAK", lambda: peak < u_max / 3),
         ("EXCITATION_NOT_FULL", lambda: peak < 0.9 * u_max and enough(u * u_max / peak)),
         ("EXCITATION_TOO_SLOW", lambda: power[frequency < 0.3].sum() > 0.7 * power.sum()),
         ("EXCITATION_TOO_FAST", lambda: power[frequency > 4.0].sum() > 0.7 * power.sum()),

@@ -25,7 +25,9 @@ def expect_play(submission, inputs, gap, states, outputs):
             quantity=name,
             t=np.arange(len(inputs)),  # the number of the input stands for its time
             input={"x": inputs, "gap": gap, "state": states},
-            message="The output of the gear is not its old output moved by the edges of the gap.",
+            message="The output of the gear is not its old output, clipped to the gap around the input."
+            if name == "y"
+            else "The output is right, but the next state is not the same number.",
             help="y is the state, clipped to [x - gap/2, x + gap/2], and so is the next state.",
             diagnose=lambda: actuators.of_backlash(submission),
         )
@@ -55,9 +57,11 @@ def expect_delayed(submission, value, x, dt, latency, expected):
 
 
 def expect_new_signal(submission, x, dt):
-    """Without latency the signal comes out as it went in, as an array of its own."""
-    value = expect_clean(submission, "delay_line", (x, dt, 0.0), ("x", None, None))
-    expect_delayed(submission, value, x, dt, 0.0, x)
+    """Without latency and with one, what comes out is an array of its own, and the signal is left alone."""
+    half_way = np.concatenate([[0.0, 0.0], (x[1:-1] + x[:-2]) / 2])  # after one and a half samples
+    for latency, expected in ((0.0, x), (1.5 * dt, half_way)):
+        value = expect_clean(submission, "delay_line", (x, dt, latency), ("x", None, None))
+        expect_delayed(submission, value, x, dt, latency, expected)
 
 
 def expect_motor(submission, w, calls, message, source="rounding"):
@@ -121,7 +125,7 @@ def expect_pose(submission, value, pose, wheels, expected=None):
             input={"pose": pose, **dict(zip(("v_left", "v_right", "track", "dt"), wheels, strict=True))},
             message="After one step, the robot is not where the arc of its two wheels ends."
             if units == "m"
-            else "After one step, the robot does not head the way its two wheels have turned it.",
+            else "After one step, the heading is not the old one plus the turn of the two wheels.",
             help="The middle of the axle moves at the mean speed; the turn rate is the difference over "
             "the track.",
             diagnose=lambda: actuators.of_drive(submission),

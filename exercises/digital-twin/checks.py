@@ -27,7 +27,7 @@ _SPREAD_SOURCE = "five times the scatter of a std from 4000 samples"
 @pytest.mark.points(3)
 def test_encoder_counts(submission):
     """An encoder counts whole steps, over several turns and on both sides of zero"""
-    far = np.linspace(-5000.0, 5000.0, 20) + 0.001  # 51,000 counts either way
+    far = sensors.angles_beside_counts(np.linspace(-51000, 51000, 20), 64)
     theta = np.concatenate([np.linspace(-9.0, 9.0, 401) + 0.001, far])
     sensors.expect_counts(submission, submission.call("encoder", theta, 64), theta, 64)
 
@@ -83,7 +83,7 @@ def _expect_bias(submission, measured, bias, true, step, given):
         step,
         _SPREAD,
         _SPREAD_SOURCE,
-        "The bias does not step as its random walk says.",
+        "The std of the bias steps is not bias_random_walk * sqrt(dt).",
         ask,
         quantity="std of the steps",
         help="bias[k+1] = bias[k] + bias_random_walk * sqrt(dt) * a standard normal number.",
@@ -184,7 +184,7 @@ def test_lidar_nearest(submission):
         quantity="ranges",
         units="m",
         input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
-        message="Of several walls, the reading is not that of the nearest one that the beam hits.",
+        message="With several walls, without noise, a distance is wrong.",
         help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
         diagnose=lambda: sensors.scanners.of_lidar(submission),
     )
@@ -245,8 +245,8 @@ def test_motor_limits(submission):
 @pytest.mark.points(3)
 def test_backlash_there_and_back(submission):
     """There and back, the output starts late, stays half the gap behind, and rests before it returns"""
-    inputs = [0.0, 0.3, 1.0, 2.0, 3.0, 2.6, 2.0, 1.0, 0.0, 0.5, 1.5]
-    outputs = [0.0, 0.0, 0.5, 1.5, 2.5, 2.5, 2.5, 1.5, 0.5, 0.5, 1.0]
+    inputs = [0.0, 0.3, 1.0, 2.0, 3.0, 2.6, 2.0, 1.0, 0.0, 0.5, 1.5, 1.50001, 1.5001]
+    outputs = [0.0, 0.0, 0.5, 1.5, 2.5, 2.5, 2.5, 1.5, 0.5, 0.5, 1.0, 1.00001, 1.0001]
     expect = actuators.expect_play
     expect(submission, inputs, 1.0, [0.0, *outputs[:-1]], outputs)
 
@@ -321,7 +321,7 @@ def test_sync_follows(submission):
         scenes.measured(cart, 0.5, scenes.moments(rng, 24.0), rng),
         settled=((2.0, 8.0), (14.0, 24.0)),
         frictions=((3.0, 8.0, 0.5), (16.0, 24.0, 0.8)),
-        message="The twin does not keep up with its cart.",
+        message="With a friction that jumps, the twin's position is further off than the README allows.",
     )
 
 
@@ -329,7 +329,7 @@ def test_sync_follows(submission):
 @pytest.mark.points(1)
 def test_sync_backwards(submission):
     """A twin keeps up with a cart that rolls backwards"""
-    message = "The twin does not stay with a cart that rolls backwards."
+    message = "With a cart that rolls backwards, the twin's position is further off than the README allows."
     twins.expect_keeps_up(submission, np.random.default_rng(5), sign=-1.0, late=0.0, message=message)
 
 
@@ -337,7 +337,7 @@ def test_sync_backwards(submission):
 @pytest.mark.points(1)
 def test_sync_some_late(submission):
     """A twin keeps up even when one measurement in three comes late"""
-    message = "With measurements that come late and out of order, the twin does not stay with its cart."
+    message = "With some measurements late, the twin's position is further off than the README allows."
     twins.expect_keeps_up(submission, np.random.default_rng(6), sign=1.0, late=0.33, message=message)
 
 

@@ -25,6 +25,12 @@ def angles_between_counts(rng, n, most, per_turn):
     return counts * 2 * math.pi / per_turn
 
 
+def angles_beside_counts(counts, per_turn):
+    """Angles (4 N,), rad, 0.001 counts on either side of whole counts near these and of the next halves."""
+    beside = np.add.outer(np.rint(counts), [-0.001, 0.001, 0.499, 0.501])
+    return beside.ravel() * 2 * math.pi / per_turn
+
+
 def expect_counts(submission, counts, theta, counts_per_rev):
     """Counts are whole numbers, and those of floor throughout or of round throughout."""
     given = {"theta": theta, "counts_per_rev": counts_per_rev}
@@ -356,7 +362,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     negative = bool(np.any(near < 0.0))
     kit.expect_true(
         not negative and bool(np.mean(near == 0.0) > 0.2),
-        "Very close to a wall, the noise makes readings negative."
+        "Very close to a wall, some readings are negative."
         if negative
         else "Very close to a wall, too few readings are 0.",
         help="A wall counts however near it is. A distance cannot be negative: apply np.maximum(..., 0.0) "

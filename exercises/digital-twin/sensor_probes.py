@@ -203,7 +203,9 @@ def _of_first(biases):
 def _of_power(noise, right, powers, missing, factor):
     """How the std depends on dt, from one recording at each of two sampling rates."""
     fast, slow = (float(np.std(part)) for part in noise)
-    if not (fast > 0 and slow > 0 and math.isfinite(fast * slow)):
+    if not math.isfinite(fast * slow):
+        return None
+    if not (fast > 0 and slow > 0):
         return missing
     power = math.log(slow / fast) / math.log(_SLOW / _FAST)
     for value, code in powers.items():

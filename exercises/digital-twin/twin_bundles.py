@@ -74,7 +74,7 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
         quantity="rms error of the speed",
         units="m/s",
         input={"measurements": len(calls), "twin": twin},
-        message="The twin keeps up with the position, but its speed is not that of the cart.",
+        message="The position is right, but the speed is further off than the README allows.",
         help="Predict the speed from the drive and the friction, then correct it by a share of the surprise.",
         diagnose=ask,
     )
@@ -90,8 +90,8 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
             quantity="friction",
             units="1/s",
             input={"from": start, "to": stop, "sigma": twin["sigma"]},
-            message="The twin keeps up with the position, but it has not found the friction behind it.",
-            help="A surprise that keeps its sign shows that the friction is wrong.",
+            message="Position and speed are right, but the friction is further off than the README allows.",
+            help="Surprises that keep the same sign for long are often those of a wrong friction.",
             diagnose=ask,
         )
     return folded
@@ -266,7 +266,7 @@ def expect_sync_closes_loop(submission, rng):
             quantity="friction",
             units="1/s",
             input=given,
-            message="The twin's friction has become a value that no cart can have.",
+            message="The twin's friction is far from that of any cart here.",
             diagnose=ask,
         )
         twin = {**folded[-1], "drive": friction * target}

@@ -160,6 +160,7 @@ def _in_one_step(submission, late):
         ("LATE_USED_AS_CURRENT", late and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
         ("SPEED_NOT_CORRECTED", abs(v_ahead - v0) < 1e-9),
+        ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
     )
     return next((code for code, seen in tests if seen), None)
 

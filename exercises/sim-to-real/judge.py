@@ -85,7 +85,7 @@ def expect_shows(u, carts, u_max=cart.U_BENCH):
             high=cart.SCORED[name],
             source="the accuracy asked of identify; random full force reaches a quarter of it",
             quantity=f"narrowest possible 95 % half-width of {name}, as a share",
-            message="No method could determine every parameter from a recording with this excitation.",
+            message="From such a recording, no method could determine every parameter well enough.",
             input={"parameter": name},
             diagnose=lambda: probes.of_command(u, carts, u_max, lambda other: shown(other, carts)),
         )
@@ -107,7 +107,7 @@ def expect_fitted(u, carts):
             high=limit,
             source="the README's; sums of sines at random phases came to 0.97 of it in 85 classes",
             quantity=f"rms error of {name} in the given fit, as a share",
-            message="From a recording with this excitation, the README's fit does not find every parameter.",
+            message="From such a recording, the README's fit is too far off in a parameter.",
             input={"parameter": name},
             diagnose=lambda: probes.of_command(u, carts, enough=enough),
         )
@@ -135,7 +135,7 @@ def expect_kept(i, gap, seconds, carts, seed):
     else:
         return
     kit.fail(
-        "When a gap of the plan was executed, its measurement did not give what the plan says.",
+        "A gap of the plan, carried out, is wrong in its time, its excitation or its threshold.",
         diagnose=named(wrong),
         input={"gap": i, "parameter": gap["parameter"], "excitation": gap["excitation"]},
         expected=[reach, needed],

@@ -60,7 +60,7 @@ def command_of(value, seconds, u_max):
         source="the bench's force, with room for rounding",
         quantity="largest force",
         units="N",
-        message="The excitation commands more force than the bench can give.",
+        message="The excitation commands more force than u_max.",
         diagnose=named("EXCITATION_SATURATES"),
         input=given,
     )
@@ -130,7 +130,7 @@ def of_command(u, carts=(), u_max=cart.U_BENCH, enough=lambda u: False):
         ("EXCITATION_ZERO", lambda: peak == 0.0),
         ("EXCITATION_RESTS", lambda: np.mean(u == 0.0) > 0.6),
         ("EXCITATION_CONSTANT", lambda: np.count_nonzero(np.diff(u)) <= 2),
-        ("EXCITATION_TOO_WEAK", lambda: peak < 2.5 * cart.SHEET["Fc"]),
+        ("EXCITATION_TOO_WEAK", lambda: peak < u_max / 3),
         ("EXCITATION_NOT_FULL", lambda: peak < 0.9 * u_max and enough(u * u_max / peak)),
         ("EXCITATION_TOO_SLOW", lambda: power[frequency < 0.3].sum() > 0.7 * power.sum()),
         ("EXCITATION_TOO_FAST", lambda: power[frequency > 4.0].sum() > 0.7 * power.sum()),

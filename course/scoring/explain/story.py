@@ -107,7 +107,7 @@ def merged(codes: Sequence[str], words: Words) -> Diagnosis:
         return parts[0]
     looks = " And another: ".join(part.looks_like for part in parts)
     advice = " And: ".join(part.advice for part in parts)
-    return Diagnosis(parts[0].code, f"Two mistakes at once. {looks}", advice)
+    return Diagnosis(parts[0].code, f"Two mistakes at once would give these results. {looks}", advice)
 
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:

@@ -74,16 +74,23 @@ def test_excitation_shows_all(submission):
 @pytest.mark.points(3)
 def test_excitation_other_bench(submission, rng):
     """On a bench with other limits the excitation stays within them and still shows everything"""
-    seconds, u_max = _uneven(rng, 15.0, 18.0), float(rng.uniform(2.4, 2.8))
-    value = submission.call("design_excitation", seconds, u_max, rng)
-    carts = reference.realities(submission.seed)[1:2]
-    judge.expect_shows(probes.command_of(value, seconds, u_max), carts, u_max)
+    others = [(_uneven(rng, count), float(rng.uniform(1.7, 3.0))) for count in _COUNTS]
+    values = submission.call_each("design_excitation", [(*other, rng) for other in others])
+    for value, other in zip(values, others, strict=True):
+        probes.command_of(value, *other)
+    # Where the README's range is hardest, and more than once: what shows enough by chance is not enough.
+    case = round(float(rng.uniform(15.0, 15.5)), 2), float(rng.uniform(2.4, 2.5))
+    for value in submission.call_each("design_excitation", [(*case, rng)] * 3):
+        judge.expect_shows(probes.command_of(value, *case), reference.realities(submission.seed), case[1])
 
 
-def _uneven(rng, low, high):
-    """A time in hundredths of a second of which int(100 * time) is one hundredth too few."""
-    times = [k / 100 for k in range(round(100 * low), round(100 * high)) if int(100 * (k / 100)) < k]
-    return float(rng.choice(times))
+#: Two ways to count the hundredths of a time, each of which is one off at some times.
+_COUNTS = (lambda s: int(100 * s), lambda s: len(np.arange(0, s, cart.H)))
+
+
+def _uneven(rng, count):
+    """A time between 8 and 20 s in hundredths of a second, of which ``count`` gives another number."""
+    return float(rng.choice([k / 100 for k in range(800, 2001) if count(k / 100) != k]))
 
 
 # -- identify -------------------------------------------------------------------------------------------

@@ -431,7 +431,7 @@ SYNC = [
     ("SURPRISE_INVERTED", shares("z - x", "x - z")),
     ("FRICTION_SPEEDS_UP", shares("- b * v", "+ b * v")),
     ("FRICTION_LEARNS_BACKWARDS", shares("b - 0.15", "b + 0.15")),
-    (None, shares("v + 0.3", "v - 0.3")),  # its memory is empty, and that is not what is wrong
+    ("SPEED_CORRECTED_BACKWARDS", shares("v + 0.3", "v - 0.3")),
     ("SPEED_NOT_CORRECTED", shares("v + 0.3 * surprise", "v")),
     ("FRICTION_LEARNS_SLOWLY", shares("b - 0.15", "b - 0.01")),
     ("DRIVE_CHANGED", lambda twin, z, t: {**right.sync(twin, z, t), "drive": 0.0}),
@@ -668,3 +668,31 @@ def test_readings_that_miss_a_wall_are_not_blamed_on_the_noise():
     with pytest.raises(kit.CheckFailed) as failed:
         sensor_bundles.expect_scan_noise(Fake("lidar", joined), 8.0, 0.05, np.random.default_rng(1))
     assert "readings are not about its distances" in failed.value.finding.message
+
+
+def counts_in_single_precision(theta, counts_per_rev):
+    turns = np.float32(theta) / np.float32(2 * np.pi)
+    return np.floor(turns * np.float32(counts_per_rev)).astype(np.int64)
+
+
+def play_without_small_steps(x, gap, state):
+    y, _ = right.backlash(x, gap, state)
+    return (state, state) if abs(y - state) < 1e-3 * gap else (y, y)
+
+
+def test_angles_beside_a_count_tell_single_precision():
+    bundles = kit.companion("digital-twin", "sensor_bundles")
+    theta = bundles.angles_beside_counts(np.linspace(-51000, 51000, 20), 64)
+    bundles.expect_counts(None, right.encoder(theta, 64), theta, 64)
+    with pytest.raises(kit.CheckFailed):
+        bundles.expect_counts(
+            Fake("encoder", counts_in_single_precision), counts_in_single_precision(theta, 64), theta, 64
+        )
+
+
+def test_small_steps_of_a_gear_count():
+    play = kit.companion("digital-twin", "actuator_bundles").expect_play
+    asked = [1.50001], 1.0, [1.0], [1.00001]
+    play(Fake(), *asked)
+    with pytest.raises(kit.CheckFailed):
+        play(Fake("backlash", play_without_small_steps), *asked)

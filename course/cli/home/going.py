@@ -70,7 +70,7 @@ def go() -> int:
         before, step = step, next_in_course(here)
         if step == before:
             left = "" if words[0] == "lesson" else f"Not finished yet: {step}. "  # a lesson says it itself
-            console.note(f"{left}`course go` goes on from here.")
+            console.note(f"{left}Go on at any time with: course go")
             return code
         console.note((f"Next: course {shlex.join(_as_run(console, step))}", "bold"), f"  {_why(here, step)}")
         if not console.go_on(""):

@@ -7,6 +7,9 @@ both motions are drawn. On a terminal the user types the line that is right. Not
 from __future__ import annotations
 
 import difflib
+import os
+import shutil
+import sys
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,12 +44,13 @@ MISTAKEN = "mistaken.py"
 STRETCH, RATE, STEP, STEPS = 0.1, 2.0, 0.05, 200
 #: A line that is wrong so often is followed by the answer.
 TRIES = 3
-_NEXT = ("Next: course init my-course", "bold")
 #: Two panels stand side by side from this width on, in columns.
 _WIDE = 70
 _PANEL_ROWS = 17
 #: Lines beside the picture: the heading, what grey is, the description, where to read on.
 _WORDS = 10
+#: Where a virtual environment says how it is activated.
+_ACTIVATE = ("bin/activate", "Scripts/activate")
 
 
 @dataclass(frozen=True)
@@ -85,12 +89,12 @@ def demo() -> int:
         _show_mistake(console, example, before)
         fixed = _ask(bench, mistaken, right) if console.converses else right
         if not fixed:
-            console.note(_NEXT)
+            _say_next(console)
             return 0
         after = bench.motion(fixed, passes=True)
     change = _change(mistaken, fixed)
     _show_fixed(console, example, before, after, change)
-    console.note(_NEXT)
+    _say_next(console)
     course = catalog.ref
     console.emit(
         Demo(
@@ -223,7 +227,14 @@ def _show_fixed(
     console.heading("3. What the mistake hid")
     _draw(console, before, after)
     console.line(_said(before, after))
-    console.note(f"Read the example and its checks: {example.folder}")
+
+
+def _say_next(console: Console) -> None:
+    """The next command, and how to make it work where the environment was not activated."""
+    activate = next((path for path in map(Path(sys.prefix).joinpath, _ACTIVATE) if path.exists()), None)
+    if activate is not None and shutil.which("course") is None:
+        console.note(f"First, so that `course` works everywhere: {'' if os.name == 'nt' else '. '}{activate}")
+    console.note(("Next: course init my-course", "bold"))
 
 
 def worked_example(catalog: Catalog) -> Exercise:

@@ -71,10 +71,11 @@ class Curve:
     def description(self) -> str:
         """Where the curves part, and where they end."""
         unit = f" {self.units}" if self.units not in {"", "1"} else ""
+        yours, right = f"{self.yours[-1]:.3g}{unit}", f"{self.right[-1]:.3g}{unit}"
+        ends = f"both are at {right}" if yours == right else f"yours is at {yours}, the right one at {right}"
         return (
-            f"{self.quantity} over time. Your curve leaves {_as_noun(self)} at {self.parts_at:.3g} s; at the "
-            f"end, at {self.t[-1]:.3g} s, yours is at {self.yours[-1]:.3g}{unit}, the right one at "
-            f"{self.right[-1]:.3g}{unit}."
+            f"{self.quantity} over time. Your curve is visibly apart from {_as_noun(self)} at "
+            f"{self.parts_at:.3g} s; at the end, at {self.t[-1]:.3g} s, {ends}."
         )
 
 

@@ -26,7 +26,7 @@ def _table(submission):
     return kit.Section(
         "What the program says",
         'As it was handed out it stopped with a TypeError and said nothing at all. "Before" is what it would '
-        "have said with that one fault mended.\n\n"
+        "have said with that one fault fixed.\n\n"
         "Two things to look at. The balls end up 8 cm short of 12 m: the program looks once a step and finds "
         "them 4 cm inside each other, which is what the lessons on contact are about. And the last number "
         "has not changed. Semi-implicit Euler runs half a step ahead of the exact motion. It was compared "

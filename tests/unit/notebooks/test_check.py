@@ -220,7 +220,7 @@ def test_the_curve_of_a_failed_check_is_drawn_and_said(
     head = "def explicit_euler_step(accel, t, q, v, h):\n"
     step = f"{head}    v = v + h * accel(t, q, v)\n    return q + h * v, v\n"
     table = check("integrators", "explicit_euler_step", source=[step])
-    said = "Your curve leaves that of explicit Euler at "
+    said = "Your curve is visibly apart from that of explicit Euler at "
     page = table._repr_html_()
     assert said in repr(table)
     assert page.count(said) == 1

@@ -187,7 +187,7 @@ class _Page:
         if passing:
             self._label("pass", _number_of(passing))
         for check in failing[1:]:
-            why = f"  runs once {check.blocked_by} passes" if check.blocked_by else ""
+            why = f"  runs after {check.blocked_by} passes" if check.blocked_by else ""
             aside = why if check.status == "skip" else f"  [{check.id}]"
             self._label(check.status, self._title(check), aside)
         for check in failing[:1]:

@@ -228,7 +228,7 @@ def curved(monkeypatch):
 
 def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, curved):
     write("RIGHT", "wrong")
-    said = "doublings_works: x over time. Your curve leaves what it should be at 1 s; at the end, at 4 s,"
+    said = "doublings_works: x over time. Your curve is visibly apart from what it should be at 1 s; at"
     assert said in course("check").out
     assert said in course("check", "--plain").out
 

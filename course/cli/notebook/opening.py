@@ -55,5 +55,6 @@ def open_notebook(
         console.emit(
             NotebookOpen(course=catalog.ref, folder=str(folder), files=tuple(files), address=lab.address)
         )
+        console.flush()  # whoever reads a file or a pipe needs the address now
         lab.wait()
     return 0

@@ -147,7 +147,7 @@ def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: 
     view = _view("web" if options.web else "terminal")
     more: dict[str, Any] = {"chosen": chosen, "guess": options.guess, "keep": lambda c: _keep(chosen, c)}
     if options.web:
-        more |= {"port": options.port, "open_browser": not options.no_browser, "say": console.line}
+        more |= {"port": options.port, "open_browser": not options.no_browser, "say": _saying(console)}
     try:
         view(world, chosen.scene, **more)
     except KeyboardInterrupt:
@@ -157,6 +157,16 @@ def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: 
             sandbox_files.write(console, targets.paths["record"], recording.encode(), "record")
     console.note(("After playing: ", "bold"), chosen.scene.after)
     return 0
+
+
+def _saying(console: Console) -> Callable[[str], None]:
+    """Say a line at once, even into a file or a pipe: the page is served until somebody ends it."""
+
+    def say(text: str) -> None:
+        console.line(text)
+        console.flush()
+
+    return say
 
 
 def _view(name: str) -> Callable[..., None]:

@@ -5,16 +5,14 @@ from __future__ import annotations
 import csv
 import json
 import os
+import subprocess
+import sys
+import threading
 from pathlib import Path
-from typing import TYPE_CHECKING
-
 import pytest
 
 import course
 from tests.command_line import as_process, in_process
-
-if TYPE_CHECKING:
-    import subprocess
 
 ROOT = Path(course.__file__).parents[1]
 
@@ -186,3 +184,20 @@ def test_a_guess_made_in_a_workspace_is_kept(tmp_path: Path) -> None:
     (event,) = Workspace.find(tmp_path).store.events("sandbox-guess")
     assert event.subject == "head-on"
     assert (event.data["guess"], event.data["right"]) == (2.0, True)
+
+
+def test_the_address_of_the_page_reaches_a_pipe_while_the_page_is_served(tmp_path: Path) -> None:
+    pytest.importorskip("starlette")
+    pytest.importorskip("uvicorn")
+    command = [sys.executable, "-m", "course", "sandbox", "play", "incline", "--web", "--no-browser"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
+    ) as serving:
+        assert serving.stdout is not None
+        giving_up = threading.Timer(60, serving.kill)  # of what never says anything
+        giving_up.start()
+        try:
+            assert "http://127.0.0.1:" in serving.stdout.readline()
+        finally:
+            giving_up.cancel()
+            serving.kill()

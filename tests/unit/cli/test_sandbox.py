@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+
 import pytest
 
 import course
@@ -190,8 +191,9 @@ def test_the_address_of_the_page_reaches_a_pipe_while_the_page_is_served(tmp_pat
     pytest.importorskip("starlette")
     pytest.importorskip("uvicorn")
     command = [sys.executable, "-m", "course", "sandbox", "play", "incline", "--web", "--no-browser"]
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     with subprocess.Popen(
-        command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
+        command, cwd=tmp_path, env=buffered, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
     ) as serving:
         assert serving.stdout is not None
         giving_up = threading.Timer(60, serving.kill)  # of what never says anything

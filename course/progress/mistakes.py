@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
     from course.progress.store import Event
 
-__all__ = ["Mistake", "mistakes_of"]
+__all__ = ["NO_MISTAKE", "Mistake", "mistakes_of"]
 
 #: Diagnoses that are not mistakes of their own: unwritten work, and consequences of another mistake.
-_NO_MISTAKE = frozenset({"NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION"})
+NO_MISTAKE = frozenset({"NOT_IMPLEMENTED", "MISSING_FUNCTION", "MEASURED_AS_NONE", "CALLS_A_WRONG_FUNCTION"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ def _take(found: dict[tuple[str, str, str], _Open], event: Event) -> None:
     raised: dict[tuple[str, str, str], str] = {}
     for check in checks:
         code = check.get("diagnosis")
-        if isinstance(code, str) and code not in _NO_MISTAKE:
+        if isinstance(code, str) and code not in NO_MISTAKE:
             key = (event.subject, str(check.get("task")), code)
             shown.setdefault(key, set()).add(str(check.get("id")))
             raised.setdefault(key, str(check.get("raised", "")))

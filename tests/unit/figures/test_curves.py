@@ -39,11 +39,17 @@ def test_whatever_a_curve_holds_it_can_be_drawn_and_said(wrong: float) -> None:
         assert f"yours is at {wrong:.3g} m" in plot.description
 
 
+def test_ends_that_read_the_same_are_told_once() -> None:
+    curve = compared(T, np.where(T < 1.0, RIGHT + 1.0, RIGHT + 1e-9), RIGHT, "x", "m")
+    assert curve is not None
+    assert "at 2 s, both are at -0.654 m." in curve.description
+
+
 def test_where_curves_part_is_a_time_of_theirs() -> None:
     curve = compared(T, np.where(T > 0.99, RIGHT + 1.0, RIGHT), RIGHT, "x", "m")
     assert curve is not None
     assert curve.parts_at == pytest.approx(1.0)
-    assert "leaves what it should be at 1 s" in curve.description
+    assert "visibly apart from what it should be at 1 s" in curve.description
 
 
 def test_of_a_long_swing_the_beginning_is_drawn_with_the_place_where_the_curves_part() -> None:

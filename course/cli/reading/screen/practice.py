@@ -40,6 +40,7 @@ class Standing:
         busy: what is going on; empty if nothing is.
         reply: the last answer of ``course check --json``, as plain values.
         hint: what ``course hint`` said last.
+        fixed: functions that the check before found wrong and this one right.
     """
 
     file: str = ""
@@ -47,6 +48,7 @@ class Standing:
     busy: str = ""
     reply: dict[str, Any] | None = None
     hint: str = ""
+    fixed: tuple[str, ...] = ()
 
 
 class Practice:
@@ -163,7 +165,11 @@ class Practice:
             hint = reply.get("hint")
             now = replace(now, hint=f"Hint: {hint}" if hint else str(reply.get("message", "")))
         else:
-            now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")))
+            before = _tasks(now.reply)
+            fixed = tuple(
+                task for task, right in _tasks(reply).items() if right and not before.get(task, True)
+            )
+            now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
         self._standings[name] = now
         if not self._closed:
             self.changed(name)
@@ -210,3 +216,11 @@ class Practice:
             return self._path(exercise).stat().st_mtime_ns
         except OSError:
             return 0
+
+
+def _tasks(reply: dict[str, Any] | None) -> dict[str, bool]:
+    """Whether each function passes all of its checks; those of which a check did not run are left out."""
+    states: dict[str, set[str]] = {}
+    for check in (reply or {}).get("checks", ()):
+        states.setdefault(check["task"], set()).add(check["status"])
+    return {task: found == {"pass"} for task, found in states.items() if found != {"skip"}}

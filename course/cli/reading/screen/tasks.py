@@ -46,6 +46,8 @@ def standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text
             ("e", "bold"), " changes it here, or save it in your own editor; ", ("r", "bold"), " checks it"
         )
     else:
+        if now.fixed:
+            yield Text.assemble(("Fixed: ", "bold green"), ", ".join(now.fixed))
         yield from _said(now.reply, name)
     if now.hint:
         yield Text(now.hint, style="italic")

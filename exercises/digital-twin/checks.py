@@ -163,7 +163,7 @@ def test_lidar_room(submission):
             input={"pose": pose, "r_max": 3.5, "sigma": 0.0, "room": "6 m by 4 m, door in the right wall"},
             message="In a known room, without noise, a distance is wrong.",
             help="Take one beam and one wall by hand, then the smallest of all hits.",
-            diagnose=lambda: sensors.scanners.of_lidar(submission),
+            diagnose=lambda: sensors.scanners.of_lidar(submission, noisy=False),
         )
 
 
@@ -172,12 +172,14 @@ def test_lidar_room(submission):
 def test_lidar_nearest(submission):
     """Of several walls the nearest counts; walls behind the robot or beside the beam do not"""
     across = ((2.0, 1.0), (1.0, 0.2), (3.5, 2.0), (-1.0, 3.0))  # at x, from -y to y
-    walls = np.array([[[x, -y], [x, y]] for x, y in across])
-    angles = np.array([0.0, 0.3, -0.49, 0.7])
-    expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0]
+    walls = [[[x, -y], [x, y]] for x, y in across]
+    # To the left a long wall before a short one, whose middle and ends are all nearer than those of the long.
+    walls = np.array([*walls, [[-14.0, 1.5], [1.2, 1.5]], [[-1.0, 1.8], [0.0, 1.8]]])
+    angles = np.array([0.0, 0.3, -0.49, 0.7, 1.8])
+    expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0, 1.5 / math.sin(1.8)]
     value = submission.call("lidar", np.zeros(3), walls, angles, 5.0, 0.0, np.random.default_rng(1))
     kit.expect_array(
-        kit.as_vector(value, 4, "ranges"),
+        kit.as_vector(value, 5, "ranges"),
         expected,
         abs=1e-9,
         source="rounding",
@@ -186,7 +188,7 @@ def test_lidar_nearest(submission):
         input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
         message="With several walls, without noise, a distance is wrong.",
         help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
-        diagnose=lambda: sensors.scanners.of_lidar(submission),
+        diagnose=lambda: sensors.scanners.of_lidar(submission, noisy=False),
     )
 
 

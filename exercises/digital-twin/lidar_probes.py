@@ -14,6 +14,9 @@ named = draws.named
 _WALL = np.array([[[2.0, -1.0], [2.0, 1.0]]])
 _ROW = np.array([[[2.0, -1.0], [2.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]], [[3.5, -1.0], [3.5, 1.0]]])
 _LONG = np.array([[[1.0, 0.5], [3.0, 0.5]]])  # parallel to a beam along x
+_BEFORE = np.array([[[1.0, -0.5], [1.0, 9.0]], *_WALL])  # a near wall whose middle is farther off
+_WIDE = np.array([[[2.0, -8.0], [2.0, 8.0]]])  # both ends beyond the reach, and next its middle
+_ASIDE = np.array([[[2.0, -0.5], [2.0, 14.0]]])
 _ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
 
 #: Four beams in a crooked room, and how far off its walls are along each.
@@ -36,7 +39,10 @@ _SCENES = (
     ("WALLS_ENDLESS", _ORIGIN, _WALL, 1.0, _REACH, _at(1.0, 2.0)),
     ("WALLS_ENDLESS", _ORIGIN, _WALL, -1.0, _REACH, _at(1.0, 2.0)),
     ("NOT_THE_NEAREST", _ORIGIN, _ROW, 0.1, *_at(0.1, 1.0), _at(0.1, 2.0, 3.5)),
+    ("NOT_THE_NEAREST", _ORIGIN, _BEFORE, 0.1, *_at(0.1, 1.0), _at(0.1, 2.0)),
     ("BEYOND_RANGE", _ORIGIN, _WALL + np.array([4.0, 0.0]), 0.01, _REACH, _at(0.01, 6.0)),
+    ("LONG_WALL_LEFT_OUT", _ORIGIN, _WIDE, 0.1, *_at(0.1, 2.0), (_REACH,)),
+    ("LONG_WALL_LEFT_OUT", _ORIGIN, _ASIDE, 0.1, *_at(0.1, 2.0), (_REACH,)),
 )
 #: position, walls, the one beam, the right reading: a wall ahead, one wall along the beam, none within reach
 _PLAIN = (
@@ -51,10 +57,11 @@ _SHIFTS = ((0.0, 0.0), (1.0, 0.0), (-0.7, 0.0))
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_lidar(submission):
+def of_lidar(submission, noisy=True):
     """The mistake that ``lidar`` makes, from a room and from scenes with one wall or two, without noise.
 
     A mistake is named where the readings are those that it gives, not only where they are wrong.
+    noisy: whether the noise may have to do with it
     """
     scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
     beams = ((_HEADING, _FAN), (0.0, _FAN), (0.0, _FAN - _HEADING), (0.0, _FAN + _HEADING))
@@ -71,7 +78,7 @@ def of_lidar(submission):
         return named("WALLS_NOT_READ")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
     if np.all(right) and np.allclose(fans[0], _READS, rtol=0, atol=1e-9):
-        return of_lidar_noise(submission)
+        return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
     return _of_scenes(readings, right, _turning(*fans), fixed)
 
@@ -112,24 +119,27 @@ def of_lidar_noise(submission):
     ahead = np.linspace(-0.01, 0.01, 2000)
     places = ((_ORIGIN, fan), (none, fan), (near, fan), ((-2.95, 0.0, 0.0), ahead))
     calls = [
-        (pose, _WALL, beams, 5.0, 0.1, np.random.default_rng(seed))
+        (pose, _WALL, beams, 5.0, sigma, np.random.default_rng(seed))
+        for sigma in (0.1, 0.0)
         for seed, (pose, beams) in enumerate(places)
     ]
     scans = [kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls)]
-    hits, misses, close, far = scans
-    noise = hits - 2.0 / np.cos(fan)
+    hits, misses, close, far, *quiet = scans
+    exact = 2.0 / np.cos(fan), 5.0, 0.05 / np.cos(fan), 4.95 / np.cos(ahead)
+    if not all(np.allclose(*pair, rtol=0, atol=1e-9) for pair in zip(quiet, exact, strict=True)):
+        return None  # a wall is not seen as it is without noise: what is read of it tells nothing of noise
+    noise = hits - exact[0]
     spread = float(np.std(noise))
-    if not np.all(misses == 5.0):
-        return named("LIDAR_NOISE_ON_MAX")
-    if spread < 1e-9:
-        return named("LIDAR_NOISE_SHARED" if abs(noise[0]) > 1e-9 else "LIDAR_NOISE_MISSING")
-    if np.any(close < 0):
-        return named("NEGATIVE_RANGE")
-    if not 0.09 < spread < 0.11:
-        return named("LIDAR_SIGMA_WRONG")
-    if not np.any(far > 5.0):  # the wall is 4.95 m away
-        return named("NOISE_CUT_AT_MAX")
-    return of_scan_draws(submission)
+    looks = (
+        ("LIDAR_NOISE_ON_MAX", not np.all(misses == 5.0)),
+        ("LIDAR_NOISE_SHARED", spread < 1e-9 < abs(noise[0])),
+        ("LIDAR_NOISE_MISSING", spread < 1e-9),
+        ("NEGATIVE_RANGE", np.any(close < 0)),
+        ("LIDAR_SIGMA_WRONG", not 0.09 < spread < 0.11),
+        ("NOISE_CUT_AT_MAX", not np.any(far > 5.0)),  # the wall is 4.95 m away
+    )
+    code = next((code for code, seen in looks if seen), None)
+    return named(code) if code else of_scan_draws(submission)
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything

@@ -97,27 +97,34 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
     return folded
 
 
-#: m and m/s. What carts do here is below 40: a twin beyond it has run away, and soon is nothing but infinite.
+#: s, m, m/s, 1/s. What is right here is below 40: a twin beyond it has run away, and is soon infinite.
 _FLOWN = 1e6
 
 
 def _expect_no_flight(rows, given, ask):
     """The twin does not run away by and by; one that is nan from one step to the next is no such twin."""
     with np.errstate(all="ignore"):
-        gone = np.flatnonzero(~np.all(np.abs(rows) < _FLOWN, axis=1))
+        beyond = ~(np.abs(rows) < _FLOWN)
+    gone = np.flatnonzero(beyond.any(axis=1))
     if not len(gone):
         return
     first = int(gone[0])
+    which = [key for key, far in zip(scenes.SEEN, beyond[first], strict=True) if far]
+    values = dict(zip(which, rows[first, beyond[first]].tolist(), strict=True))
+    size = "beyond a million" if np.all(np.isfinite(rows[first])) else "beyond a million or not finite"
     grew = np.abs(rows[max(first - 3, 0) : first]).max(initial=0.0) > 1e2
     if grew or np.all(np.isfinite(rows[first])):
         kit.fail(
-            "The twin diverges: its state becomes larger than any cart's can be.",
-            help="A correction must move the twin towards the measurement, and each prediction must cover "
+            f"The twin runs away: its {' and '.join(f'`{key}`' for key in which)} "
+            f"{'is' if len(which) == 1 else 'are'} {size}.",
+            help='Return "t": max(twin["t"], t_measured).'
+            if "t" in which
+            else "A correction must move the twin towards the measurement, and each prediction must cover "
             "the time since the last.",
             diagnose=ask,
             input={**given, "measurement": first},
             expected={"at most": _FLOWN},
-            actual={"last before that": rows[max(first - 1, 0)]},
+            actual={"last before that": rows[max(first - 1, 0)], **values},
         )
 
 

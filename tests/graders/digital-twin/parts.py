@@ -24,19 +24,20 @@ def expect_ranges(submission, value, pose, walls, angles, r_max, message):
         input={"pose": pose, "segments": walls, "angles": angles, "r_max": r_max, "sigma": 0.0},
         message=message,
         help="Try a wall behind the robot, one that the beam misses, two behind each other, and none.",
-        diagnose=lambda: scanners.of_lidar(submission),
+        diagnose=lambda: scanners.of_lidar(submission, noisy=False),
     )
 
 
 def expect_hall(submission, rng):
-    """Every beam finds its nearest wall or none."""
+    """Every beam finds its nearest wall or none, in a hall and where a long wall is before a short one."""
     walls, r_max = rays.hall(rng), rng.uniform(2.5, 3.5)
     poses = np.column_stack((rng.uniform(-1.5, 1.5, (5, 2)), rng.uniform(-6, 6, 5)))
     angles = np.sort(rng.uniform(-3.1, 3.1, 40))
     calls = [(pose, walls, angles, r_max, 0.0, rng) for pose in poses]
+    calls.append((poses[0], rays.long_before_short(poses[0], rng), angles, r_max, 0.0, rng))
     message = "In an unknown hall, without noise, a distance is wrong."
-    for pose, value in zip(poses, submission.call_each("lidar", calls), strict=True):
-        expect_ranges(submission, value, pose, walls, angles, r_max, message)
+    for call, value in zip(calls, submission.call_each("lidar", calls), strict=True):
+        expect_ranges(submission, value, *call[:4], message)
 
 
 def expect_tour(submission, rng):

@@ -203,6 +203,54 @@ def test_a_scanner_that_never_moves_is_told_so():
     assert scanners.of_lidar(Fake("lidar", moved)).code == "POSITION_IGNORED"
 
 
+@pytest.mark.parametrize("place", [lambda ends: ends, lambda ends: ends.mean(axis=1, keepdims=True)])
+def test_a_scanner_that_leaves_long_walls_out_is_told_so_and_nothing_of_its_noise(place):
+    def culls(pose, walls, angles, r_max, *rest):
+        walls = np.reshape(walls, (-1, 2, 2))
+        far = np.linalg.norm(place(walls) - np.asarray(pose)[:2], axis=2).min(axis=1)
+        return right.lidar(pose, walls[far <= r_max], angles, r_max, *rest)
+
+    assert scanners.of_lidar(Fake("lidar", culls)).code == "LONG_WALL_LEFT_OUT"
+    assert scanners.of_lidar_noise(Fake("lidar", culls)) is None
+
+
+def test_noise_is_no_reason_for_what_is_wrong_without_it():
+    def cut(*args):
+        return np.minimum(right.lidar(*args), args[3])
+
+    assert scanners.of_lidar(Fake("lidar", cut)).code == "NOISE_CUT_AT_MAX"
+    assert scanners.of_lidar(Fake("lidar", cut), noisy=False) is None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_long_wall_of_the_graders_is_hit_before_the_short_one(seed):
+    rng = np.random.default_rng(seed)
+    rays = kit.sibling(ROOT / "tests/graders/digital-twin/parts.py", "rays")
+    walls = rays.long_before_short((0.3, -0.4, 1.0), rng)
+    size = np.hypot(*(walls[:, 1] - walls[:, 0]).T)
+    long, short = walls[np.argmax(size)], walls[np.argmin(size)]
+    place = np.array([0.3, -0.4])
+    ends = [sorted(np.hypot(*(wall - place).T)) for wall in (short, long)]
+    assert ends[0][1] < ends[1][0]
+    to_short = np.mean(short, axis=0) - place
+    pose, angle = (*place, 0.0), np.array([math.atan2(to_short[1], to_short[0])])
+    behind = rays.distances(pose, short[None], angle, 20.0)[0]
+    assert rays.distances(pose, walls, angle, 20.0)[0] < behind - 0.2
+
+
+def test_noise_that_repeats_itself_far_later_is_not_independent():
+    def tiled(true, dt, density, walk, bias0, rng):
+        _, bias = right.imu(true, dt, density, walk, bias0, rng)
+        white = np.resize(rng.standard_normal(500), len(true))
+        return true + bias + density / math.sqrt(dt) * white, bias
+
+    with pytest.raises(kit.CheckFailed) as failed:
+        sensor_bundles.expect_gyroscope_draws(Fake("imu", tiled), 5, 0.02)
+    assert "not independent" in failed.value.finding.message
+    for seed in range(20):
+        sensor_bundles.expect_gyroscope_draws(Fake(), seed, 0.02)
+
+
 def test_the_room_of_the_checks_reads_as_the_model_solution_sees_it():
     rng, angles = np.random.default_rng(3), np.linspace(-3.1, 3.1, 90)
     for _ in range(20):
@@ -288,6 +336,10 @@ def test_walks_and_biases_are_told_what_is_known_of_them_and_no_more():
     assert min(biases) < 0 < max(biases)
     for code, factor in (("WALK_WITHOUT_THREE", 3**-0.5), ("WALK_TOO_SMALL", 0.2), ("WALK_TOO_LARGE", 1.7)):
         assert sensors.of_walk(factor * walks, cases).code == code
+    assert (
+        sensors.of_walk(3**-0.5 * walks * np.tile([0.3, 0.8, 1.2, 1.6], 2), cases).code
+        != "WALK_WITHOUT_THREE"
+    )
     neighbours = np.array([np.std(np.diff(case[0])) / 0.1 for case in cases])
     assert sensors.of_walk(neighbours, cases).code == "NOISE_COUNTED_AS_DRIFT"
     assert sensors.of_bias0(np.abs(biases), cases).code == "BIAS0_WITHOUT_SIGN"
@@ -536,7 +588,9 @@ def test_a_twin_that_runs_away_by_and_by_is_no_twin_that_is_nan():
 
     flown = run(shares("- b * v", "+ b * v"))
     assert flown.guess.code == "FRICTION_SPEEDS_UP"
-    assert "diverges" in flown.finding.message
+    assert "its `speed` is beyond" in flown.finding.message
+    late = run(lambda twin, z, t: {**right.sync(twin, z, t), "t": 1e9})
+    assert "its `t` is beyond a million" in late.finding.message
     broken = run(lambda twin, z, t: {**right.sync(twin, z, t), "position": math.nan})
     assert "runs away" not in broken.finding.message
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["kept_sandboxes", "open_sandbox"]
 
-#: Free ones, by what they were opened for; None where none are kept.
-_free: dict[object, list[Spawner]] | None = None
+#: Free ones and their processors, by what they were opened for; None where none are kept.
+_free: dict[object, list[tuple[Spawner, int | None]]] | None = None
 
 
 @contextlib.contextmanager
@@ -38,14 +38,21 @@ def kept_sandboxes() -> Iterator[None]:
     finally:
         kept, _free = _free, None
         for those in kept.values():
-            for sandbox in those:
+            for sandbox, _ in those:
                 sandbox.close()
 
 
 def open_sandbox(
-    imports: tuple[str, ...], *, at_least: Level = Level.L1, at_most: Level = Level.L3
-) -> Spawner:
-    """A spawner as ``open_spawner`` gives it, or one that was kept.
+    imports: tuple[str, ...],
+    *,
+    at_least: Level = Level.L1,
+    at_most: Level = Level.L3,
+    processor: int | None = None,
+) -> tuple[Spawner, int | None]:
+    """A spawner as ``open_spawner`` gives it, or one that was kept, and the processor of its workers.
+
+    Args:
+        processor: where this process is while it opens one; a kept one's workers stay where it was opened.
 
     Raises:
         IsolationError: no level within the bounds works here; the message gives each cause.
@@ -53,21 +60,21 @@ def open_sandbox(
     kind = (imports, at_least, at_most)
     those = [] if _free is None else _free.get(kind, [])
     while those:
-        kept = those.pop()
+        kept, there = those.pop()
         if proves_itself(kept):
-            return _Kept(kept, kind)
+            return _Kept(kept, kind, there), there
         kept.close()
     real = open_spawner(imports, at_least=at_least, at_most=at_most)
-    return real if _free is None else _Kept(real, kind)
+    return (real if _free is None else _Kept(real, kind, processor)), processor
 
 
 class _Kept:
     """A sandbox that is kept when its session closes it."""
 
-    def __init__(self, real: Spawner, kind: object) -> None:
+    def __init__(self, real: Spawner, kind: object, processor: int | None) -> None:
         self.level = real.level
         self._real: Spawner | None = real
-        self._kind = kind
+        self._kind, self._processor = kind, processor
 
     def spawn(self) -> Handle:
         if self._real is None:
@@ -85,4 +92,4 @@ class _Kept:
         if _free is None:
             real.close()
         else:
-            _free.setdefault(self._kind, []).append(real)
+            _free.setdefault(self._kind, []).append((real, self._processor))

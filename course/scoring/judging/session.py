@@ -102,7 +102,7 @@ class GradingSession:
         self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
         self._checks = CollectedChecks(check_files(exercise, catalog, scope), draws=scope == "full")
         with pinned_to(self._processor):  # the workers inherit it
-            self._spawner = _open(exercise.imports, terms)
+            self._spawner, self._processor = _open(exercise.imports, terms, self._processor)
         self.level: str = self._spawner.level.value
         self._remote: RemoteSubmission | None = None
         self.running = ""
@@ -365,11 +365,11 @@ def _explainer(exercise: Exercise) -> Explainer | None:
     return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))
 
 
-def _open(imports: tuple[str, ...], terms: Terms) -> Spawner:
+def _open(imports: tuple[str, ...], terms: Terms, processor: int | None) -> tuple[Spawner, int | None]:
     lowest = Level(terms.level or terms.at_least)
     highest = Level.L3 if terms.level is None else lowest
     try:
-        return open_sandbox(imports, at_least=lowest, at_most=highest)
+        return open_sandbox(imports, at_least=lowest, at_most=highest, processor=processor)
     except IsolationError as error:
         raise MissingCapabilityError(
             f"This machine cannot run submissions at protection level {lowest}: {error}.",

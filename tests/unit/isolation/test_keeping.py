@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -12,6 +12,10 @@ from course.isolation.spawn import Level
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+
+def sandbox_for(*arguments: Any, **limits: Any) -> Any:
+    return open_sandbox(*arguments, **limits)[0]
 
 
 class Sandbox:
@@ -50,19 +54,31 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Sandbox]]:
 def test_one_session_takes_over_from_another_of_its_kind(opened: list[Sandbox]) -> None:
     with kept_sandboxes():
         for _ in range(3):
-            sandbox = open_sandbox(("numpy",))
+            sandbox = sandbox_for(("numpy",))
             sandbox.spawn()
             sandbox.close()
             sandbox.close()
         assert [one.told for one in opened] == [["spawned"] * 3]
-        open_sandbox(("numpy", "scipy")).close()
-        open_sandbox(("numpy",), at_most=Level.L1).close()
+        sandbox_for(("numpy", "scipy")).close()
+        sandbox_for(("numpy",), at_most=Level.L1).close()
         assert len(opened) == 3
+
+
+def test_a_session_goes_to_the_processor_on_which_the_sandbox_was_opened(opened: list[Sandbox]) -> None:
+    with kept_sandboxes():
+        first, there = open_sandbox(("numpy",), processor=1)
+        first.close()
+        second, same = open_sandbox(("numpy",), processor=0)
+        assert (there, same, len(opened)) == (1, 1, 1)
+        third, other = open_sandbox(("numpy",), processor=0)
+        assert (other, len(opened)) == (0, 2)
+        second.close()
+        third.close()
 
 
 def test_two_at_once_have_one_each(opened: list[Sandbox]) -> None:
     with kept_sandboxes():
-        first, second = open_sandbox(("numpy",)), open_sandbox(("numpy",))
+        first, second = sandbox_for(("numpy",)), sandbox_for(("numpy",))
         first.close()
         second.close()
         assert len(opened) == 2
@@ -70,34 +86,34 @@ def test_two_at_once_have_one_each(opened: list[Sandbox]) -> None:
 
 def test_what_no_longer_proves_itself_is_closed_and_replaced(opened: list[Sandbox]) -> None:
     with kept_sandboxes():
-        open_sandbox(("numpy",)).close()
+        sandbox_for(("numpy",)).close()
         opened[0].proves = False
-        open_sandbox(("numpy",)).close()
+        sandbox_for(("numpy",)).close()
         assert [one.told for one in opened] == [["closed"], []]
 
 
 def test_what_is_still_in_use_at_the_end_is_closed_by_its_session(opened: list[Sandbox]) -> None:
     with kept_sandboxes(), kept_sandboxes():
-        sandbox = open_sandbox(("numpy",))
+        sandbox = sandbox_for(("numpy",))
     assert opened[0].told == []
     sandbox.close()
 
 
 def test_none_is_kept_unless_that_was_asked_for(opened: list[Sandbox]) -> None:
-    open_sandbox(("numpy",)).close()
-    open_sandbox(("numpy",)).close()
+    sandbox_for(("numpy",)).close()
+    sandbox_for(("numpy",)).close()
     assert len(opened) == 2
 
 
 def test_one_whose_zygote_was_killed_serves_the_next_all_the_same() -> None:
     with kept_sandboxes():
-        first = open_sandbox(("numpy",))
+        first = sandbox_for(("numpy",))
         if first.level is Level.L1:
             pytest.skip("at L1 there is no zygote")
         real = first._real
         real._process.kill()
         real._process.wait()
         first.close()
-        second = open_sandbox(("numpy",))
+        second = sandbox_for(("numpy",))
         second.spawn().finish()
         second.close()

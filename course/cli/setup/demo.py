@@ -233,7 +233,8 @@ def _say_next(console: Console) -> None:
     """The next command, and how to make it work where the environment was not activated."""
     activate = next((path for path in map(Path(sys.prefix).joinpath, _ACTIVATE) if path.exists()), None)
     if activate is not None and shutil.which("course") is None:
-        console.note(f"First, so that `course` works everywhere: {'' if os.name == 'nt' else '. '}{activate}")
+        console.note("First, so that `course` works in every folder:")
+        console.note(f"{'' if os.name == 'nt' else '. '}{activate}", indent=2)
     console.note(("Next: course init my-course", "bold"))
 
 

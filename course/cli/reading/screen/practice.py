@@ -165,10 +165,7 @@ class Practice:
             hint = reply.get("hint")
             now = replace(now, hint=f"Hint: {hint}" if hint else str(reply.get("message", "")))
         else:
-            before = _tasks(now.reply)
-            fixed = tuple(
-                task for task, right in _tasks(reply).items() if right and not before.get(task, True)
-            )
+            fixed = () if "error" in reply else self._fixed(name)
             now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
         self._standings[name] = now
         if not self._closed:
@@ -193,6 +190,16 @@ class Practice:
         self._process = None
         return reply
 
+    def _fixed(self, name: str) -> tuple[str, ...]:
+        """The functions that the last edit fixed, by the record."""
+        from course.progress.history import history_of
+
+        assert self._workspace is not None
+        try:
+            return tuple(sorted(history_of(self._workspace.store.events(subject=name)).changed_tasks()[0]))
+        except CourseError:
+            return ()
+
     def _recorded(self, name: str) -> Standing:
         """The workspace's record of a task."""
         if self._workspace is None:
@@ -216,11 +223,3 @@ class Practice:
             return self._path(exercise).stat().st_mtime_ns
         except OSError:
             return 0
-
-
-def _tasks(reply: dict[str, Any] | None) -> dict[str, bool]:
-    """Whether each function passes all of its checks; those of which a check did not run are left out."""
-    states: dict[str, set[str]] = {}
-    for check in (reply or {}).get("checks", ()):
-        states.setdefault(check["task"], set()).add(check["status"])
-    return {task: found == {"pass"} for task, found in states.items() if found != {"skip"}}

@@ -13,7 +13,6 @@ from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.drawing import Drawer
 from course.cli.reading.screen.practice import Practice
-from course.cli.reading.screen.tasks import standing_lines
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
 from tests.unit.cli.reading.driving import drive, screen
@@ -116,35 +115,13 @@ def test_one_is_started_checked_mended_and_done_in_its_place(catalog: Catalog, w
         path.write_bytes(solution_path(catalog, catalog.exercise(TASK)).read_bytes())
         await pilot.pause(0.6)
         await answered(app, pilot)
+        assert f"Fixed: {catalog.exercise(TASK).task[0].id}" in screen(app)
         assert "Done: every check passes." in screen(app)
 
     doing(catalog, workspace, journey)
     passed = [event.data["all_pass"] for event in workspace.store.events("check", TASK)]
     assert passed == [False, True]
     assert [event.subject for event in workspace.store.events("start")] == [TASK]
-
-
-def test_what_an_edit_fixed_is_said_before_the_next_fault(
-    catalog: Catalog, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def reply(**states: str) -> dict[str, Any]:
-        of_check = {"visibility": "public", "points": 0, "max_points": 1}
-        return {
-            "checks": [
-                {"id": task, "title": f"About {task}", "task": task, "status": state, **of_check}
-                for task, state in states.items()
-            ]
-        }
-
-    runs = [reply(gap="error", run="skip"), reply(gap="pass", run="fail"), reply(gap="pass", run="fail")]
-    practice, said = Practice(catalog, workspace), []
-    practice.start(TASK)
-    for one in runs:
-        monkeypatch.setattr(practice, "_reply", lambda name, command, one=one: one)
-        practice._ask(TASK, "check")
-        lines = standing_lines(practice.of(TASK), TASK, possible=True)
-        said.append([line.plain for line in lines if line.plain.startswith(("Fixed", "FAIL", "ERROR"))])
-    assert said == [["ERROR: About gap"], ["Fixed: gap", "FAIL: About run"], ["FAIL: About run"]]
 
 
 def test_its_file_is_changed_in_the_reader_too(catalog: Catalog, workspace: Workspace) -> None:

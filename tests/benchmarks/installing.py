@@ -49,8 +49,8 @@ def install(tool: str, python: str, wanted: str, folder: Path) -> float:
     else:
         subprocess.run([python, "-m", "venv", folder], check=True)
         inside = folder / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
-        command = [inside, "-m", "pip", "install", "--quiet"]
-    subprocess.run([*command, wanted], check=True)
+        command = [str(inside), "-m", "pip", "install", "--quiet"]
+    subprocess.run([*map(str, command), wanted], check=True)
     return time.perf_counter() - begin
 
 

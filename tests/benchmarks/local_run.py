@@ -24,8 +24,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
-from local_submission import LocalSubmission  # noqa: E402
 
+from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
 from course.grading import kit  # noqa: E402
 from course.scoring.failures import finding_of  # noqa: E402
 from course.scoring.judging.explaining import Explainer  # noqa: E402

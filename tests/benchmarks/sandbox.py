@@ -14,6 +14,7 @@ import argparse
 import json
 import statistics
 import time
+from typing import Any
 
 from course.sandbox.runs.film import Film
 from course.sandbox.scene.loading import choose
@@ -80,7 +81,7 @@ class _Bare:
 def ratios(rounds: int) -> dict[str, object]:
     """Slices in turn; the ratio of sums, and of each round."""
     scene = pile()
-    runners = {
+    runners: dict[str, Any] = {
         "bare": _Bare(scene),
         "events": World(scene, receipt=False),
         "receipt": World(scene),
@@ -133,7 +134,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
-    result = {"stepping": ratios(given.rounds), "gif": film()}
+    result: dict[str, dict[str, Any]] = {"stepping": ratios(given.rounds), "gif": film()}
     if given.json:
         print(json.dumps(result))
         return

@@ -11,6 +11,7 @@ A script per exercise beside this file calls ``main``.
 from __future__ import annotations
 
 import argparse
+import inspect
 import re
 import sys
 import tomllib
@@ -103,7 +104,7 @@ def noting(checks, recorder: Recorder, shares: dict[str, float]):
             finally:
                 shares[check.id] = recorder.share
 
-        run.__signature__ = local_run.inspect.signature(check.fn)
+        run.__signature__ = inspect.signature(check.fn)  # type: ignore[attr-defined]
         return replace(check, fn=run)
 
     return [wrap(check) for check in checks]

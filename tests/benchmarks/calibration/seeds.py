@@ -1,33 +1,38 @@
-"""Full marks, and every mutant caught, under every seed: gradings in workers.
+"""Full marks, and every mutant caught, under every seed.
 
-    python tests/benchmarks/calibration/seeds.py EXERCISE... [--seeds 1000] [--accepted 200] [--mutants 0]
-        [--first 1] [--own] [--variant NAME] [--log FILE]
+    python tests/benchmarks/calibration/seeds.py EXERCISE... [--seeds 1000] [--accepted 1000] [--mutants 200]
+        [--first 1] [--variant NAME] [--log FILE]
 
-Each seed is a grading run of its own, with its own hidden draws; everything else is what `course grade run`
-does. A grading of the model solution or of an accepted variant has to give full marks; one of a mutant what
+A grading of the model solution or of an accepted variant has to give full marks; one of a mutant what
 mutants.toml says: points of its task only, by the check and with the diagnosis it names. What is not so is
-printed with the seed, and the exit code is 1. CPU a submission is printed too, the worker's included. With
---own an accepted variant is put through the checks of the tasks it does in its own way; all else in it is the
-model solution's code. With --log what is done is noted in a file, and a run with the same file goes on there.
+printed with the seed, and the exit code is 1.
+
+The first seed is a grading run: every check, in a worker. With the others the submission runs in this
+process, before the checks of the tasks that it does in its own way, where one of them draws; everything
+else would come out as with the first seed, or is the model solution's, which has its own turn. What ends
+its worker (an endless loop, too much memory) stays in workers, with ten seeds. With --log what is done is
+noted in a file, and a run with the same file goes on there, as long as exercise and program are the same.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
-import os
 import re
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import msgspec
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
+sys.path[:0] = [str(ROOT)]
 
-from protection import descendants_cpu  # noqa: E402
-
+from course.authoring.exercises.diagnosis.confusion import made_from  # noqa: E402
 from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
+from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
 from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
@@ -40,11 +45,47 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.scoring.verdict import Verdict
 
-    Faults = Callable[[Verdict], list[str]]
+#: Gradings of a program that ends its worker: each takes the whole deadline.
+_ENDING = 10
+
+
+class Program(NamedTuple):
+    """What is graded: the tasks it does in its own way, its seeds, and what is wrong with a verdict."""
+
+    name: str
+    source: bytes
+    tasks: frozenset[str]
+    seeds: int
+    faults: Callable[[Verdict], list[str]]
+
+
+class Seeded(GradingSession):
+    """A session in which each grading is a run of its own, with its own seed.
+
+    Attributes:
+        here: whether submissions run in this process.
+    """
+
+    here = False
+
+    def sow(self, seed: int) -> None:
+        """Draw with this seed from here on."""
+        self._terms = msgspec.structs.replace(self._terms, seed=seed)
+
+    def checks_of(self, tasks: frozenset[str]) -> list[str]:
+        """Ids of the checks of those of the tasks in which a check draws."""
+        items = self._checks._items
+        drawing = {check.task for check in self.checks if "rng" in items[check.id].fixturenames}  # type: ignore[attr-defined]
+        return [check.id for check in self.checks if check.task in tasks & drawing]
+
+    def _load(self, submission: Submission) -> Any:
+        if not self.here:
+            return super()._load(submission)
+        return LocalSubmission(submission.files[self.exercise.module].decode(), self._terms.seed)
 
 
 class Log:
-    """What is done: of each program the exercise, name, first seed, number of gradings, and of wrong ones."""
+    """How many gradings of a program were not as they should be, by what decides it."""
 
     def __init__(self, path: Path | None) -> None:
         self._path = path
@@ -62,68 +103,67 @@ class Log:
 
 def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) -> int:
     """Grade under many seeds; how many gradings were not as they should be."""
-    log, wrong = Log(options.log), 0
+    log, wrong, state = Log(options.log), 0, made_from(catalog, exercise)
     # What is asked is whether the answer is right: a machine that does other work too must not cost a mark.
-    with GradingSession(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
-        for name, source, count, faults in programs(exercise, catalog, options):
-            key = exercise.id, name, options.first, count
-            known = log.done(*key)
-            if known is not None:
-                wrong += known
-                continue
-            checks = _own_checks(catalog, exercise, name, session) if options.own else []
-            short, cpu = _grade(
-                session, Submission({exercise.module: source}), checks, options.first, count, name, faults
-            )
-            what = "caught as declared" if name.startswith("mutants/") else "full marks"
-            scope = f" on {len(checks)} checks" if checks else ""
-            print(
-                f"{exercise.id} {name}: {count - short} of {count} {what}{scope}, {cpu:.2f} s CPU each",
-                flush=True,
-            )
-            log.note(*key, wrong=short)
+    with Seeded(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
+        for program in programs(exercise, catalog, options):
+            digest = hashlib.sha256(program.source).hexdigest()[:16]
+            key = exercise.id, state, program.name, digest, options.first, program.seeds
+            short = log.done(*key)
+            if short is None:
+                start = time.perf_counter()
+                short, graded = _grade(session, program, options.first)
+                log.note(*key, wrong=short)
+                what = "caught as declared" if program.name.startswith("mutants/") else "full marks"
+                took = (time.perf_counter() - start) / graded
+                print(
+                    f"{exercise.id} {program.name}: {graded - short} of {graded} {what}, {took:.3f} s each",
+                    flush=True,
+                )
             wrong += short
     return wrong
 
 
-def programs(
-    exercise: Exercise, catalog: Catalog, options: argparse.Namespace
-) -> Iterator[tuple[str, bytes, int, Faults]]:
-    """Name, source, number of seeds, and what is wrong with a verdict, of each program."""
-    solution = solution_path(catalog, exercise)
-    if options.seeds:
-        yield solution.name, solution.read_bytes(), options.seeds, _short_of_full
+def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) -> Iterator[Program]:
+    """The model solution, the accepted variants and the mutants that are asked for."""
+    solution, tasks = solution_path(catalog, exercise), frozenset(task.id for task in exercise.task)
+    if options.seeds and not options.variant:
+        yield Program(solution.name, solution.read_bytes(), tasks, options.seeds, _short_of_full)
     for path in accepted_files(catalog, exercise) if options.accepted else ():
         if not options.variant or path.stem in options.variant:
-            yield f"accepted/{path.name}", compose(solution, path), options.accepted, _short_of_full
+            own = _own_tasks(solution, path, tasks)
+            name = f"accepted/{path.name}"
+            yield Program(name, compose(solution, path), own, options.accepted, _short_of_full)
     for mutant in catalog.mutants(exercise) if options.mutants else ():
         if not options.variant or Path(mutant.file).stem in options.variant:
-            source = compose(solution, mutant_path(catalog, exercise, mutant))
             told = lambda verdict, mutant=mutant: [fault.message for fault in judge(mutant, verdict)]  # noqa: E731
-            yield f"mutants/{mutant.file}", source, options.mutants, told
+            source = compose(solution, mutant_path(catalog, exercise, mutant))
+            name = f"mutants/{mutant.file}"
+            yield Program(name, source, frozenset({mutant.task}), options.mutants, told)
 
 
-def _grade(
-    session: GradingSession,
-    submission: Submission,
-    checks: list[str],
-    first: int,
-    count: int,
-    name: str,
-    faults: Faults,
-) -> tuple[int, float]:
-    """How many gradings were not as they should be, and CPU seconds of one."""
-    short, start = 0, time.process_time() + descendants_cpu(os.getpid())
-    for seed in range(first, first + count):
-        session._seed = seed  # a session keeps one seed for a whole run; here each grading is a run
-        verdicts = [session.grade(submission, only=[check]) for check in checks] or [
-            session.grade(submission)
-        ]
-        found = [fault for verdict in verdicts for fault in faults(verdict)]
-        for fault in found[:3]:
-            print(f"  {name} seed {seed}: {fault}", flush=True)
-        short += bool(found)
-    return short, (time.process_time() + descendants_cpu(os.getpid()) - start) / max(count, 1)
+def _grade(session: Seeded, program: Program, first: int) -> tuple[int, int]:
+    """How many gradings were not as they should be, and how many there were."""
+    submission = Submission({session.exercise.module: program.source})
+    session.here = False
+    session.sow(first)
+    verdict = session.grade(submission)
+    short = _told(program, first, verdict)
+    ends = any(c.status in {Status.TIMEOUT, Status.MEMORY, Status.CRASH} for c in verdict.checks)
+    session.here, checks = not ends, session.checks_of(program.tasks)
+    count = min(program.seeds, _ENDING) if ends else program.seeds if checks else 1
+    for seed in range(first + 1, first + count):
+        session.sow(seed)
+        short += _told(program, seed, session.grade(submission, only=checks))
+    return short, count
+
+
+def _told(program: Program, seed: int, verdict: Verdict) -> bool:
+    """Whether a verdict is not as it should be; prints why."""
+    found = program.faults(verdict)
+    for fault in found[:3]:
+        print(f"  {program.name} seed {seed}: {fault}", flush=True)
+    return bool(found)
 
 
 def _short_of_full(verdict: Verdict) -> list[str]:
@@ -136,19 +176,12 @@ def _short_of_full(verdict: Verdict) -> list[str]:
     ]
 
 
-def _own_checks(catalog: Catalog, exercise: Exercise, name: str, session: GradingSession) -> list[str]:
-    """Checks of the tasks that a variant does in its own way; none if that is nearly all of them."""
-    if not name.startswith("accepted/"):
-        return []
-    solution = solution_path(catalog, exercise)
-    tasks = {task.id for task in exercise.task}
-    names = set(re.findall(r"^(?:def )?(\w+)(?:\(| = )", (solution.parent / name).read_text(), re.M))
-    others = set(re.findall(r"^def (\w+)\(", solution.read_text(), re.M)) - tasks
+def _own_tasks(solution: Path, variant: Path, tasks: frozenset[str]) -> frozenset[str]:
+    """The tasks that an accepted variant does in its own way."""
+    names = set(re.findall(r"^(?:def |class )?(\w+)(?:\(| = |:)", variant.read_text(encoding="utf-8"), re.M))
+    others = set(re.findall(r"^def (\w+)\(", solution.read_text(encoding="utf-8"), re.M)) - tasks
     # One that changes another function of the solution may do every task in its own way.
-    own = tasks if names & others else names & tasks
-    checks = [check.id for check in session.checks if check.task in own]
-    # Each is a grading with a worker of its own: many of them cost more than the whole.
-    return checks if 4 * len(checks) < len(session.checks) else []
+    return tasks if names & others else frozenset(names & tasks)
 
 
 def main() -> int:
@@ -157,10 +190,9 @@ def main() -> int:
     )
     parser.add_argument("exercise", nargs="+")
     parser.add_argument("--seeds", type=int, default=1000, help="for the model solution")
-    parser.add_argument("--accepted", type=int, default=200, help="for each accepted variant")
-    parser.add_argument("--mutants", type=int, default=0, help="for each mutant")
+    parser.add_argument("--accepted", type=int, default=1000, help="for each accepted variant")
+    parser.add_argument("--mutants", type=int, default=200, help="for each mutant")
     parser.add_argument("--first", type=int, default=1, help="the first seed")
-    parser.add_argument("--own", action="store_true", help="variants: only the tasks they do differently")
     parser.add_argument("--variant", action="append", default=[], help="only this one; repeatable")
     parser.add_argument("--log", type=Path, help="note what is done here, and leave out what is noted")
     options = parser.parse_args()

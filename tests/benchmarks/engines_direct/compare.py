@@ -17,9 +17,13 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from course.engines import reference
 from course.engines.registry import ENGINES
+
+if TYPE_CHECKING:
+    from course.engines.results import Row
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results.json"
@@ -63,7 +67,7 @@ def run(engine: str) -> list[dict]:
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
-def judged(engine: str, line: dict) -> tuple[str, reference.Row | None]:
+def judged(engine: str, line: dict) -> tuple[str, Row | None]:
     """The verdict, and the row of the course that a direct result belongs to; none for a single option."""
     if line["setting"] not in ("default", "tuned"):
         return "", None

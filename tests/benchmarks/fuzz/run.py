@@ -35,6 +35,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[3]), str(Path(__file__).res
 import inputs  # noqa: E402
 import msgspec  # noqa: E402
 
+from course.authoring.exercises.variants import solution_path  # noqa: E402
 from course.catalog.models import Exercise, Task  # noqa: E402
 from course.errors import CourseError  # noqa: E402
 from course.grading.intake.archives import RefusedError  # noqa: E402
@@ -169,7 +170,7 @@ def _session(exercise: Exercise) -> GradingSession:
 def returns(chance: inputs.Chance, folder: Path) -> str:
     exercise = chance.choice(spoiling.CATALOG.exercises())
     session = _session(exercise)
-    source = spoiling.solution_path(spoiling.CATALOG, exercise).read_text("utf-8")
+    source = solution_path(spoiling.CATALOG, exercise).read_text("utf-8")
     tasks = chance.sample([task.id for task in exercise.task], chance.choice((1, min(2, len(exercise.task)))))
     for task in tasks:
         way, part, when = (

@@ -119,13 +119,47 @@ def expect_clean(submission, task, system, t, whole, h):
         shared=probes.named("RETURNS_ARGUMENT"),
         input=given,
     )
-    # The values of two calls in a row: the second must not change what the first returned.
-    submission.call_each(task, [args, [system, t, args[3], args[2], h]])
+    # At rest a position stays where it is, in an array of its own all the same.
+    rest = [system, t, args[2], 0 * args[3], h]
+    kit.expect_untouched(
+        rest,
+        submission.call_inspect(task, *rest),
+        names=["", "", "q", "v", ""],
+        mutated=probes.named("MUTATES_INPUT"),
+        shared=probes.named("RETURNS_ARGUMENT"),
+        input={**given, "v": rest[3]},
+    )
+    _expect_the_same_again(submission, task, args, given)
     _expect_whole(submission, task, system, [*args[1:2], *whole, h], wanted, given)
     # An acceleration of whole numbers, too, must not leave the result without room for fractions.
     floats = kit.as_pair(submission.call(task, _spring, *args[1:]), 2)
     spring = {"accel": "-4 * q, of whole numbers", "t": t, "q": whole[0], "v": whole[1], "h": h}
     _expect_whole(submission, task, _spring, [t, *whole, h], floats, spring)
+
+
+def _expect_the_same_again(submission, task, args, given):
+    """A step gives the same again after others that have something in common with it; none is overwritten."""
+    system, t, q, v, h = args
+    others = (
+        [system, t - h, v, q, h],  # ends where it begins, elsewhere
+        [system, t, v, v, h],
+        [system, t, q, q, h],
+        [system, t, q, v, 2 * h],
+        [Oscillator(1.3), t, q, v, h],
+    )
+    values = submission.call_each(task, [args, *(call for other in others for call in (other, args))])
+    first, *again = [np.concatenate(kit.as_pair(value, 2)) for value in values[::2]]
+    for result in again:
+        kit.expect_array(
+            result,
+            first,
+            rel=1e-9,
+            source="rounding; a result may lie elsewhere in memory",
+            quantity="q_next and v_next",
+            input=given,
+            message="The same step, asked for again after another one, has another result.",
+            diagnose=lambda: probes.named("STALE_CACHE"),
+        )
 
 
 def _spring(t, q, v):

@@ -123,6 +123,14 @@ def test_integrate_samples(submission, draw):
     if draw is not None:
         n, angle = int(draw.integers(6, 14)), float(draw.uniform(0.3, 0.6))
         q0, v0 = _signed(draw, 0.5, 1.5, 2), _signed(draw, 0.5, 2.0, 2)
+    # As many steps of another size besides: nothing of one path may be left in the other.
+    for size in (h / 2, h):
+        _expect_samples(submission, omega, (angle, shrink), (q0, v0), (n, size))
+
+
+def _expect_samples(submission, omega, spiral, start, steps):
+    """The samples of a path of n steps of h that each turn by an angle and shrink."""
+    (angle, shrink), (q0, v0), (n, h) = spiral, start, steps
     step = cases.turn(shrink * math.cos(angle), shrink * math.sin(angle), h * omega)
     value = submission.call("integrate", step, systems.Oscillator(omega), q0, v0, n * h, h)
     given = {"step": "a known linear map", "q0": q0, "v0": v0, "t_end": n * h, "h": h}

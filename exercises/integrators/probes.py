@@ -67,12 +67,25 @@ def of_whole_numbers(submission, task, result=None):
 
 
 def _wraps(submission, task):
-    """Whether a body at rest without forces is elsewhere after the step, if it is far away, and only then."""
-    places = [
-        kit.attempt(lambda at=at: kit.as_pair(submission.call(task, FreeFall(0.0), _T, at, 0 * _Q, _H), 2)[0])
-        for at in (_Q, 30 * _Q)
-    ]
-    return _stays(places[0], _Q) and places[1] is not None and not _stays(places[1], 30 * _Q)
+    """Whether a body at rest without forces is elsewhere, if it is far away and only then.
+
+    After the step, or where ``accel`` is asked for.
+    """
+
+    def places(at):
+        accel = kit.counted(lambda *args, **names: np.zeros(2))
+        after = kit.attempt(lambda: kit.as_pair(submission.call(task, accel, _T, at, 0 * _Q, _H), 2)[0])
+        asked = [
+            kit.attempt(lambda call=call: kit.as_vector(call[1], 2)) for call in accel.calls if len(call) == 3
+        ]
+        return [after, *asked]
+
+    far = places(30 * _Q)
+    return (
+        all(_stays(place, _Q) for place in places(_Q))
+        and not any(place is None or place.shape != _Q.shape for place in far)
+        and not all(_stays(place, 30 * _Q) for place in far)
+    )
 
 
 def _stays(place, at):

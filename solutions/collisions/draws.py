@@ -331,6 +331,11 @@ def twins(rng, args):
     return args[0], args[0] * float(1 + 10 ** rng.uniform(-5.9, -5.1)), *args[2:]
 
 
+def even(rng, args):  # noqa: ARG001 - called like the others
+    """The same two bodies with one and the same mass."""
+    return args[0], args[0], *args[2:]
+
+
 def exchange(rng):
     """Two equal masses without loss, which exchange their velocities along the normal and nothing else."""
     ma, _, *rest = impact(rng, 3, 1.0)
@@ -340,6 +345,10 @@ def exchange(rng):
 def heavy(rng, args):
     """The same two bodies, one of them so heavy that it is nearly a wall."""
     return args[0], args[0] * float(10 ** rng.uniform(4.2, 6.0)), *args[2:]
+
+
+#: Pairs of masses that are equal, nearly equal or very unequal, as the README promises.
+MASSES = (even, alike, twins, heavy)
 
 
 def ends(args):
@@ -356,6 +365,14 @@ def parting(args):
 def wall(args, side):
     """The same impact with one mass infinite."""
     return (math.inf, *args[1:]) if side else (args[0], math.inf, *args[2:])
+
+
+def chased(rng, args, side):
+    """The same impact where one body (b for side 0, a for side 1) moves off and the other one follows."""
+    _, _, va, vb, n, *_ = args
+    closing = float((va - vb) @ n)
+    slow = -va @ n - closing * rng.uniform(0.2, 0.6) if side else -vb @ n + closing * rng.uniform(0.2, 0.6)
+    return *args[:2], va + slow * n, vb + slow * n, *args[4:]
 
 
 def rough(rng):

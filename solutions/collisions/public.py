@@ -89,7 +89,7 @@ PUBLIC = {
         *(draws.line(rng) for _ in range(3)),
         draws.slow_line(rng),
         *draws.ends(draws.line(rng)),
-        *(change(rng, draws.line(rng)) for change in (draws.alike, draws.twins, draws.heavy)),
+        *(change(rng, draws.line(rng)) for change in draws.MASSES),
     ],
     "impulse_separating": lambda rng: [*(draws.parting(draws.line(rng)) for _ in range(3)), draws.line(rng)],
     "impulse_walls": lambda rng: [draws.wall(draws.line(rng), side) for side in (0, 1)],
@@ -97,27 +97,30 @@ PUBLIC = {
         *(draws.impact(rng, d) for d in (3, 3, 2)),
         draws.slow(rng, 2),
         draws.exchange(rng),
-        *(change(rng, draws.impact(rng, 3)) for change in (draws.alike, draws.twins, draws.heavy)),
+        *(change(rng, draws.impact(rng, 3)) for change in draws.MASSES),
     ],
     "resolve_separating": lambda rng: [
         *(draws.carried(rng, draws.parting(draws.impact(rng, d)), way) for d, way in ((3, 1.0), (2, -1.0))),
         draws.impact(rng, 3),
     ],
-    "resolve_walls": lambda rng: [draws.wall(draws.impact(rng, d), side) for d, side in ((2, 0), (3, 1))],
+    "resolve_walls": lambda rng: [
+        draws.wall(draws.chased(rng, draws.impact(rng, d), side), side) for d, side in ((2, 0), (3, 1))
+    ],
     "friction_regimes": lambda rng: [
         *(draws.friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
         draws.rough(rng),
         draws.creeping(rng),
-        *(change(rng, draws.friction(rng, 3, 0.5)) for change in (draws.alike, draws.twins, draws.heavy)),
+        *(change(rng, draws.friction(rng, 3, 0.5)) for change in draws.MASSES),
     ],
     "friction_absent": _no_friction,
     "friction_walls": lambda rng: [
-        draws.wall(draws.friction(rng, d, 0.6), side) for d, side in ((2, 0), (3, 1))
+        draws.wall(draws.chased(rng, draws.friction(rng, d, 0.6), side), side) for d, side in ((2, 0), (3, 1))
     ],
     "moment_of_contact": lambda rng: [
         draws.late(rng),
         draws.shot(rng, 300.0),
-        draws.passing(rng, 3, 0.6),
+        # Beyond the larger radius, and within it.
+        draws.passing(rng, 3, 0.95),
         draws.passing(rng, 2, 0.4),
         draws.shot(rng, float(10 ** rng.uniform(-2.7, -2.2))),
     ],

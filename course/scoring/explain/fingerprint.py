@@ -24,8 +24,9 @@ Answers = list[Any]
 #: Weighted sums of a fingerprint.
 SUMS = 2
 #: How much the sums of equal programs may differ: right programs in other styles differed by 1e-7, from
-#: rounding in simulations of several hundred steps; sums are stored with five decimals.
-SAME = 3e-5
+#: rounding in simulations of several hundred steps; sums are stored with seven decimals. At 3e-5, RK4 in
+#: two half steps was the same as RK4 with two stages at wrong times.
+SAME = 1e-6
 
 _NONE, _TRUE, _FALSE, _TEXT, _NAN, _INFINITE, _RAISED, _OTHER = 0.7071, 1.1, -1.1, 2.3, 31.4, 27.2, 51.7, 43.1
 _MOST = 20_000
@@ -41,7 +42,7 @@ def fingerprint(answers: Answers) -> tuple[float, ...]:
     numbers = numbers_of(answers)[:_MOST]
     weights = np.random.default_rng(20260).uniform(-1.0, 1.0, (SUMS, _MOST))[:, : len(numbers)]
     # Large values count by their logarithm, so that a path that diverges is still compared digit by digit.
-    return tuple(round(float(total), 5) for total in weights @ np.arcsinh(numbers))
+    return tuple(round(float(total), 7) for total in weights @ np.arcsinh(numbers))
 
 
 def numbers_of(answers: Answers) -> np.ndarray[Any, Any]:

@@ -10,7 +10,8 @@ printed with the seed, and the exit code is 1.
 The first seed is a grading run: every check, in a worker. With the others the submission runs in this
 process, before the checks of the tasks that it does in its own way, where one of them draws; everything
 else would come out as with the first seed, or is the model solution's, which has its own turn. What ends
-its worker (an endless loop, too much memory) stays in workers, with ten seeds. With --log what is done is
+its worker (an endless loop, too much memory) stays in workers, with ten seeds, and so does, with all of them,
+what keeps something between two calls, since a second worker is asked about that. With --log what is done is
 noted in a file, and a run with the same file goes on there, as long as exercise and program are the same.
 """
 
@@ -35,6 +36,7 @@ from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
 from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
 from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
+from course.scoring.explain.words import STATE  # noqa: E402
 from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
 from course.scoring.judging.terms import Terms  # noqa: E402
 from course.scoring.verdict import Status  # noqa: E402
@@ -150,7 +152,8 @@ def _grade(session: Seeded, program: Program, first: int) -> tuple[int, int]:
     verdict = session.grade(submission)
     short = _told(program, first, verdict)
     ends = any(c.status in {Status.TIMEOUT, Status.MEMORY, Status.CRASH} for c in verdict.checks)
-    session.here, checks = not ends, session.checks_of(program.tasks)
+    keeps = any(c.diagnosis in STATE for c in verdict.checks)
+    session.here, checks = not (ends or keeps), session.checks_of(program.tasks)
     count = min(program.seeds, _ENDING) if ends else program.seeds if checks else 1
     for seed in range(first + 1, first + count):
         session.sow(seed)

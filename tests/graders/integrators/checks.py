@@ -100,7 +100,7 @@ def test_verlet_energy(submission, rng):
     z = 2 * math.sin(math.pi / (rng.integers(9, 16) + rng.uniform(0.37, 0.39)))
     omega, n = rng.uniform(0.5, 5.0), 300
     system = systems.Oscillator(omega)
-    q0 = bundles.signed(rng, 0.5, 1.5).tolist()
+    q0 = bundles.signed(rng, 4.0, 8.0).tolist()  # beyond pi: a length is no angle
     _, q, v = submission.march(VERLET, system, q0, [0.0], z / omega, n)
     with np.errstate(all="ignore"):
         swing = float(np.max(np.abs(invariants.relative_change(invariants.energy(system, q, v)))))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from course.grading import kit
-from course.physics.systems import LinearStep, Oscillator
+from course.physics.systems import FreeFall, LinearStep, Oscillator
 
 probes = kit.companion("integrators", "probes")
 
@@ -119,22 +119,44 @@ def expect_clean(submission, task, system, t, whole, h):
         shared=probes.named("RETURNS_ARGUMENT"),
         input=given,
     )
-    # At rest a position stays where it is, in an array of its own all the same.
-    rest = [system, t, args[2], 0 * args[3], h]
-    kit.expect_untouched(
-        rest,
-        submission.call_inspect(task, *rest),
-        names=["", "", "q", "v", ""],
-        mutated=probes.named("MUTATES_INPUT"),
-        shared=probes.named("RETURNS_ARGUMENT"),
-        input={**given, "v": rest[3]},
-    )
+    _expect_plain_motion(submission, task, args, given)
     _expect_the_same_again(submission, task, args, given)
     _expect_whole(submission, task, system, [*args[1:2], *whole, h], wanted, given)
     # An acceleration of whole numbers, too, must not leave the result without room for fractions.
     floats = kit.as_pair(submission.call(task, _spring, *args[1:]), 2)
     spring = {"accel": "-4 * q, of whole numbers", "t": t, "q": whole[0], "v": whole[1], "h": h}
     _expect_whole(submission, task, _spring, [t, *whole, h], floats, spring)
+
+
+def _expect_plain_motion(submission, task, args, given):
+    """At rest, and far away without forces: what is not changed is returned in an array of its own, too."""
+    system, t, q, v, h = args
+    for accel, at, speed in ((system, q, 0 * v), (FreeFall(0.0), 1000.0 * q, v)):
+        call = [accel, t, at, speed, h]
+        told = {**given, **({} if accel is system else {"accel": "0"}), "q": at, "v": speed}
+        inspected = submission.call_inspect(task, *call)
+        kit.expect_untouched(
+            call,
+            inspected,
+            names=["", "", "q", "v", ""],
+            mutated=probes.named("MUTATES_INPUT"),
+            shared=probes.named("RETURNS_ARGUMENT"),
+            input=told,
+        )
+    for actual, expected, name in zip(
+        kit.as_pair(inspected.value, 2), (at + h * v, v), ("q_next", "v_next"), strict=True
+    ):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            source="uniform motion: only rounding is allowed",
+            quantity=name,
+            input=told,
+            message="Without an acceleration a body far away does not move on uniformly.",
+            help="Without an acceleration every method gives q + h v and v.",
+            diagnose=lambda: probes.of_step(submission, task),
+        )
 
 
 def _expect_the_same_again(submission, task, args, given):

@@ -80,11 +80,11 @@ def _wraps(submission, task):
         ]
         return [after, *asked]
 
-    far = places(30 * _Q)
+    far = places(1000 * _Q)
     return (
         all(_stays(place, _Q) for place in places(_Q))
         and not any(place is None or place.shape != _Q.shape for place in far)
-        and not all(_stays(place, 30 * _Q) for place in far)
+        and not all(_stays(place, 1000 * _Q) for place in far)
     )
 
 

@@ -353,7 +353,8 @@ MASSES = (even, alike, twins, heavy)
 
 def ends(args):
     """The same impact without a rebound, and with all of it."""
-    return [(*args[:4], 0.0), (*args[:4], 1.0)]
+    at = 4 if len(args) == 5 else 5  # after the normal, if there is one
+    return [(*args[:at], e, *args[at + 1 :]) for e in (0.0, 1.0)]
 
 
 def parting(args):

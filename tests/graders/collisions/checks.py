@@ -105,6 +105,7 @@ def test_impulse_drawn(submission, rng):
             *(draws.line(rng) for _ in range(6)),
             *(draws.slow_line(rng) for _ in range(3)),
             *draws.ends(draws.line(rng)),
+            *draws.ends(draws.alike(rng, draws.line(rng))),
             *(change(rng, draws.line(rng)) for change in draws.MASSES),
         ],
         "The impulse of two bodies on a line is wrong.",
@@ -146,7 +147,11 @@ def test_resolve_momentum(submission, rng):
     laws.expect_momentum(
         submission,
         bundles.RESOLVE,
-        [*(draws.impact(rng, d) for d in (2, 2, 3, 3)), draws.alike(rng, draws.impact(rng, 3))],
+        [
+            *(draws.impact(rng, d) for d in (2, 2, 3, 3)),
+            draws.alike(rng, draws.impact(rng, 3)),
+            *draws.ends(draws.alike(rng, draws.impact(rng, 3))),
+        ],
     )
 
 
@@ -204,6 +209,7 @@ def test_friction_cone(submission, rng):
             (*draws.slow(rng, 3), 0.3),
             draws.creeping(rng),
             *(change(rng, draws.friction(rng, 3, 0.5)) for change in draws.MASSES),
+            *draws.ends(draws.friction(rng, 3, 0.5)),
         ],
         "The velocities after an impact with friction are wrong.",
         "Find the tangential part of the relative velocity as a vector; its length decides which "

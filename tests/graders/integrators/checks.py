@@ -338,8 +338,8 @@ def test_stable_step_limits(submission, rng):
     steps.append((bundles.cases.slow_growth(c), c))
     # Springs so slow or so fast that a range in seconds is not one in h omega.
     omegas = rng.permutation(rng.uniform((0.1, 0.2, 2.0, 45.0), (0.15, 20.0, 20.0, 60.0))).tolist()
-    # So fast, and unstable so soon, that no error in seconds is small: a search that ends at a millisecond may
-    # be right once by chance (one time in twenty), not three times.
+    # So fast, and unstable so soon, that no error in seconds is small: a search that ends at a millisecond
+    # may be right once by chance (one time in twenty), not three times.
     for near in rng.uniform(0.2, 0.5, 3):
         steps.append((bundles.cases.slow_growth(near), near))
         omegas.append(rng.uniform(45.0, 60.0))

@@ -22,11 +22,11 @@ MEAN = systems.AveragePolynomial([0.0, 1.0])
 
 def expect_rmse(submission, e):
     """rmse agrees with the definition on these errors, and leaves them alone."""
-    e = np.asarray(e, dtype=float)
+    e = np.asarray(e)
     inspected = submission.call_inspect("rmse", e)
     kit.expect_close(
         inspected.value,
-        math.sqrt(np.mean(e**2)),
+        math.sqrt(np.mean(np.square(e, dtype=float))),
         rel=1e-9,
         abs=1e-12,
         source=EXACT,
@@ -42,7 +42,7 @@ def expect_rmse(submission, e):
 def expect_bias_variance(submission, e):
     """bias_variance agrees with the definition on these errors, and leaves them alone."""
     names = ("bias", "variance")
-    e = np.asarray(e, dtype=float)
+    e = np.asarray(e)
     inspected = submission.call_inspect("bias_variance", e)
     values = zip(kit.as_tuple(inspected.value, names), names, strict=True)
     bias, variance = (kit.as_number(x, name) for x, name in values)
@@ -110,6 +110,24 @@ def same(before, after):
     if isinstance(before, list):
         return isinstance(after, list) and len(before) == len(after) and all(map(same, before, after))
     return type(before) is type(after) and before == after
+
+
+def expect_band(submission, setting, value, right, *, source, help):
+    """Both ends of a band are right to 1 %; setting: (dof, runs, alpha)."""
+    names = ("lo", "hi")
+    ends = [kit.as_number(x, name) for x, name in zip(kit.as_tuple(value, names), names, strict=True)]
+    for actual, wanted, name in zip(ends, right, names, strict=True):
+        kit.expect_close(
+            actual,
+            wanted,
+            rel=0.01,
+            source=source,
+            quantity=name,
+            input=dict(zip(("dof", "runs", "alpha"), setting, strict=True)),
+            message=f"`{name}` of the band is off by more than 1 %.",
+            help=help,
+            diagnose=lambda: probes.of_band(submission, setting, ends, right),
+        )
 
 
 def expect_coverage(submission, y, lo, hi):
@@ -186,7 +204,7 @@ def expect_energies(submission, q, v, energy):
     def checked(q, v):
         if np.shape(q) != (d,) or np.shape(v) != (d,):
             kit.fail(
-                "Your code calls energy with something other than one position and one velocity.",
+                "Your code calls energy with arguments of another shape than one position and one velocity.",
                 help=f"Call energy(q[i], v[i]): two arrays of shape ({d},) here.",
                 diagnose=probes.named(
                     "WHOLE_ARRAYS" if max(np.size(q), np.size(v)) > d else "ENERGY_OF_ONE_SHAPE"

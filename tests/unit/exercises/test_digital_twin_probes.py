@@ -246,7 +246,7 @@ def test_noise_that_repeats_itself_far_later_is_not_independent():
 
     with pytest.raises(kit.CheckFailed) as failed:
         sensor_bundles.expect_gyroscope_draws(Fake("imu", tiled), 5, 0.02)
-    assert "not independent" in failed.value.finding.message
+    assert "are correlated" in failed.value.finding.message
     for seed in range(20):
         sensor_bundles.expect_gyroscope_draws(Fake(), seed, 0.02)
 

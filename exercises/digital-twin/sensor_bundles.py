@@ -214,10 +214,10 @@ def expect_gyroscope_draws(submission, seed, dt):
     )
     for a, c, name in zip(first, other, ("of the noise (measured - bias)", "of the bias steps"), strict=True):
         kit.expect_true(
-            not bool(np.median(np.abs(a - c)) < 1e-9),
-            f"With two generators in different states, half {name} or more are the same.",
+            not bool(np.mean(np.abs(a - c) < 1e-9) > 0.01),  # of right ones, one in a million at most
+            f"With two generators in different states, some {name} are the same.",
             help="Draw a standard normal number of its own from rng for each sample and for each step.",
-            diagnose=lambda: sensors.of_randomness(submission),
+            diagnose=lambda: sensors.of_randomness(submission) or sensors.of_imu(submission, bias_first=True),
         )
     white, steps = first
     with np.errstate(all="ignore"):

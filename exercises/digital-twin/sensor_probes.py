@@ -142,8 +142,9 @@ def _of_bias(pairs, true):
     steps, measured = np.diff(biases[0]), pairs[2][0]
     if np.std(steps) == 0:
         return "BIAS_OUT_OF_STEP" if _wanders(measured - true) > 8 else "BIAS_CONSTANT"
-    if np.ptp(steps) < 1e-6 * abs(np.mean(steps)):
-        return "BIAS_DRIFTS"
+    held = np.mean(steps == 0) > 0.01
+    if held or np.ptp(steps) < 1e-6 * abs(np.mean(steps)):
+        return "BIAS_HELD" if held else "BIAS_DRIFTS"
     ten = _wanders(biases[0][_N // 2 :])  # what it does at first may have to do with where it starts
     if ten < 8:
         return "BIAS_NOT_RANDOM_WALK" if ten < 2 else "BIAS_PULLED_BACK"

@@ -20,13 +20,19 @@ EXACT = "a closed formula: only rounding is allowed"
 MEAN = systems.AveragePolynomial([0.0, 1.0])
 
 
+def _near(values, right):
+    """Whether numbers are these but for rounding."""
+    return bool(np.allclose(kit.as_array(values, np.shape(right), "the result"), right, rtol=1e-8, atol=1e-9))
+
+
 def expect_rmse(submission, e):
     """rmse agrees with the definition on these errors, and leaves them alone."""
     e = np.asarray(e)
+    right = math.sqrt(np.mean(np.square(e, dtype=float)))
     inspected = submission.call_inspect("rmse", e)
     kit.expect_close(
         inspected.value,
-        math.sqrt(np.mean(np.square(e, dtype=float))),
+        right,
         rel=1e-9,
         abs=1e-12,
         source=EXACT,
@@ -35,6 +41,7 @@ def expect_rmse(submission, e):
         input={"e": e},
         message="The root mean square error is wrong.",
         help="Square all the errors, average the squares, then take the root.",
+        diagnose=lambda: probes.of_whole(submission, "rmse", [e], lambda x: _near(x, right)),
     )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -59,6 +66,9 @@ def expect_bias_variance(submission, e):
             message=f"The {name} is wrong.",
             help="The bias is the mean; the variance is the mean square of what is left after subtracting "
             "it.",
+            diagnose=lambda: probes.of_whole(
+                submission, "bias_variance", [e], lambda pair: _near(pair, (np.mean(e), np.var(e)))
+            ),
         )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -143,6 +153,9 @@ def expect_coverage(submission, y, lo, hi):
         input={"y": y, "lo": lo, "hi": hi},
         message="The fraction of covered values is wrong.",
         help="Count the values with lo <= y <= hi, ends included, and divide by the number of values.",
+        diagnose=lambda: probes.of_whole(
+            submission, "coverage", [y, lo, hi], lambda x: _near(x, np.mean((lo <= y) & (y <= hi)))
+        ),
     )
     expect_left_alone(inspected, [y, lo, hi], ["y", "lo", "hi"])
 
@@ -169,6 +182,9 @@ def expect_normalised(submission, task, err, covariance, names):
         input={names[0]: err, names[1]: covariance},
         message="The normalised squared errors are wrong.",
         help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w.",
+        diagnose=lambda: probes.of_whole(
+            submission, task, [err, covariance], lambda rows: _near(rows, expected)
+        ),
     )
     expect_left_alone(inspected, [err, covariance], names)
 
@@ -218,15 +234,19 @@ def expect_energies(submission, q, v, energy):
     inspected = probe.during(lambda: submission.call_inspect("energy_error", q, v, probe))
     values = kit.as_vector(inspected.value, len(q), "the result")
     energies = np.array([energy(a, b) for a, b in zip(q, v, strict=True)])
+    right = (energies - energies[0]) / abs(energies[0])
     kit.expect_array(
         values,
-        (energies - energies[0]) / abs(energies[0]),
+        right,
         abs=1e-9,
         source=EXACT,
         quantity="energy error",
         input={"energies": energies},
         message="The relative error of the energy is wrong.",
         help="Compare every sample with the first, and divide by the absolute value of the first.",
+        diagnose=lambda: probes.of_whole(
+            submission, "energy_error", [q, v, energy], lambda errors: _near(errors, right)
+        ),
     )
     expect_left_alone(inspected, [q, v], ["q", "v"])
 

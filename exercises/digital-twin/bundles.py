@@ -27,7 +27,7 @@ def expect_clean(submission, task, args, names):
             )
     if inspected.shared:
         kit.fail(
-            "What the call returned is the caller's own array, not a new one.",
+            "What the call returned is the caller's own array or a part of it, not a new one.",
             diagnose=twins.named("RETURNS_ARGUMENT"),
         )
     return inspected.value

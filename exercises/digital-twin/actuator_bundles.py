@@ -9,12 +9,17 @@ import numpy as np
 from course.grading import kit
 
 actuators = kit.companion("digital-twin", "actuator_probes")
-expect_clean = kit.companion("digital-twin", "bundles").expect_clean
+bundles = kit.companion("digital-twin", "bundles")
+expect_clean = bundles.expect_clean
 
 
 def expect_play(submission, inputs, gap, states, outputs):
-    """``backlash`` from each of these states gives that output, as y and as the next state."""
-    values = submission.call_each("backlash", list(zip(inputs, [gap] * len(inputs), states, strict=True)))
+    """``backlash`` from each of these states gives that output, as y and as the next state.
+
+    gap: one for all, or one for each
+    """
+    gaps = np.broadcast_to(gap, len(inputs)).tolist()
+    values = submission.call_each("backlash", list(zip(inputs, gaps, states, strict=True)))
     pairs = [kit.as_tuple(value, ("y", "state_next")) for value in values]
     for column, name in enumerate(("y", "state_next")):
         kit.expect_array(
@@ -64,13 +69,35 @@ def expect_new_signal(submission, x, dt):
         expect_delayed(submission, value, x, dt, latency, expected)
 
 
+def motor_speed(w, u, dt, tau, u_max, dead):
+    """Where the lag takes a motor from the speed w."""
+    goal = float(np.clip(u, -u_max, u_max)) * (abs(u) > dead)
+    return goal + (w - goal) * math.exp(-dt / tau)
+
+
+def expect_motors(submission, first, second):
+    """Of two motors, single steps of the first, and of it with each number of the second in turn."""
+    calls = bundles.one_by_one(first, second)
+    kit.expect_array(
+        [kit.as_number(value, "w_next") for value in submission.call_each("motor_step", calls)],
+        [motor_speed(*call) for call in calls],
+        abs=1e-9,
+        source="rounding",
+        quantity="w",
+        units="rad/s",
+        input={"(w, u, dt, tau, u_max, deadband)": calls},
+        message="In single steps that differ in one number each, the speed of the motor is wrong.",
+        help="Apply in this order, with the numbers of this call: dead band, saturation, then the exact lag.",
+        diagnose=lambda: actuators.of_motor(submission),
+    )
+
+
 def expect_motor(submission, w, calls, message, source="rounding"):
     """A motor goes through these commands (u, dt, tau, u_max, deadband) as theory says, from the speed w."""
     found = submission.fold("motor_step", w, calls)[1:]
     expected = []
-    for u, dt, tau, u_max, dead in calls:
-        goal = float(np.clip(u, -u_max, u_max)) * (abs(u) > dead)
-        w = goal + (w - goal) * math.exp(-dt / tau)
+    for call in calls:
+        w = motor_speed(w, *call)
         expected.append(w)
     kit.expect_array(
         [kit.as_number(value, "w_next") for value in found],
@@ -142,5 +169,7 @@ def expect_slow_turns(submission, rng):
     for rate in rates:
         v, half = rng.uniform(0.2, 0.9), rng.choice([-1, 1]) * rate * track / 2
         calls.append((rng.uniform(-2, 2, 3), v - half, v + half, track, rng.uniform(0.5, 2.0)))
+    first, second = ((rng.uniform(-2, 2, 3), *rng.uniform(0.2, 0.8, 4)) for _ in range(2))
+    calls += bundles.one_by_one(first, second)
     for call, value in zip(calls, submission.call_each("diff_drive_step", calls), strict=True):
         expect_pose(submission, value, call[0], call[1:])

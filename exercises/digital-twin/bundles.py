@@ -9,6 +9,11 @@ twins = kit.companion("digital-twin", "twin_probes")
 CALIBRATED = "200 seeds of every correct solution, tests/benchmarks/calibration/digital-twin.md"
 
 
+def one_by_one(first, second):
+    """The call ``first``, then it with each argument of ``second`` in turn, so that none can be forgotten."""
+    return [first, *((*first[:i], other, *first[i + 1 :]) for i, other in enumerate(second))]
+
+
 def expect_clean(submission, task, args, names):
     """One call leaves its arguments alone and returns nothing that is theirs; its value."""
     inspected = submission.call_inspect(task, *args)
@@ -22,7 +27,7 @@ def expect_clean(submission, task, args, names):
             )
     if inspected.shared:
         kit.fail(
-            "What the call returned is the caller's own array, not a new one.",
+            "What the call returned is the caller's own array or a part of it, not a new one.",
             diagnose=twins.named("RETURNS_ARGUMENT"),
         )
     return inspected.value

@@ -85,7 +85,7 @@ def _expect_bias(submission, measured, bias, true, step, given):
         _SPREAD_SOURCE,
         "The std of the bias steps is not bias_random_walk * sqrt(dt).",
         ask,
-        quantity="std of the steps",
+        quantity="std of the bias steps",
         help="bias[k+1] = bias[k] + bias_random_walk * sqrt(dt) * a standard normal number.",
         input=given,
     )
@@ -235,12 +235,11 @@ def test_motor_response(submission):
 def test_motor_limits(submission):
     """Up to the limit of the dead band nothing happens, and a motor beyond u_max slows down gradually"""
     commands = (0.5, -0.5, 4.0, 0.52, -0.52)
-    message = (
-        "From a speed beyond u_max, with commands at the dead band's limit, the speed of the motor is wrong."
-    )
+    message = "In a series of commands from a speed beyond u_max, the speed of the motor is wrong."
     for sign in (1.0, -1.0):
         calls = [(sign * u, 0.1, 0.2, 10.0, 0.5) for u in commands]
         actuators.expect_motor(submission, sign * 25.0, calls, message)
+    actuators.expect_motors(submission, (1.0, 6.0, 0.1, 0.2, 5.0, 0.5), (2.0, 7.0, 0.3, 0.4, 4.0, 6.5))
 
 
 @pytest.mark.task("backlash")
@@ -261,6 +260,8 @@ def test_backlash_of_two(submission):
     states = [0.2, 4.9, 0.2, 4.9, 0.5, 5.0, 1.5, 4.5]
     outputs = [0.2, 4.9, 0.5, 4.9, 1.5, 4.5, 1.5, 4.5]
     actuators.expect_play(submission, inputs, 1.0, states, outputs)
+    gaps = [1.0, 0.4, 1.0, 1.0]  # one gear, and it with another gap, another input and another state
+    actuators.expect_play(submission, [2.0, 2.0, 3.0, 2.0], gaps, [0.0, 0.0, 0.0, 1.7], [1.5, 1.8, 2.5, 1.7])
 
 
 @pytest.mark.task("delay_line")

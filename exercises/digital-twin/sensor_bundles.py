@@ -56,7 +56,7 @@ def expect_counts(submission, counts, theta, counts_per_rev):
     )
     kit.expect_true(
         whole,
-        "The counts are not integers.",
+        "The counts have the wrong type.",
         input=given,
         diagnose=sensors.named("COUNTS_AS_FLOATS"),
     )
@@ -83,8 +83,8 @@ def expect_no_mean(values, spread, quantity, diagnose, **finding):
         source="the README's share of the std",
         quantity=f"mean of {quantity}",
         units="rad/s",
-        message="The mean of the noise or of the bias steps is not zero.",
-        help="A standard normal number is negative as often as positive; add nothing to it.",
+        message=f"The mean of {quantity} is not zero.",
+        help="Noise and bias steps are standard normal numbers times a factor: they go either way alike.",
         diagnose=diagnose,
         **finding,
     )
@@ -152,7 +152,9 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
             diagnose=lambda: sensors.of_imu(submission, bias_first=True),
         )
     ask = lambda: sensors.of_imu(submission, bias_first=True)  # noqa: E731
-    expect_no_mean(np.diff(bias), walk * math.sqrt(dt), "the steps", ask, input={"bias0": bias0, "dt": dt})
+    expect_no_mean(
+        np.diff(bias), walk * math.sqrt(dt), "the bias steps", ask, input={"bias0": bias0, "dt": dt}
+    )
 
 
 def expect_rate_kept(submission, true, dt, bias0, rng):
@@ -203,31 +205,21 @@ def expect_gyroscope_draws(submission, seed, dt):
     calls = [(np.zeros(n), dt, 0.01, 0.01, 0.0, np.random.default_rng(s)) for s in (seed, seed, seed + 1)]
     pairs = imu_pairs(submission, calls)
     first, again, other = ((measured - bias, np.diff(bias)) for measured, bias in pairs)
-    repeats = all(
-        # The noise and the walk, each by itself: told apart by subtraction, which rounds.
-        np.array_equal(a, b) and not bool(np.median(np.abs(a - c)) < 1e-9)
-        for a, b, c in zip(first, again, other, strict=True)
-    )
+    # The noise and the walk, each by itself: told apart by subtraction, which rounds.
     kit.expect_true(
-        repeats,
-        "The noise (measured - bias) or the bias does not depend on the generator, or not on it alone.",
-        help="Draw both from rng and from nothing else.",
+        all(np.array_equal(a, b, equal_nan=True) for a, b in zip(first, again, strict=True)),
+        "With two generators in the same state, the noise (measured - bias) or the bias steps differ.",
+        help="Draw both from rng itself and from nothing else, and keep nothing between two calls.",
         diagnose=lambda: sensors.of_randomness(submission),
     )
+    for a, c, name in zip(first, other, ("of the noise (measured - bias)", "of the bias steps"), strict=True):
+        kit.expect_true(
+            not bool(np.mean(np.abs(a - c) < 1e-9) > 0.01),  # of right ones, one in a million at most
+            f"With two generators in different states, some {name} are the same.",
+            help="Draw a standard normal number of its own from rng for each sample and for each step.",
+            diagnose=lambda: sensors.of_randomness(submission) or sensors.of_imu(submission, bias_first=True),
+        )
     white, steps = first
-    with np.errstate(all="ignore"):
-        alike = [_most_alike(*pair) for pair in ((white, steps), (white, white), (steps, steps))]
-    kit.expect_bounded(
-        max(alike) if np.all(np.isfinite(alike)) else math.nan,
-        high=0.12,
-        source="seven times the scatter of a correlation from 4000 samples; it is the largest of 16000",
-        quantity="largest correlation",
-        input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
-        message="The white noise and the bias steps are not independent of each other and of earlier "
-        "samples.",
-        help="Draw two arrays of standard normal numbers, and sum up only one of them.",
-        diagnose=lambda: sensors.of_imu(submission),
-    )
     sizes = ((white, 0.01 / math.sqrt(dt), "measured - bias"), (steps, 0.01 * math.sqrt(dt), "the steps"))
     for values, expected, name in sizes:
         kit.expect_close(
@@ -241,6 +233,19 @@ def expect_gyroscope_draws(submission, seed, dt):
             message="With white noise and a walk together, the std of one of them is wrong.",
             diagnose=lambda: sensors.of_imu(submission),
         )
+    with np.errstate(all="ignore"):
+        alike = [_most_alike(*pair) for pair in ((white, steps), (white, white), (steps, steps))]
+    kit.expect_bounded(
+        max(alike) if np.all(np.isfinite(alike)) else math.nan,
+        high=0.12,
+        source="seven times the scatter of a correlation from 4000 samples; it is the largest of 16000",
+        quantity="largest correlation",
+        input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
+        message="The white noise and the bias steps are correlated: with each other, or with what they were "
+        "some samples before.",
+        help="Draw two arrays of standard normal numbers, use each number once, and sum up only one array.",
+        diagnose=lambda: sensors.of_imu(submission),
+    )
 
 
 def recordings(rng, count, make):
@@ -297,7 +302,9 @@ def expect_fits(submission, cases):
                 "found": found[i],
             },
             message=f"From recordings at rest, fit_noise does not find `{key}`.",
-            help="Average over blocks of growing length and see how the spread of the means changes.",
+            help="bias0 is the mean of the first sqrt(3) N/K seconds or so."
+            if key == "bias0"
+            else "Average over blocks of growing length and see how the spread of the means changes.",
             diagnose=lambda column=column: looks[column](np.array(found)[:, column], cases),
         )
 
@@ -339,7 +346,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     kit.expect_true(
         bool(np.all(wide[~hits] == r_max)),
         "A beam that hits nothing does not read r_max exactly.",
-        help="Noise belongs to hits only.",
+        help="Without a hit the reading is r_max itself: noise belongs to hits only.",
         input=given,
         diagnose=ask,
     )
@@ -394,8 +401,14 @@ def expect_scan_draws(submission, seed):
     calls = [(np.zeros(3), _WALL, beams, 9.0, 0.05, np.random.default_rng(s)) for s in seeds]
     first, again, *others = (kit.as_vector(v, 20, "ranges") for v in submission.call_each("lidar", calls))
     kit.expect_true(
-        np.array_equal(first, again) and not np.any(np.all(first == others, axis=0)),
-        "Some readings do not depend on the generator, or not on it alone.",
-        help="Draw from rng and from nothing else.",
+        np.array_equal(first, again, equal_nan=True),
+        "With two generators in the same state, the readings differ.",
+        help="Draw from rng itself and from nothing else.",
+        diagnose=lambda: scanners.of_scan_draws(submission),
+    )
+    kit.expect_true(
+        not np.any(np.all(first == others, axis=0)),
+        "With four generators in different states, at least one reading of a hit is the same.",
+        help="Draw a standard normal number of its own from rng for each hit, and round no reading.",
         diagnose=lambda: scanners.of_scan_draws(submission),
     )

@@ -142,8 +142,9 @@ def _of_bias(pairs, true):
     steps, measured = np.diff(biases[0]), pairs[2][0]
     if np.std(steps) == 0:
         return "BIAS_OUT_OF_STEP" if _wanders(measured - true) > 8 else "BIAS_CONSTANT"
-    if np.ptp(steps) < 1e-6 * abs(np.mean(steps)):
-        return "BIAS_DRIFTS"
+    held = np.mean(steps == 0) > 0.01
+    if held or np.ptp(steps) < 1e-6 * abs(np.mean(steps)):
+        return "BIAS_HELD" if held else "BIAS_DRIFTS"
     ten = _wanders(biases[0][_N // 2 :])  # what it does at first may have to do with where it starts
     if ten < 8:
         return "BIAS_NOT_RANDOM_WALK" if ten < 2 else "BIAS_PULLED_BACK"
@@ -260,7 +261,7 @@ def of_draws(draws):
         return None  # nothing random in it
     if np.allclose(first, other, rtol=0.0, atol=1e-9):  # a difference of two numbers is rounded
         return named("GENERATOR_IGNORED")
-    return None if np.array_equal(first, again) else named("GLOBAL_RANDOMNESS")
+    return None if np.array_equal(first, again, equal_nan=True) else named("GLOBAL_RANDOMNESS")
 
 
 # -- fit_noise ------------------------------------------------------------------------------------------
@@ -293,10 +294,12 @@ def of_density(found, cases, walk=None):
             return named(code)
     if not (np.all(np.isfinite(found)) and np.all(found >= 0)):
         return None
-    larger = np.mean(found > right)
-    if 0.2 < larger < 0.8:
+    larger, smaller = np.mean(found > 1.03 * right), np.mean(found < right / 1.03)
+    if min(larger, smaller) > 0.2:
         return named("DENSITY_SCATTERS")
-    return named("DENSITY_TOO_LARGE" if larger > 0.5 else "DENSITY_TOO_SMALL")
+    if max(larger, smaller) > 0.5:
+        return named("DENSITY_TOO_LARGE" if larger > smaller else "DENSITY_TOO_SMALL")
+    return None
 
 
 def _all_near(found, values, rel):

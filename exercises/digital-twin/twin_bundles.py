@@ -74,7 +74,7 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
         quantity="rms error of the speed",
         units="m/s",
         input={"measurements": len(calls), "twin": twin},
-        message="The position is right, but the speed is further off than the README allows.",
+        message="The position is within its limit, but the speed is further off than the README allows.",
         help="Predict the speed from the drive and the friction, then correct it by a share of the surprise.",
         diagnose=ask,
     )
@@ -90,7 +90,8 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
             quantity="friction",
             units="1/s",
             input={"from": start, "to": stop, "sigma": twin["sigma"]},
-            message="Position and speed are right, but the friction is further off than the README allows.",
+            message="Position and speed are within their limits, but the mean friction over some seconds is "
+            "further off than the README allows.",
             help="Surprises that keep the same sign for long are often those of a wrong friction.",
             diagnose=ask,
         )
@@ -286,7 +287,8 @@ def expect_sync_closes_loop(submission, rng):
         units="m/s",
         input=given,
         message="A cart whose drive comes from the twin's friction does not get back to its speed.",
-        help="The drive changes from time to time: predict with the drive that the twin holds now.",
+        help="Its drive is the mean friction of the last 3 s times the target speed. Look at how friction is "
+        "learned, and predict with the drive that the twin holds now: it changes from time to time.",
         diagnose=ask,
     )
     kit.expect_close(
@@ -329,12 +331,14 @@ def expect_command_closes_loop(submission, rng):
         kit.expect_bounded(
             float(np.max(np.abs(drives))),
             high=100.0,
-            source="a hundred times what these carts need",
+            source="fifty times what these carts need",
             quantity="largest drive",
             units="m/s²",
             input={**given, "time": step * k, "speeds": v},
-            message="`command` asks for more than a hundred times the drive that the cart needs.",
-            help="A correction must be zero at the target speed, and push towards it on both sides.",
+            message="`command` asks for a drive of more than 100 m/s²; to hold its speed, a cart needs less "
+            "than 2.",
+            help="A correction must be zero at the target speed, push towards it on both sides, and be weak "
+            "enough for a command every 0.1 s.",
             diagnose=ask,
         )
         a = drives - b * v
@@ -353,7 +357,8 @@ def expect_command_closes_loop(submission, rng):
         source="the README's; " + CALIBRATED,
         quantity="speed over the last three seconds, as a share of the target",
         input={**given, "speeds": reached},
-        message="A cart that is driven by command does not hold its speed after its friction has changed.",
-        help="Compute the drive from the friction that the twin has learned and from the target speed.",
+        message="Over the last three seconds, a cart that is driven by command is not at its target speed.",
+        help="Compute the drive from the friction that the twin has learned and from the target speed; a "
+        "correction must push towards that speed, forwards and backwards.",
         diagnose=ask,
     )

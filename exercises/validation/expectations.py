@@ -20,13 +20,19 @@ EXACT = "a closed formula: only rounding is allowed"
 MEAN = systems.AveragePolynomial([0.0, 1.0])
 
 
+def _near(values, right):
+    """Whether numbers are these but for rounding."""
+    return bool(np.allclose(kit.as_array(values, np.shape(right), "the result"), right, rtol=1e-8, atol=1e-9))
+
+
 def expect_rmse(submission, e):
     """rmse agrees with the definition on these errors, and leaves them alone."""
-    e = np.asarray(e, dtype=float)
+    e = np.asarray(e)
+    right = math.sqrt(np.mean(np.square(e, dtype=float)))
     inspected = submission.call_inspect("rmse", e)
     kit.expect_close(
         inspected.value,
-        math.sqrt(np.mean(e**2)),
+        right,
         rel=1e-9,
         abs=1e-12,
         source=EXACT,
@@ -35,6 +41,7 @@ def expect_rmse(submission, e):
         input={"e": e},
         message="The root mean square error is wrong.",
         help="Square all the errors, average the squares, then take the root.",
+        diagnose=lambda: probes.of_whole(submission, "rmse", [e], lambda x: _near(x, right)),
     )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -42,7 +49,7 @@ def expect_rmse(submission, e):
 def expect_bias_variance(submission, e):
     """bias_variance agrees with the definition on these errors, and leaves them alone."""
     names = ("bias", "variance")
-    e = np.asarray(e, dtype=float)
+    e = np.asarray(e)
     inspected = submission.call_inspect("bias_variance", e)
     values = zip(kit.as_tuple(inspected.value, names), names, strict=True)
     bias, variance = (kit.as_number(x, name) for x, name in values)
@@ -59,6 +66,9 @@ def expect_bias_variance(submission, e):
             message=f"The {name} is wrong.",
             help="The bias is the mean; the variance is the mean square of what is left after subtracting "
             "it.",
+            diagnose=lambda: probes.of_whole(
+                submission, "bias_variance", [e], lambda pair: _near(pair, (np.mean(e), np.var(e)))
+            ),
         )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -112,6 +122,24 @@ def same(before, after):
     return type(before) is type(after) and before == after
 
 
+def expect_band(submission, setting, value, right, *, source, help):
+    """Both ends of a band are right to 1 %; setting: (dof, runs, alpha)."""
+    names = ("lo", "hi")
+    ends = [kit.as_number(x, name) for x, name in zip(kit.as_tuple(value, names), names, strict=True)]
+    for actual, wanted, name in zip(ends, right, names, strict=True):
+        kit.expect_close(
+            actual,
+            wanted,
+            rel=0.01,
+            source=source,
+            quantity=name,
+            input=dict(zip(("dof", "runs", "alpha"), setting, strict=True)),
+            message=f"`{name}` of the band is off by more than 1 %.",
+            help=help,
+            diagnose=lambda: probes.of_band(submission, setting, ends, right),
+        )
+
+
 def expect_coverage(submission, y, lo, hi):
     """coverage agrees with the definition, and leaves values and intervals alone."""
     inspected = submission.call_inspect("coverage", y, lo, hi)
@@ -125,6 +153,9 @@ def expect_coverage(submission, y, lo, hi):
         input={"y": y, "lo": lo, "hi": hi},
         message="The fraction of covered values is wrong.",
         help="Count the values with lo <= y <= hi, ends included, and divide by the number of values.",
+        diagnose=lambda: probes.of_whole(
+            submission, "coverage", [y, lo, hi], lambda x: _near(x, np.mean((lo <= y) & (y <= hi)))
+        ),
     )
     expect_left_alone(inspected, [y, lo, hi], ["y", "lo", "hi"])
 
@@ -151,6 +182,9 @@ def expect_normalised(submission, task, err, covariance, names):
         input={names[0]: err, names[1]: covariance},
         message="The normalised squared errors are wrong.",
         help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w.",
+        diagnose=lambda: probes.of_whole(
+            submission, task, [err, covariance], lambda rows: _near(rows, expected)
+        ),
     )
     expect_left_alone(inspected, [err, covariance], names)
 
@@ -186,7 +220,7 @@ def expect_energies(submission, q, v, energy):
     def checked(q, v):
         if np.shape(q) != (d,) or np.shape(v) != (d,):
             kit.fail(
-                "Your code calls energy with something other than one position and one velocity.",
+                "Your code calls energy with arguments of another shape than one position and one velocity.",
                 help=f"Call energy(q[i], v[i]): two arrays of shape ({d},) here.",
                 diagnose=probes.named(
                     "WHOLE_ARRAYS" if max(np.size(q), np.size(v)) > d else "ENERGY_OF_ONE_SHAPE"
@@ -200,15 +234,19 @@ def expect_energies(submission, q, v, energy):
     inspected = probe.during(lambda: submission.call_inspect("energy_error", q, v, probe))
     values = kit.as_vector(inspected.value, len(q), "the result")
     energies = np.array([energy(a, b) for a, b in zip(q, v, strict=True)])
+    right = (energies - energies[0]) / abs(energies[0])
     kit.expect_array(
         values,
-        (energies - energies[0]) / abs(energies[0]),
+        right,
         abs=1e-9,
         source=EXACT,
         quantity="energy error",
         input={"energies": energies},
         message="The relative error of the energy is wrong.",
         help="Compare every sample with the first, and divide by the absolute value of the first.",
+        diagnose=lambda: probes.of_whole(
+            submission, "energy_error", [q, v, energy], lambda errors: _near(errors, right)
+        ),
     )
     expect_left_alone(inspected, [q, v], ["q", "v"])
 

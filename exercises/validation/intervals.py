@@ -114,7 +114,7 @@ def expect_level(submission, rng, statistic):
 def _expect_chance(submission, ends, shown):
     first, same, other = ends
     kit.expect_true(
-        bool(np.array_equal(first, same)),
+        bool(np.array_equal(first, same, equal_nan=True)),
         "Two calls with the same arguments, and generators in the same state, give different intervals.",
         help="Take every random number from rng.",
         input=shown,

@@ -36,6 +36,14 @@ def callback(signature, fn):
     return kit.counted(checked)
 
 
+def of_whole(submission, task, args, fits):
+    """Whether an answer is wrong only where the arrays are of whole numbers; fits: whether one is right."""
+    if not any(isinstance(arg, np.ndarray) and arg.dtype.kind == "i" for arg in args):
+        return None
+    floats = [arg.astype(float) if isinstance(arg, np.ndarray) else arg for arg in args]
+    return named("WHOLE_NUMBERS") if kit.attempt(lambda: fits(submission.call(task, *floats))) else None
+
+
 # -- metrics --------------------------------------------------------------------------------------------
 
 

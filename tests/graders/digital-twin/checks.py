@@ -31,6 +31,11 @@ def test_encoder_turns(submission, rng):
     # More counts than sixteen bits hold, and angles that single precision does not tell apart.
     theta = np.append(theta, sensors.angles_beside_counts(rng.uniform(-1e5, 1e5, 40), per_turn))
     sensors.expect_counts(submission, submission.call("encoder", theta, per_turn), theta, per_turn)
+    # The same angles on a finer encoder: on it none of these is near to a whole count or a half either.
+    theta = sensors.angles_beside_counts(rng.uniform(-900, 900, 9), per_turn)
+    calls = [(theta, per_turn), (theta, 3 * per_turn)]
+    for (_, turn), counts in zip(calls, submission.call_each("encoder", calls), strict=True):
+        sensors.expect_counts(submission, counts, theta, turn)
 
 
 @pytest.mark.task("encoder")
@@ -53,6 +58,7 @@ def test_imu_white(submission, rng):
         (np.zeros(20000), dt, 10 ** rng.uniform(-3.5, -2.0), 0.0, float(rng.normal()), rng)
         for dt in (rng.uniform(0.002, 0.006), rng.uniform(0.05, 0.5))
     ]
+    calls.append((*calls[0][:2], 3 * calls[0][2], *calls[0][3:]))  # at the same rate, another density
     sensors.expect_white(submission, calls, 0.04, "eight times the scatter of a std from 20000 samples")
 
 
@@ -61,7 +67,9 @@ def test_imu_white(submission, rng):
 def test_imu_walk(submission, rng):
     """Over one sample and over ten, the bias wanders with the square root of time"""
     dt, walk = rng.uniform(0.004, 0.05), 0.01 * rng.uniform(0.5, 2.0)
-    sensors.expect_walk(submission, 20000, dt, walk, float(rng.normal()), rng)
+    bias0 = float(rng.normal())
+    for rate, strength in ((dt, walk), (2 * dt, walk), (dt, 3 * walk)):
+        sensors.expect_walk(submission, 20000, rate, strength, bias0, rng)
 
 
 @pytest.mark.task("imu")
@@ -100,7 +108,8 @@ def test_fit_noise_unknown(submission, rng):
 def test_fit_noise_inputs(submission, rng):
     """fit_noise leaves its recording alone"""
     still = scenes.recording(rng, 2000, 0.02, 0.002, 0.003, 0.5)
-    sensors.expect_density_of_short(submission, still, 0.02, 0.002)
+    for factor, dt in ((1.0, 0.02), (1.0, 0.08), (3.0, 0.02)):  # as long, at another rate, of another kind
+        sensors.expect_density_of_short(submission, factor * still, dt, factor * 0.002 * (dt / 0.02) ** 0.5)
 
 
 # -- lidar ----------------------------------------------------------------------------------------------
@@ -144,6 +153,10 @@ def test_motor_unknown(submission, rng):
     commands = rng.permutation([*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, *edges])
     calls = [(float(u), tau * float(rng.choice([0.1, 0.7, 2.0, 5.0])), tau, u_max, dead) for u in commands]
     actuators.expect_motor(submission, 0.3 * u_max, calls, _MOTOR)
+    first = 0.1 * u_max, 0.8 * u_max, 0.3 * tau, tau, 0.7 * u_max, dead
+    actuators.expect_motors(
+        submission, first, (0.2 * u_max, 0.6 * u_max, tau, 3 * tau, 0.6 * u_max, 0.9 * u_max)
+    )
 
 
 @pytest.mark.task("motor_step")
@@ -177,7 +190,10 @@ def test_delay_fractions(submission, rng):
     for samples in (rng.uniform(0.1, 0.9), rng.uniform(1.1, 6.9), rng.uniform(7.5, 15.5)):
         x, dt = rng.normal(1.0, 1.0, 30), rng.uniform(0.002, 0.5)
         cases.append((x, dt, samples * dt))
-    parts.expect_delays(submission, cases)
+    (x, dt, late), other = cases[1], rng.normal(1.0, 1.0, 30)
+    parts.expect_delays(
+        submission, [*cases, *bundles.one_by_one((x, dt, late), (other, 1.3 * dt, 1.17 * late))]
+    )
 
 
 @pytest.mark.task("delay_line")

@@ -7,6 +7,7 @@ import numpy as np
 from course.grading import kit
 
 actuators = kit.companion("digital-twin", "actuator_bundles")
+bundles = kit.companion("digital-twin", "bundles")
 scanners = kit.companion("digital-twin", "lidar_probes")
 rays = kit.sibling(__file__, "rays")
 
@@ -35,6 +36,8 @@ def expect_hall(submission, rng):
     angles = np.sort(rng.uniform(-3.1, 3.1, 40))
     calls = [(pose, walls, angles, r_max, 0.0, rng) for pose in poses]
     calls.append((poses[0], rays.long_before_short(poses[0], rng), angles, r_max, 0.0, rng))
+    others = poses[1], rays.hall(rng), rng.uniform(-3.1, 3.1, 40), 0.8 * r_max
+    calls += [(*call, 0.0, rng) for call in bundles.one_by_one(calls[0][:4], others)]
     message = "In an unknown hall, without noise, a distance is wrong."
     for call, value in zip(calls, submission.call_each("lidar", calls), strict=True):
         expect_ranges(submission, value, *call[:4], message)
@@ -74,6 +77,10 @@ def expect_swings(submission, rng):
             outputs.append(side * (1 + part) * gap)
             inputs.append(outputs[-1] + side * gap / 2)
     actuators.expect_play(submission, inputs, gap, states, outputs)
+    calls = bundles.one_by_one((2.0, gap, 0.0), (3.0, 0.5 * gap, 2.1))
+    inputs, gaps, states = map(list, zip(*calls, strict=True))
+    outputs = [float(np.clip(y, x - play / 2, x + play / 2)) for x, play, y in calls]
+    actuators.expect_play(submission, inputs, gaps, states, outputs)
 
 
 def expect_delays(submission, cases):

@@ -28,6 +28,13 @@ def expect_normalised(submission, task, rng, shapes, names):
         shared.expect_normalised(submission, task, *_errors(rng, d, rows), names)
 
 
+def expect_whole(submission, task, rng, names):
+    """The same where every error and every covariance is a whole number."""
+    factors = rng.integers(-3, 4, (5, 2, 2))
+    covariance = factors @ factors.transpose(0, 2, 1) + 2 * np.eye(2, dtype=int)
+    shared.expect_normalised(submission, task, rng.integers(-9, 10, (5, 2)), covariance, names)
+
+
 def _errors(rng, d, rows):
     """Errors and their covariances; components differ in size by up to a hundred."""
     sizes = 10.0 ** rng.uniform(-1, 1, d)

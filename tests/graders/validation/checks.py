@@ -35,6 +35,7 @@ def test_rmse_anything(submission, rng):
     shared.expect_rmse(
         submission, np.append(rng.standard_normal(30), rng.choice([-1, 1]) * rng.uniform(9, 90))
     )
+    shared.expect_rmse(submission, rng.integers(-90, 90, 15))  # whole numbers
 
 
 @pytest.mark.task("bias_variance")
@@ -44,6 +45,7 @@ def test_bias_variance_scatter(submission, rng):
     e = rng.uniform(0.1, 3) * rng.standard_exponential(rng.integers(7, 40))
     for mean in (rng.uniform(0.2, 2), -rng.uniform(0.2, 2)):  # a bias without its sign shows in the second
         shared.expect_bias_variance(submission, e - np.mean(e) + mean)
+    shared.expect_bias_variance(submission, rng.integers(-90, 90, 15))
 
 
 @pytest.mark.task("bias_variance")
@@ -89,6 +91,7 @@ def test_nees_correlated(submission, rng):
 def test_nees_shapes(submission, rng):
     """NEES of one component, of as many rows as there are components, and of a single row"""
     cases.expect_normalised(submission, "nees", rng, [(1, 12), (4, 4), (3, 1)], ("err", "P"))
+    cases.expect_whole(submission, "nees", rng, ("err", "P"))
 
 
 @pytest.mark.task("nis")
@@ -96,6 +99,7 @@ def test_nees_shapes(submission, rng):
 def test_nis_correlated(submission, rng):
     """NIS with correlated innovations in components of very different sizes, and of a single one"""
     cases.expect_normalised(submission, "nis", rng, [(2, 25), (3, 3), (2, 1)], ("nu", "S"))
+    cases.expect_whole(submission, "nis", rng, ("nu", "S"))
 
 
 @pytest.mark.task("consistency_band")
@@ -108,6 +112,9 @@ def test_consistency_band_sweep(submission, rng):
             rng.integers(1, 8, 8), rng.integers(2, 60, 8), rng.uniform(0.01, 0.2, 8), strict=True
         )
     ]
+    # And some that agree in two of the three with the first.
+    dof, count, alpha = settings[0]
+    settings += [(dof + 1, count, alpha), (dof, 2 * count, alpha), (dof, count, 0.5 * (alpha + 0.2))]
     _expect_bands(submission, settings)
 
 
@@ -119,26 +126,15 @@ def test_consistency_band_one_run(submission, rng):
 
 
 def _expect_bands(submission, settings):
-    names = ("lo", "hi")
-    for (dof, count, alpha), value in zip(
-        settings, submission.call_each("consistency_band", settings), strict=True
-    ):
-        ends = [kit.as_number(x, name) for x, name in zip(kit.as_tuple(value, names), names, strict=True)]
-        right = formulas.exactly()(dof, count, alpha)
-        for actual, wanted, name in zip(ends, right, names, strict=True):
-            kit.expect_close(
-                actual,
-                wanted,
-                rel=0.01,
-                source="the contract's 1 %; Wilson and Hilferty's formula is off by at most 0.7 % here",
-                quantity=name,
-                input={"dof": dof, "runs": count, "alpha": alpha},
-                message="The band is not that of an average of chi-square values.",
-                help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
-                diagnose=lambda ends=ends, right=right, given=(dof, count, alpha): probes.of_band(
-                    submission, given, ends, right
-                ),
-            )
+    for setting, value in zip(settings, submission.call_each("consistency_band", settings), strict=True):
+        shared.expect_band(
+            submission,
+            setting,
+            value,
+            formulas.exactly()(*setting),
+            source="the contract's 1 %; Wilson and Hilferty's formula is off by at most 0.7 % here",
+            help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
+        )
 
 
 @pytest.mark.task("coverage")
@@ -197,6 +193,8 @@ def test_energy_error_signs(submission, rng):
     shared.expect_energies(submission, q, v, lambda q, v: float(0.5 * v @ v - mu / math.hypot(*q)))
     q, v = rng.uniform(-1, 1, (7, 1)), rng.uniform(1, 2, (7, 1))
     k = rng.uniform(1, 5)
+    whole = rng.integers(1, 9, (6, 2)), rng.integers(-9, 9, (6, 2))
+    shared.expect_energies(submission, *whole, lambda q, v: float(0.5 * v @ v - mu / math.hypot(*q)))
     for size in (1.0, 10.0 ** rng.uniform(-6, -3)):  # a grain has little energy, and it counts in full
         shared.expect_energies(submission, q, v, lambda q, v, s=size: float(s * (v @ v + k * q @ q) / 2))
 

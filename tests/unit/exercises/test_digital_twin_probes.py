@@ -246,9 +246,56 @@ def test_noise_that_repeats_itself_far_later_is_not_independent():
 
     with pytest.raises(kit.CheckFailed) as failed:
         sensor_bundles.expect_gyroscope_draws(Fake("imu", tiled), 5, 0.02)
-    assert "not independent" in failed.value.finding.message
+    assert "are correlated" in failed.value.finding.message
     for seed in range(20):
         sensor_bundles.expect_gyroscope_draws(Fake(), seed, 0.02)
+
+
+@pytest.mark.parametrize("held", [2, 10])
+def test_a_bias_that_is_held_is_told_by_the_steps_that_are_the_same(held):
+    def imu(true, dt, density, walk, bias0, rng):
+        _, bias = right.imu(true, held * dt, density, walk, bias0, rng)
+        bias = np.repeat(bias, held)[: len(true)]
+        return true + bias + density / math.sqrt(dt) * rng.standard_normal(len(true)), bias
+
+    with pytest.raises(kit.CheckFailed) as failed:
+        sensor_bundles.expect_gyroscope_draws(Fake("imu", imu), 5, 0.02)
+    assert "some of the bias steps are the same" in failed.value.finding.message
+    assert failed.value.finding.diagnosis == "BIAS_HELD"
+
+
+def test_a_noise_that_is_not_finite_is_not_said_to_differ_with_the_same_generator():
+    def imu(*args):
+        measured, bias = right.imu(*args)
+        measured[0] = math.nan
+        return measured, bias
+
+    with pytest.raises(kit.CheckFailed) as failed:
+        sensor_bundles.expect_gyroscope_draws(Fake("imu", imu), 5, 0.02)
+    assert "std of one of them" in failed.value.finding.message
+
+
+def test_densities_that_are_right_are_not_said_to_be_too_small():
+    found, cases = np.tile([1.0 - 1e-4, 1.1], 4), [(np.ones(9), 0.01, 1.0)] * 8
+    assert sensors.of_density(found, cases) is None
+    assert sensors.of_density(np.tile([0.9, 1.1], 4), cases).code == "DENSITY_SCATTERS"
+
+
+def test_calls_in_a_row_change_one_argument_each():
+    bundles = kit.companion("digital-twin", "bundles")
+    assert bundles.one_by_one((1, 2), (3, 4)) == [(1, 2), (3, 2), (1, 4)]
+
+
+@pytest.mark.parametrize("key", range(3))
+def test_a_gear_that_looks_its_answer_up_by_two_of_three_arguments_is_caught(key):
+    known = {}
+
+    def backlash(*args):
+        return known.setdefault(args[:key] + args[key + 1 :], right.backlash(*args))
+
+    parts = kit.sibling(ROOT / "tests/graders/digital-twin/checks.py", "parts")
+    with pytest.raises(kit.CheckFailed):
+        parts.expect_swings(Fake("backlash", backlash), np.random.default_rng(3))
 
 
 def test_the_room_of_the_checks_reads_as_the_model_solution_sees_it():

@@ -419,6 +419,21 @@ def test_a_band_that_is_near_is_told_from_one_that_is_not(factor, expected):
     assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected
 
 
+def test_an_array_of_the_type_of_whole_numbers_is_recognised():
+    def nees(err, covariance):
+        result = np.zeros_like(err[:, 0])
+        result[:] = np.einsum("ni,nij,nj->n", err, np.linalg.inv(covariance), err)
+        return result
+
+    solution, whole = Fake(), [np.array([[3, 0], [1, 4]]), np.array([[[2, 1], [1, 3]], [[5, -2], [-2, 4]]])]
+    solution.set("nees", nees)
+    right = np.einsum("ni,nij,nj->n", whole[0], np.linalg.inv(whole[1]), whole[0])
+    fits = lambda rows: np.allclose(rows, right)  # noqa: E731
+    assert code(probes.of_whole(solution, "nees", whole, fits)) == "WHOLE_NUMBERS"
+    assert probes.of_whole(solution, "nees", [part.astype(float) for part in whole], fits) is None
+    assert probes.of_whole(solution, "nees", whole, lambda rows: np.allclose(rows, 2 * right)) is None
+
+
 def test_a_band_without_alpha_and_a_symmetric_one_are_recognised():
     right = formulas.exactly()(2, 20, 0.05)
     for ends, again, expected in (

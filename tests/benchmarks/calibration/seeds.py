@@ -36,7 +36,7 @@ from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
 from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
 from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.explain.words import STATE  # noqa: E402
+from course.scoring.explain.words import OWN_WORDS  # noqa: E402
 from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
 from course.scoring.judging.terms import Terms  # noqa: E402
 from course.scoring.verdict import Status  # noqa: E402
@@ -152,7 +152,7 @@ def _grade(session: Seeded, program: Program, first: int) -> tuple[int, int]:
     verdict = session.grade(submission)
     short = _told(program, first, verdict)
     ends = any(c.status in {Status.TIMEOUT, Status.MEMORY, Status.CRASH} for c in verdict.checks)
-    keeps = any(c.diagnosis in STATE for c in verdict.checks)
+    keeps = any(c.diagnosis in OWN_WORDS for c in verdict.checks)
     session.here, checks = not (ends or keeps), session.checks_of(program.tasks)
     count = min(program.seeds, _ENDING) if ends else program.seeds if checks else 1
     for seed in range(first + 1, first + count):

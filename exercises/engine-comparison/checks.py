@@ -244,7 +244,18 @@ def test_choose_by_numbers(submission, draw):
                (("cork", 5.0), ("anvil", 8.0), ("balsa", 1.0))}  # fmt: skip
     needs = [need("order", ">=", 2), need("linear_damping", "<=", 0.5)]
     swapped = {"balsa": reports["anvil"], "ode": reports["balsa"], "mujoco": reports["cork"]}
-    told = asked(draw, [(reports, needs, "cork"), (swapped, needs, "mujoco")])
+    # One requirement and three names, with the reports passed round: whoever keeps answers by names is wrong.
+    alike = [need("order", ">=", 2)]
+    passed = {"cork": reports["balsa"], "anvil": reports["cork"], "balsa": reports["anvil"]}
+    told = asked(
+        draw,
+        [
+            (reports, needs, "cork"),
+            (swapped, needs, "mujoco"),
+            (reports, alike, "cork"),
+            (passed, alike, "anvil"),
+        ],
+    )
     # Famous names that fit and are not the cheapest; these names stay in a grading run.
     told += [
         ({name: reports["anvil"], "kifo": reports["cork"], "zaru": reports["balsa"]}, needs, "kifo")

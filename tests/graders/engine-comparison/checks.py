@@ -119,6 +119,7 @@ def _questions(seed):
     return {
         "plain": [
             *telling[:8],
+            *map(choices.passed_round, telling[:2]),
             choices.at_the_limit(rng, truths),
             choices.beyond_the_limit(rng, truths),
             choices.other_types(rng, truths),

@@ -149,7 +149,7 @@ def _game(rng):
     return {
         "dt": 1 / 60,
         "step": boxes.semi_implicit_euler,
-        "damping": _between(rng, 1.3, 2.2),
+        "damping": _between(rng, 1.3, 1.7),
         "cone": boxes.square_pyramid,
         "grip": _between(rng, 0.5, 0.9),
         "creep": _between(rng, 0.003, 0.005),
@@ -217,7 +217,7 @@ def _unbreakable(rng):
     return {
         "dt": 1 / 60,
         "step": implicit_euler,
-        "damping": _between(rng, 1.3, 2.2),
+        "damping": _between(rng, 1.8, 2.2),
         "cone": boxes.diamond_pyramid,
         "grip": _between(rng, 0.8, 1.3),
         "restitution": _between(rng, 0.3, 0.55),

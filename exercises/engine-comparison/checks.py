@@ -161,6 +161,7 @@ def test_choose_by_report(submission, draw):
             (_priced(cork=4.0, anvil=4.1, balsa=1.0), needs, "cork"),
             (_priced(cork=7.1, anvil=7.0, balsa=1.0), needs, "anvil"),
             (_priced(cork=7.0 + 1e-9, anvil=7.0, balsa=1.0), needs, "anvil"),
+            (_priced(cork=7.0, anvil=7.0 + 1e-9, balsa=1.0), needs, "cork"),
             (_priced(cork=0.0, anvil=7.0, balsa=1e-9), needs, "cork"),
             (reports, [], "balsa"),
             (reports, [need("order", ">=", 2)], "cork"),
@@ -185,6 +186,7 @@ def test_choose_by_report(submission, draw):
     # Whole costs of which floats are the same: these stay in a grading run.
     dear = _priced(cork=2**53 + 1, anvil=2**53, balsa=1)
     close = [(given, needs, "anvil") for given in (dear, dict(reversed(dear.items())))]
+    close.append((_priced(cork=2**53, anvil=2**53 + 1, balsa=1), needs, "cork"))
     choosing.expect_choices(submission, [*told, *turned, *close])
 
 
@@ -244,7 +246,18 @@ def test_choose_by_numbers(submission, draw):
                (("cork", 5.0), ("anvil", 8.0), ("balsa", 1.0))}  # fmt: skip
     needs = [need("order", ">=", 2), need("linear_damping", "<=", 0.5)]
     swapped = {"balsa": reports["anvil"], "ode": reports["balsa"], "mujoco": reports["cork"]}
-    told = asked(draw, [(reports, needs, "cork"), (swapped, needs, "mujoco")])
+    # One requirement and three names, with the reports passed round: whoever keeps answers by names is wrong.
+    alike = [need("order", ">=", 2)]
+    passed = {"cork": reports["balsa"], "anvil": reports["cork"], "balsa": reports["anvil"]}
+    told = asked(
+        draw,
+        [
+            (reports, needs, "cork"),
+            (swapped, needs, "mujoco"),
+            (reports, alike, "cork"),
+            (passed, alike, "anvil"),
+        ],
+    )
     # Famous names that fit and are not the cheapest; these names stay in a grading run.
     told += [
         ({name: reports["anvil"], "kifo": reports["cork"], "zaru": reports["balsa"]}, needs, "kifo")

@@ -69,6 +69,9 @@ def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:
 
 def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers: list[Any]) -> Any:
     """Whether the choices follow chance, the names or the order, rather than what was measured."""
+    wrong = [(q, answer) for q, answer in zip(questions, answers, strict=True) if answer != q[2]]
+    if any(_follows_what_was_asked(submission, reports, needs) for (reports, needs, _), _ in wrong[:3]):
+        return named("ANSWERS_VARY")
     others = (
         *[("ANSWERS_VARY", lambda reports, needs: ((reports, needs), {}))] * 2,
         ("DEPENDS_ON_NAMES", _renamed),
@@ -86,10 +89,27 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
             return named(code)
     if all(answer is None for answer in answers) and _never_chooses(submission):
         return named("NEVER_CHOOSES")
-    wrong = [(q, answer) for q, answer in zip(questions, answers, strict=True) if answer != q[2]]
     if all(_not_measured(reports, needs, answer) for (reports, needs, _), answer in wrong):
         return named("IGNORES_MISSING")
     return named("NOTHING_FITS") if all(expected is None for (_, _, expected), _ in wrong) else None
+
+
+def _follows_what_was_asked(submission: Any, reports: Any, needs: Any) -> bool:
+    """Whether a question is answered otherwise after one with the same names and other reports.
+
+    Every name is new, so that only the question before it differs; three times each, since chance may decide.
+    """
+    passed = dict(zip(reports, [*reports.values()][1:] + [*reports.values()][:1], strict=True))
+    found = []
+    for marks, before in ((("la", "le", "li"), []), (("na", "ne", "ni"), [passed])):
+        for mark in marks:
+            other = {name: f"{mark}{number}" for number, name in enumerate(reports)}
+            told = [_called(asked, needs, other) for asked in [*before, reports]]
+            answers = kit.attempt(lambda told=told: submission.call_each(TASK, [asked for asked, _ in told]))
+            if answers is None:
+                return False
+            found.append(_back(answers[-1], told[-1][1]))
+    return len(set(found[:3])) == len(set(found[3:])) == 1 and found[0] != found[3]
 
 
 def _not_measured(reports: Any, needs: Any, answer: Any) -> bool:

@@ -77,7 +77,7 @@ def expect_complete(listed: list[dict[str, Any]]) -> None:
         if pairs.count(pair) != 1:
             missing = pairs.count(pair) == 0
             kit.fail(
-                "The list is not complete." if missing else "The list has an entry twice.",
+                "The list is not complete." if missing else "The list has more than one entry for a pair.",
                 diagnose=named("PAIR_MISSING" if missing else "PAIR_TWICE"),
                 expected="one entry",
                 actual={"/".join(pair): pairs.count(pair)},

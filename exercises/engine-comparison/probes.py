@@ -35,12 +35,26 @@ def of_key(key: str, cases: list[Any]) -> Any:
     with np.errstate(all="ignore"):
         probes = [("REPORT_WITHOUT_RUNS", _not_run), *_PROBES[key]]
         if key in probing.TOLERANCES:
-            probes.insert(1, ("VALUE_ROUNDED", probing.rounded))
+            probes[1:1] = [("VALUE_KEPT", _kept), ("VALUE_ROUNDED", probing.rounded)]
         return next((named(code) for code, looks in probes if looks(key, cases)), None)
 
 
 def _not_run(_: str, cases: list[Any]) -> bool:
     return any(not case.runs for case in cases)
+
+
+def _kept(key: str, cases: list[Any]) -> bool:
+    """Each wrong value is, to the last digit, that of an earlier engine which shows the same numbers and for
+    which it is right. Two engines may both have a 0, or both have no limit."""
+    wrong = [n for n, case in enumerate(cases) if not probing.right(key, case)]
+    return all(
+        any(
+            cases[n].measured(key) == other.measured(key) and cases[n].box.info() == other.box.info()
+            for other in cases[:n]
+            if probing.right(key, other) and 0 < math.fabs(other.measured(key)) < math.inf
+        )
+        for n in wrong
+    )
 
 
 # -- order ------------------------------------------------------------------------------------------------
@@ -205,6 +219,16 @@ def _where_damped(looks: Callable[[float, float], bool]) -> Probe:
 # -- the largest stable step ------------------------------------------------------------------------------
 
 
+def _beyond_the_first(key: str, cases: list[Any]) -> bool:
+    """Wrong limits are of engines that are stable again beyond the first unstable range, and lie in the
+    second half of that range or beyond it."""
+    wrong = [case for case in cases if not probing.right(key, case)]
+    return all(
+        probing.recovers(case) and case.truth[key] + 0.5 / case.box.omega < case.measured(key) < math.inf
+        for case in wrong
+    )
+
+
 def _no_zero(key: str, cases: list[Any]) -> bool:
     """Engines that are never stable get a limit, and the others are right or nearly so."""
     never = [case for case in cases if case.truth[key] == 0]
@@ -268,7 +292,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
     ],
     "max_stable_step": [
         ("TOLERANCE_TOO_TIGHT", probing.where(probing.keeps_area, lambda value, t: value < 0.9 * t)),
-        ("LIMIT_FROM_ABOVE", probing.where(probing.recovers, lambda value, t: t < value < math.inf)),
+        ("LIMIT_FROM_ABOVE", _beyond_the_first),
         ("LIMIT_NEVER_SEEN", probing.infinite),
         ("NO_ZERO", _no_zero),
         ("NO_INFINITY", probing.where(probing.endless("max_stable_step"), lambda value, _: value > 0)),

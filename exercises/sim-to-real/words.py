@@ -98,7 +98,7 @@ def box_of(plan):
             "The randomisation box does not give an interval for each parameter.",
             diagnose=named("BOX_LACKS"),
             expected=list(cart.NAMES),
-            actual=box,
+            actual=list(box) if isinstance(box, dict) else box,
         )
     found = {}
     for name in cart.NAMES:

@@ -9,7 +9,7 @@ def tune(estimate, randomization):
         kp, kd = np.exp(z)
         return float(rollout(kp, kd, carts, np.random.default_rng(5)).mean())
 
-    kp, kd = (x.ravel() for x in np.meshgrid(np.geomspace(3, 40, 8), np.geomspace(1.5, 20, 8)))
+    kp, kd = (x.ravel() for x in np.meshgrid(np.geomspace(3, 40, 12), np.geomspace(1.5, 20, 12)))
     few = {k: x[:60] for k, x in carts.items()}
     k = rollout(kp, kd, few, np.random.default_rng(5)).mean(axis=0).argmin()
     z = np.log([kp[k], kd[k]])

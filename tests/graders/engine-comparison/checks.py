@@ -119,6 +119,7 @@ def _questions(seed):
     return {
         "plain": [
             *telling[:8],
+            *map(choices.passed_round, telling[:2]),
             choices.at_the_limit(rng, truths),
             choices.beyond_the_limit(rng, truths),
             choices.other_types(rng, truths),
@@ -184,7 +185,7 @@ def test_facts_licences(submission):
         text = kit.as_text(entry["value"], "a licence")
         if not facts.right_licence(engine, text):
             kit.fail(
-                "A licence is not right.",
+                f"The licence of {engine} is not right.",
                 help="Read the licence file in the engine's present repository.",
                 diagnose=lambda engine=engine, text=text: _of_licence(engine, text),
                 input={"engine": engine},
@@ -194,7 +195,7 @@ def test_facts_licences(submission):
         day = listing.date_of(entry)
         if engine in facts.SINCE and day is not None and day < facts.SINCE[engine]:
             kit.fail(
-                "A licence has a date on which the engine had another licence.",
+                f"The licence of {engine} has a date on which the engine had another licence.",
                 diagnose=named("DATE_BEFORE_FACT"),
                 input={"engine": engine},
                 expected=f"{facts.SINCE[engine]} or later",

@@ -156,6 +156,14 @@ def famous(questions):
     return told
 
 
+def passed_round(question):
+    """The same names and requirements, with the reports passed on from each name to the one before it."""
+    reports, needs, _ = question
+    names, passed = list(reports), [*reports.values()]
+    others = dict(zip(names, passed[1:] + passed[:1], strict=True))
+    return others, needs, choosing.choose(others, needs)
+
+
 def beyond_reach(rng, truths):
     """A question that no engine meets, though each requirement alone is met by some."""
     reports = reports_of(rng, truths)

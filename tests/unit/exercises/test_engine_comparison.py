@@ -102,6 +102,31 @@ def test_stability_is_lost_for_long_enough_to_be_seen_and_found_again():
         assert gaps[0][0] - lost[0] > 1.0  # the width the README promises, in units of 1/omega
 
 
+def test_engines_that_show_the_same_numbers_differ_inside():
+    for seed in range(20):
+        shown = [box.info() for box in lab.population(seed)]
+        alike = [pair for pair in itertools.combinations(range(8), 2) if shown[pair[0]] == shown[pair[1]]]
+        assert len(alike) == 3
+        known = [(lab.truths(seed)[first], lab.truths(seed)[second]) for first, second in alike]
+        for key in bench.KEYS:
+            if key not in ("rest_penetration", "deterministic"):  # another value, or one that is far enough
+                assert any(one[key] != other[key] for one, other in known), (seed, key)
+        assert any(abs(one["linear_damping"] / other["linear_damping"] - 1) > 0.02
+                   for one, other in known if other["linear_damping"])  # fmt: skip
+
+
+@pytest.mark.parametrize(("kept", "code"), [(True, "VALUE_KEPT"), (False, None)])
+def test_a_value_is_called_kept_only_where_it_is_that_of_an_engine_that_shows_the_same(kept, code):
+    twin = dataclasses.replace(boxes.BALSA, damping=2.1)
+    other = twin if kept else dataclasses.replace(twin, omega=2.5)
+    found = cases_of(dict)
+    truth = {**boxes.TRUTH["balsa"], "linear_damping": 2.1}
+    found.append(bench.Case("twin", other, truth, runs=found[0].runs, report=dict(boxes.TRUTH["balsa"])))
+    with pytest.raises(kit.CheckFailed) as failed:
+        judging.expect_key(found, "linear_damping", 0)
+    assert failed.value.finding.diagnosis == code
+
+
 @pytest.mark.parametrize("number", [0, 3, 7])
 def test_the_tunnelling_speed_is_where_brute_force_first_gets_through(number):
     box, truth = lab.population(5)[number], lab.truths(5)[number]["tunnelling_speed"]
@@ -219,6 +244,9 @@ def test_a_number_that_is_nan_or_off_is_not_accepted(key):
         ("tunnelling_speed", lambda t: min(t["tunnelling_speed"], 200.0), "TUNNEL_NO_INFINITY"),
         ("tunnelling_speed", lambda t: math.inf, "TUNNEL_NEVER_SEEN"),
         ("tunnelling_speed", lambda t: 0.8 * t["tunnelling_speed"], None),
+        ("friction_anisotropy", lambda t: 1.0, "ANISOTROPY_ASSUMED"),  # no sign of rounding
+        ("friction_anisotropy", lambda t: float(round(t["friction_anisotropy"] + 0.2)), None),
+        ("max_stable_step", lambda t: round(t["max_stable_step"], 1), "VALUE_ROUNDED"),
         ("deterministic", lambda t: True, "DETERMINISM_ONE_RUN"),
         ("symplectic", lambda t: False, "SYMPLECTIC_NEVER"),
     ],

@@ -274,6 +274,31 @@ def test_a_mass_from_differences_is_told_so_and_any_other_wrong_mass_is_not(way)
     assert probes.of_misses(heavier, truths, recordings).code == "VALUES_OFF"
 
 
+def test_a_differentiated_speed_is_named_also_where_its_fit_leaves_a_time_at_the_edge():
+    recordings, truths = judge.public_recordings()
+    masses = [
+        bench.differentiated(u, y, {**truth, "tau": 0.15})[0]
+        for (_, u, y), truth in zip(recordings, truths, strict=True)
+    ]
+    edge = [
+        _with(m=lambda _, m=m: m, tau=lambda _: 0.15, lag=lambda p: 0.15 + p["latency"])(truth)
+        for m, truth in zip(masses, truths, strict=True)
+    ]
+    assert probes.of_values(edge, truths, recordings).code == "NOISE_DIFFERENTIATED"
+    right = [_with(tau=lambda _: 0.15, lag=lambda p: 0.15 + p["latency"])(truth) for truth in truths]
+    assert probes.of_values(right, truths, recordings).code == "PARAMETER_FIXED"
+
+
+def test_an_estimate_that_depends_on_the_calls_before_it_is_told_and_chance_is_not():
+    first = cart.with_intervals(cart.PUBLIC)
+    other = {name: [1.01 * number for number in entry] for name, entry in first.items()}
+    judge.expect_forgetful(first, first, first)
+    judge.expect_forgetful(first, other, other)  # two in a row differ: drawn anew
+    with pytest.raises(kit.CheckFailed) as failed:
+        judge.expect_forgetful(first, first, other)
+    assert failed.value.finding.diagnosis == "ESTIMATE_KEPT"
+
+
 def test_what_is_exactly_at_a_limit_is_within_it():
     value = 1.1253945078486802
     entry = {"m": (value, value * 0.97, value * 1.03)}

@@ -269,6 +269,7 @@ class Mutant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         misconception: the belief behind such code.
         check: id of the check that must catch it.
         diagnosis: the code that check's finding must carry.
+        also: codes that it gets under other draws of a grading run and that are as true of it; "" for none.
     """
 
     file: str
@@ -276,6 +277,7 @@ class Mutant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     misconception: str
     check: str
     diagnosis: str
+    also: tuple[str, ...] = ()
 
 
 class MutantList(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

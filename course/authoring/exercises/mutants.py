@@ -134,7 +134,7 @@ def _judge_named(mutant: Mutant, named: CheckResult | None) -> tuple[Fault, ...]
         return (
             Fault(f"is not caught by {named.id}.", "Sharpen that check, or name the one that does.", "check"),
         )
-    if named.diagnosis != mutant.diagnosis:
+    if (named.diagnosis or "") not in (mutant.diagnosis, *mutant.also):
         return (
             Fault(
                 f"is diagnosed as {named.diagnosis} by {named.id} ({named.status}),"

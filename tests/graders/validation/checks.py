@@ -273,11 +273,13 @@ def test_validate_lag(submission, rng):
         # A sigma that covers everything leaves the lag alone to be found.
         sim = twins.simulated(recordings, late=late, sigma_factor=30.0)
         cases.expect_verdict(submission, rng, recordings, sim, late)
-    # Runs that swing far say more about the lag than others: the mean of their lags is another number.
-    recordings = cases.recordings(rng, count=3, dts=(0.02, 0.01), swings=(1.6, 0.4))
-    lates = rng.choice([-1, 1]) * (0.05 + np.array([1, -1, 0.3]) * rng.uniform(0.02, 0.03))
-    sim = twins.simulated(recordings, late=lates, sigma_factor=30.0)
-    cases.expect_verdict(submission, rng, recordings, sim, lates)
+    # Runs that swing far say more about the lag than others, and so do those of many samples: the mean of
+    # their lags, or of their mean squares, leads to another number.
+    for swings, apart in (((1.6, 0.4), 0.02), ((1.0,), 0.03)):
+        recordings = cases.recordings(rng, count=3, dts=(0.02, 0.01), swings=swings)
+        lates = rng.choice([-1, 1]) * (0.05 + np.array([1, -1, 0.3]) * (apart + rng.uniform(0.0, 0.01)))
+        sim = twins.simulated(recordings, late=lates, sigma_factor=30.0)
+        cases.expect_verdict(submission, rng, recordings, sim, lates)
     cases.expect_facts(submission, bundles.far_and_off(rng), cases.SPEC)
 
 

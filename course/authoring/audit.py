@@ -27,6 +27,7 @@ from course.ids import WARM_UPS
 from course.sandbox.scene.loading import FOLDER, read_scene, scene_ids
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from course.authoring.exercises.source import CheckSource
@@ -50,6 +51,7 @@ def audit(
     catalog: Catalog,
     only: str | None = None,
     *,
+    without: Collection[str] = (),
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
 ) -> AuditReport:
@@ -58,6 +60,7 @@ def audit(
     Args:
         catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
+        without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions.
 
@@ -70,6 +73,9 @@ def audit(
     findings = Findings(catalog.content.root)
     try:
         lessons, exercises = _chosen(catalog, only)
+        lessons, exercises = (
+            tuple(each for each in ids if each not in without) for ids in (lessons, exercises)
+        )
         if only is None:
             audit_syllabus(catalog, findings)
     except ContentError as error:

@@ -118,7 +118,7 @@ def oracle() -> Oracle:
 
 @pytest.fixture
 def run(mini: Path, oracle: Oracle, monkeypatch: pytest.MonkeyPatch) -> Callable[..., AuditReport]:
-    """Audit the copy with the oracle, and not the sandbox's scenes: no copy of a course has any of its own."""
+    """Audit the copy with the oracle, but for the sandbox's scenes: no course has any of its own."""
     monkeypatch.setattr("course.authoring.audit.scene_ids", lambda: ())
     return lambda only=None: audit(Catalog(content()), only, grade=oracle.grade)
 

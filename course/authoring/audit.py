@@ -27,6 +27,7 @@ from course.ids import WARM_UPS
 from course.sandbox.scene.loading import FOLDER, read_scene, scene_ids
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from course.authoring.exercises.source import CheckSource
@@ -50,6 +51,7 @@ def audit(
     catalog: Catalog,
     only: str | None = None,
     *,
+    without: Collection[str] = (),
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
 ) -> AuditReport:
@@ -58,6 +60,7 @@ def audit(
     Args:
         catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
+        without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions.
 
@@ -70,6 +73,9 @@ def audit(
     findings = Findings(catalog.content.root)
     try:
         lessons, exercises = _chosen(catalog, only)
+        lessons, exercises = (
+            tuple(each for each in ids if each not in without) for ids in (lessons, exercises)
+        )
         if only is None:
             audit_syllabus(catalog, findings)
     except ContentError as error:
@@ -82,7 +88,9 @@ def audit(
             audit_lesson(catalog, lesson_id, findings, links)
     questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
     scenes = _check_scenes(only, findings)
-    read = [_read(catalog, exercise_id, findings) for exercise_id in exercises]
+    whole: list[Exercise] = []
+    read = [_read(catalog, exercise_id, findings, whole) for exercise_id in exercises]
+    audit_style(catalog, whole, findings)
     candidates = [candidate for candidate in read if candidate is not None]
     if candidates and len(candidates) == len(read):
         _check_page(catalog, findings)
@@ -154,8 +162,12 @@ def _check_page(catalog: Catalog, findings: Findings) -> None:
         findings.add_error(error)
 
 
-def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate | None:
-    """Audit the files of an exercise; None if they are not fit for grading."""
+def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Exercise]) -> _Candidate | None:
+    """Audit the files of an exercise; None if they are not fit for grading.
+
+    Args:
+        whole: gets the exercise, if none of its files is missing or is not Python.
+    """
     own = Findings(findings.root)
     candidate = None
     try:
@@ -164,7 +176,7 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings) -> _Candidate 
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
             audit_diagnoses(catalog, exercise, own)
-            audit_style(catalog, exercise, own)
+            whole.append(exercise)
             proofs = plan(catalog, exercise, own)
             # Checks that lack a marker would only fail again, all at once and less clearly; and a diagnosis
             # without words breaks its check.

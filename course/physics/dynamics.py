@@ -81,13 +81,15 @@ class TwoLinkArm:
     def forward(self, q: ArrayLike, v: ArrayLike, torque: ArrayLike) -> Array:
         """Forward dynamics: joint accelerations (rad/s²) from joint torques (N m); all of shape (..., 2)."""
         q, v, torque = (np.asarray(x, dtype=float) for x in (q, v, torque))
-        m11, m12, m22 = self._inertias(q[..., 1])
+        m11, m12, m22 = self._inertias(_joints(q)[1])
         holding1, holding2 = self._holding(q, v)
-        rest1, rest2 = torque[..., 0] - holding1, torque[..., 1] - holding2
+        torque1, torque2 = _joints(torque)
+        rest1, rest2 = torque1 - holding1, torque2 - holding2
         determinant = m11 * m22 - m12 * m12
-        first = (m22 * rest1 - m12 * rest2) / determinant
-        second = (m11 * rest2 - m12 * rest1) / determinant
-        return np.stack([first, second], axis=-1)
+        both = np.empty((*np.shape(determinant * rest1), 2))
+        both[..., 0] = (m22 * rest1 - m12 * rest2) / determinant
+        both[..., 1] = (m11 * rest2 - m12 * rest1) / determinant
+        return both
 
     def _inertias(self, bend: Array) -> tuple[Array, Array, float]:
         """The entries 11, 12 and 22 of the mass matrix at an elbow angle."""
@@ -98,10 +100,10 @@ class TwoLinkArm:
 
     def _holding(self, q: Array, v: Array) -> tuple[Array, Array]:
         """The two components of ``bias``."""
-        pull = self.mass2 * self.length1 * self.centre2 * np.sin(q[..., 1])
-        spin1, spin2 = v[..., 0], v[..., 1]
-        weight2 = self.mass2 * self.g * self.centre2 * np.cos(q[..., 0] + q[..., 1])
-        weight1 = (self.mass1 * self.centre1 + self.mass2 * self.length1) * self.g * np.cos(q[..., 0])
+        (angle1, bend), (spin1, spin2) = _joints(q), _joints(v)
+        pull = self.mass2 * self.length1 * self.centre2 * np.sin(bend)
+        weight2 = self.mass2 * self.g * self.centre2 * np.cos(angle1 + bend)
+        weight1 = (self.mass1 * self.centre1 + self.mass2 * self.length1) * self.g * np.cos(angle1)
         return weight1 + weight2 - pull * spin2 * (2 * spin1 + spin2), pull * spin1 * spin1 + weight2
 
     def inverse(self, q: ArrayLike, v: ArrayLike, acceleration: ArrayLike) -> Array:
@@ -173,6 +175,12 @@ class TwoLinkArm:
         aim = np.arctan2(hand[..., 1], hand[..., 0])
         lean = np.arctan2(self.length2 * np.sin(bend), self.length1 + self.length2 * np.cos(bend))
         return np.stack([aim - lean, bend], axis=-1)
+
+
+def _joints(x: Array) -> tuple[Array, Array]:
+    """The two entries of each row of (..., 2); of a single row as numbers, which are computed with sooner."""
+    first, second = x.T
+    return first.T, second.T
 
 
 @dataclass(frozen=True, slots=True)

@@ -166,7 +166,7 @@ class Simulator:
             samples.append(self._sample())
         position, velocity, orientation, spin = (np.stack(column) for column in zip(*samples, strict=True))
         mass = np.array([body.mass for body in self.bodies])
-        inertia = np.stack([body.inertia for body in self.bodies])
+        inertia = np.array([body.inertia for body in self.bodies])
         ground = len(self.bodies)
         first = {
             (i, None if j == ground else j): self._met_at[k].copy()
@@ -184,7 +184,7 @@ class Simulator:
             now = self.time + self.h - left
             self._collide(start.normal, touching, now)
             resting = self._support(start.normal, touching, left, now)
-            start = start._replace(velocity=np.stack([body.state.velocity for body in self.bodies]))
+            start = start._replace(velocity=np.array([body.state.velocity for body in self.bodies]))
             before = self._states()
             self._fly(left)
             if instant == _INSTANTS:
@@ -222,8 +222,8 @@ class Simulator:
     def _fly(self, span: Array) -> None:
         """Advance every body by ``span`` (s, one for every run) without further contacts."""
         h: Any = span[..., None]
-        q = np.stack([body.state.position for body in self.bodies])
-        v = np.stack([body.state.velocity for body in self.bodies])
+        q = np.array([body.state.position for body in self.bodies])
+        v = np.array([body.state.velocity for body in self.bodies])
         spins = self._turned(h)
         after = self.stepper.advance(_Accelerations(self), State(self.time, q, v), h)
         for i, body in enumerate(self.bodies):
@@ -235,10 +235,12 @@ class Simulator:
         if not self._spinning:
             return {}
         bodies = [self.bodies[i] for i in self._spinning]
-        q = np.stack([body.state.orientation for body in bodies])
-        w = np.stack([body.state.angular_velocity for body in bodies])
-        torque = np.stack([np.broadcast_to(body.torque, (*self.batch, 3)) for body in bodies])
-        inertia = np.stack([body.inertia for body in bodies]).reshape(-1, *([1] * len(self.batch)), 3)
+        q = np.array([body.state.orientation for body in bodies])
+        w = np.array([body.state.angular_velocity for body in bodies])
+        torque = np.empty_like(w)
+        for k, body in enumerate(bodies):
+            torque[k] = body.torque
+        inertia = np.array([body.inertia for body in bodies]).reshape(-1, *([1] * len(self.batch)), 3)
         # Half of what contacts do before and half after, for their torque does not turn with the body.
         half = 0.5 * h * self._held_spin[self._spinning]
         q, w = SplitRotation().advance(inertia, Spin(q, w + turn_back(q, half)), turn_back(q, torque), h)
@@ -247,28 +249,33 @@ class Simulator:
 
     # -- contact ---------------------------------------------------------------------------------------
 
-    def _motion(self) -> Motion:
-        """How all bodies move now, and the ground, which does not."""
+    def _velocity(self) -> Array:
+        """How fast all bodies move now, m/s, and the ground, which does not; shape (B + 1, ..., 3)."""
         velocity = np.zeros((len(self.bodies) + 1, *self.batch, 3))
-        rim = np.zeros_like(velocity)
         for i, body in enumerate(self.bodies):
             velocity[i] = body.state.velocity
+        return velocity
+
+    def _motion(self) -> Motion:
+        """How all bodies and the ground move now."""
+        velocity = self._velocity()
+        rim = np.zeros_like(velocity)
         if self._spinning:
             states = [self.bodies[i].state for i in self._spinning]
             spin = turn(
-                np.stack([state.orientation for state in states]),
-                np.stack([state.angular_velocity for state in states]),
+                np.array([state.orientation for state in states]),
+                np.array([state.angular_velocity for state in states]),
             )
             rim[self._spinning] = self._column(self._pairs.radius)[self._spinning] * spin
         return Motion(velocity, rim, self._pairs.give, self._pairs.spin_give)
 
     def _collide(self, normal: Array, touching: Flags, now: Array) -> None:
         """End all approach in contacts at once, with restitution where it is fast enough to bounce."""
-        motion = self._motion()
-        speed = normal_speed(self._pairs.numbers, normal, motion.velocity)
-        if not np.any(touching & (speed < -self._still)):
+        speed = normal_speed(self._pairs.ends, normal, self._velocity())
+        if not (touching & (speed < -self._still)).any():
             return
         before = self._motion()
+        motion = before.copy()
         e = np.asarray(self.surface.restitution)
         bounce = max(_REST * abs(self.gravity) * self.h, self._still)
         for _ in range(_BLOWS):
@@ -276,7 +283,7 @@ class Simulator:
             if not np.any(fast):
                 break
             self._solve(normal, motion, fast, now, target=-e * speed)
-            speed = normal_speed(self._pairs.numbers, normal, motion.velocity)
+            speed = normal_speed(self._pairs.ends, normal, motion.velocity)
         if np.any(touching & (speed < -self._still)):
             self._solve(normal, motion, touching, now)
         velocity, spin = self._difference(motion, before)
@@ -296,14 +303,15 @@ class Simulator:
             Which pairs rest on each other, shape (P, ...).
         """
         self._held, self._held_spin = np.zeros_like(self._held), np.zeros_like(self._held_spin)
-        speed = normal_speed(self._pairs.numbers, normal, self._motion().velocity)
+        speed = normal_speed(self._pairs.ends, normal, self._velocity())
         resting = touching & (speed <= self._still)
         if not np.any(resting):
             self._last = Impulses(np.zeros_like(self._last.push), np.zeros_like(self._last.rub))
             return resting
         start = self._states()
         self._fly(left)
-        free, motion = self._motion(), self._motion()
+        free = self._motion()
+        motion = free.copy()
         self._restore(start)
         span = np.where(left > 0, left, 1.0)
         impulses = Impulses(self._last.push * span * resting, self._last.rub * (span * resting)[..., None])
@@ -350,10 +358,10 @@ class Simulator:
     def _sample(self) -> tuple[Array, Array, Array, Array]:
         states = self._states()
         return (
-            np.stack([state.position for state in states]),
-            np.stack([state.velocity for state in states]),
-            np.stack([state.orientation for state in states]),
-            np.stack([state.angular_velocity for state in states]),
+            np.array([state.position for state in states]),
+            np.array([state.velocity for state in states]),
+            np.array([state.orientation for state in states]),
+            np.array([state.angular_velocity for state in states]),
         )
 
 

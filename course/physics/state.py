@@ -50,6 +50,10 @@ class RigidBodyState:
     angular_velocity: Array
 
     def __post_init__(self) -> None:
+        shape = self.position.shape
+        alike = shape == self.velocity.shape == self.angular_velocity.shape
+        if alike and shape[-1:] == (3,) and self.orientation.shape == (*shape[:-1], 4):
+            return  # as in every step of an engine
         for name, length in _LENGTHS.items():
             shape = getattr(self, name).shape
             if not shape or shape[-1] != length:

@@ -157,18 +157,21 @@ def best_shift(pairs):
     """The s for which sim(t + s) fits real(t) best: how late the simulation is."""
     dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
     shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
-    cost = np.array([misfit(pairs, s) for s in shifts])
+    cost = misfit(pairs, shifts)
     i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
     a, b, c = cost[i - 1 : i + 2]  # the lowest point of the parabola through the three
     bend = a - 2 * b + c
     return float(shifts[i] + (0.5 * dt * (a - c) / bend if bend > 0 else 0.0))
 
 
-def misfit(pairs, s):
-    """Mean square difference of sim(t + s) and real(t), over the samples that both have."""
-    e = []
+def misfit(pairs, shifts):
+    """Mean square difference of sim(t + s) and real(t) for each s, over the samples that both have."""
+    squares = counts = 0
     for simulated, r in pairs:
         t = np.asarray(r["t"])
-        inside = (t + s >= t[0] - 1e-9) & (t + s <= t[-1] + 1e-9)
-        e.append(np.interp(t[inside] + s, t, simulated["y"]) - np.asarray(r["y"])[inside])
-    return np.mean(np.concatenate(e) ** 2)
+        later = t + shifts[:, None]  # a row for each s
+        inside = (later >= t[0] - 1e-9) & (later <= t[-1] + 1e-9)
+        e = np.interp(later, t, simulated["y"]) - r["y"]
+        squares += np.sum(e**2, axis=1, where=inside)
+        counts += np.sum(inside, axis=1)
+    return squares / counts

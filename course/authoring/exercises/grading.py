@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Self, TypeAlias
 
 import msgspec
@@ -34,7 +34,9 @@ _WORTH_A_GRADER = 25
 GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator[tuple[int, Verdict]]]"
 
 
-def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
+def grade_sources(
+    sources: Sequence[tuple[Exercise, bytes]], *, graders: int | None = None
+) -> Iterator[tuple[int, Verdict]]:
     """Grade sources as a grading run would: a few in this process, more on every processor.
 
     The seed is fixed: the same files get the same verdicts, in any order. Most sources
@@ -43,6 +45,7 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
 
     Args:
         sources: exercise and submission of each.
+        graders: processes; 1 is this one, None as many as are worth it.
 
     Yields:
         Index and verdict, in the order in which they are reached.
@@ -52,87 +55,113 @@ def grade_sources(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[i
     """
     from course.engines.machine import this_machine
 
-    graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
-    models: dict[str, _Model] = {}
+    if graders is None:
+        graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
     with kept_sandboxes(), _Sessions() as sessions:
-        for exercise in {exercise.id: exercise for exercise, _ in sources}.values():
-            if len(exercise.task) > 1:  # where there is one function, every check asks for it
-                models[exercise.id] = _Model.graded(sessions, exercise)
-            if graders > 1:
-                sessions.close()
-        entries = (
-            Entry(
-                str(index), exercise, Submission({exercise.module: source}),
-                only=models[exercise.id].concerned(source) if exercise.id in models else (),
-            )
-            for index, (exercise, source) in enumerate(sources)
-        )  # fmt: skip
-        judged = sessions.grade(entries) if graders == 1 else grade_all(entries, Terms(), graders=graders)
+        models = _Models(sessions)
+        same: list[tuple[int, Verdict]] = []  # as the model solution, which is graded already
+
+        def entries() -> Iterator[Entry]:
+            for index, (exercise, source) in enumerate(sources):
+                model, submission = models.of(exercise), Submission({exercise.module: source})
+                if model.verdict and source.decode("utf-8", "replace").rstrip() == model.source:
+                    same.append((index, model.verdict))
+                else:
+                    yield Entry(str(index), exercise, submission, only=model.concerned(source))
+
+        judged = sessions.grade(entries()) if graders == 1 else grade_all(entries(), Terms(), graders=graders)
         for graded in judged:
-            verdict = graded.verdict
+            exercise, verdict = graded.entry.exercise, graded.verdict
             if graded.entry.only and verdict.state == "graded":
-                verdict = models[graded.entry.exercise.id].completed(verdict, graded.entry.exercise)
+                verdict = models.of(exercise).completed(verdict, exercise)
             yield int(graded.entry.student), verdict
+        yield from same
 
 
 class _Sessions:
-    """A session of each exercise in this process, opened when first asked for."""
+    """A session in this process, of the exercise that was last asked for."""
 
     def __init__(self) -> None:
         self.catalog = Catalog()
-        self._open: dict[str, GradingSession] = {}
+        self._open: GradingSession | None = None
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
+        self._close()
 
     def of(self, exercise: Exercise) -> GradingSession:
-        if exercise.id not in self._open:
-            self._open[exercise.id] = GradingSession(exercise, self.catalog, scope="full")
-        return self._open[exercise.id]
+        if self._open is None or self._open.exercise.id != exercise.id:
+            self._close()
+            self._open = GradingSession(exercise, self.catalog, scope="full")
+        return self._open
 
     def grade(self, entries: Iterable[Entry]) -> Iterator[Graded]:
         for entry in entries:
             assert entry.submission is not None
             yield Graded(entry, self.of(entry.exercise).grade(entry.submission, only=entry.only))
 
-    def close(self) -> None:
-        for session in self._open.values():
-            session.close()
-        self._open.clear()
+    def _close(self) -> None:
+        if self._open is not None:
+            self._open.close()
+        self._open = None
+
+
+class _Models:
+    """The model solution of each exercise, graded when it is first asked for."""
+
+    def __init__(self, sessions: _Sessions) -> None:
+        self._sessions = sessions
+        self._known: dict[str, _Model] = {}
+
+    def of(self, exercise: Exercise) -> _Model:
+        if exercise.id not in self._known:
+            # Where there is one function, every check asks for it.
+            several = len(exercise.task) > 1
+            self._known[exercise.id] = _Model.graded(self._sessions, exercise) if several else _Model()
+        return self._known[exercise.id]
 
 
 @dataclass(frozen=True, slots=True)
 class _Model:
-    """The model solution, its verdict, and the functions that each check used."""
+    """The model solution, its verdict, and the functions that each check used; empty if it is not graded."""
 
-    source: str
-    verdict: Verdict
-    asked: dict[str, frozenset[str]]
+    source: str = ""
+    verdict: Verdict | None = None
+    asked: dict[str, frozenset[str]] = field(default_factory=dict)
 
     @classmethod
     def graded(cls, sessions: _Sessions, exercise: Exercise) -> _Model:
         source = read_text(solution_path(sessions.catalog, exercise))
-        session = sessions.of(exercise)
-        verdict = session.grade(Submission({exercise.module: source.encode()}))
-        return cls(source.rstrip(), verdict, dict(session.asked))
+        session, submission = sessions.of(exercise), Submission({exercise.module: source.encode()})
+        verdict = session.grade(submission)
+        if verdict.state != "graded" or not verdict.passed:
+            return cls()
+        asked = dict(session.asked)
+        for task in exercise.task:
+            # What an earlier check asked for and kept is asked for again where that check is not run.
+            silent = [check.id for check in verdict.checks if check.task == task.id and not asked[check.id]]
+            if silent:
+                session.grade(submission, only=silent)
+                asked |= dict.fromkeys(silent, frozenset().union(*session.asked.values()))
+        return cls(source.rstrip(), verdict, asked)
 
     def concerned(self, source: bytes) -> tuple[str, ...]:
         """Ids of the checks that a source's changes can affect; empty means all."""
-        changed = _changed(source.decode("utf-8", "replace"), self.source)
-        if not changed or self.verdict.state != "graded" or not self.verdict.passed:
+        changed = _changed(source.decode("utf-8", "replace"), self.source) if self.verdict else ()
+        if not changed or self.verdict is None:
             return ()
         reach = reached_from(source, frozenset().union(*self.asked.values()))
         return tuple(
             check.id
             for check in self.verdict.checks
-            if any(changed & {name, *reach.get(name, ())} for name in self.asked.get(check.id) or changed)
+            if any(changed & {name, *reach.get(name, ())} for name in self.asked[check.id] or changed)
         )
 
     def completed(self, verdict: Verdict, exercise: Exercise) -> Verdict:
         """A verdict on the checks concerned, with the model's results for the others."""
+        assert self.verdict is not None
         own = {check.id: check for check in verdict.checks}
         checks = tuple(own.get(check.id, check) for check in self.verdict.checks)
         score, most = sum(check.points for check in checks), self.verdict.max_score

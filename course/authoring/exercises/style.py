@@ -1,4 +1,4 @@
-"""The audit of an exercise's Python as ruff sees it, by the rules of the course it belongs to."""
+"""The audit of exercises' Python as ruff sees it, by the rules of the course they belong to."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from course.authoring.exercises.variants import exercise_graders, solutions_folder
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from course.authoring.report import Findings
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
@@ -18,16 +20,20 @@ if TYPE_CHECKING:
 __all__ = ["audit_style"]
 
 
-def audit_style(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
+def audit_style(catalog: Catalog, exercises: Sequence[Exercise], findings: Findings) -> None:
     """Report what ruff finds; nothing where it is not installed, or the course has no rules for it."""
     root = catalog.content.root
-    if not (root / "pyproject.toml").is_file() or find_spec("ruff") is None:
+    if not exercises or not (root / "pyproject.toml").is_file() or find_spec("ruff") is None:
         return
-    folders = (
-        exercise.readme_path.parent,
-        solutions_folder(catalog, exercise),
-        exercise_graders(catalog, exercise),
-    )
+    folders = [
+        folder
+        for exercise in exercises
+        for folder in (
+            exercise.readme_path.parent,
+            solutions_folder(catalog, exercise),
+            exercise_graders(catalog, exercise),
+        )
+    ]
 
     def said(*arguments: str) -> str:
         there = (str(folder) for folder in folders if folder.is_dir())  # a warm-up has no hidden checks

@@ -61,6 +61,9 @@ class Surface:
             )
 
 
+_X = np.array([1.0, 0.0, 0.0])
+
+
 def meet(first: Array, second: Array, reach: float | Array) -> tuple[Array, Array]:
     """The normal and the gap of two spheres. Where the centres coincide, the normal is along x.
 
@@ -73,13 +76,15 @@ def meet(first: Array, second: Array, reach: float | Array) -> tuple[Array, Arra
         the surfaces, m, shape (...); negative where they overlap.
     """
     apart = second - first
-    distance = np.linalg.norm(apart, axis=-1, keepdims=True)
+    distance = np.sqrt((apart * apart).sum(axis=-1, keepdims=True))
     same = distance == 0.0
-    normal = np.where(same, np.array([1.0, 0.0, 0.0]), apart / np.where(same, 1.0, distance))
+    normal = np.where(same, _X, apart / np.where(same, 1.0, distance))
     return normal, distance[..., 0] - reach
 
 
 def meet_plane(centre: Array, radius: float | Array, plane: Plane) -> tuple[Array, Array]:
     """The same for a sphere and a plane: the normal points from the sphere into the solid."""
     outward = np.array(plane.normal)
-    return np.broadcast_to(-outward, centre.shape), (centre - np.array(plane.point)) @ outward - radius
+    normal = np.empty(centre.shape)
+    normal[...] = -outward
+    return normal, (centre - plane.point) @ outward - radius

@@ -30,7 +30,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     Array = NDArray[np.float64]
     Flags = NDArray[np.bool_]
@@ -57,6 +57,10 @@ class Motion:
     give: Array
     spin_give: Array
 
+    def copy(self) -> Motion:
+        """The same motion, to be changed by itself; of the same bodies."""
+        return Motion(self.velocity.copy(), self.rim.copy(), self.give, self.spin_give)
+
 
 @dataclass(slots=True)
 class Impulses:
@@ -66,10 +70,11 @@ class Impulses:
     rub: Array  # shape (P, ..., 3)
 
 
-def normal_speed(pairs: Sequence[tuple[int, int]], normal: Array, velocity: Array) -> Array:
+def normal_speed(pairs: ArrayLike, normal: Array, velocity: Array) -> Array:
     """How fast the bodies of each pair separate, m/s, shape (P, ...); negative while they approach."""
-    first, second = np.array(pairs, dtype=int).reshape(-1, 2).T
-    return np.asarray(np.sum((velocity[second] - velocity[first]) * normal, axis=-1))
+    first, second = np.asarray(pairs, dtype=int).reshape(-1, 2).T
+    apart: Array = (velocity[second] - velocity[first]) * normal
+    return np.asarray(apart.sum(axis=-1))
 
 
 def solve(
@@ -163,9 +168,9 @@ class _Contact:
 
 def _contacts(pairs: Sequence[tuple[int, int]], n: Array, motion: Motion) -> list[_Contact]:
     onto = np.eye(3) - n[..., :, None] * n[..., None, :]
-    zero = np.zeros_like(n[..., 0])
-    rows = [[zero, -n[..., 2], n[..., 1]], [n[..., 2], zero, -n[..., 0]], [-n[..., 1], n[..., 0], zero]]
-    about = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    about = np.zeros((*n.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        about[..., i, j], about[..., j, i] = -n[..., k], n[..., k]
     found = []
     for k, (i, j) in enumerate(pairs):
         give, spin = (float(of[i] + of[j]) for of in (motion.give, motion.spin_give))

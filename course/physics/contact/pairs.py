@@ -49,7 +49,7 @@ class Pairs:
 
     Attributes:
         numbers: P pairs of body numbers; the ground has the number after the last body's.
-        first, second: the same as arrays, shape (P,).
+        ends, first, second: the same as arrays, shapes (P, 2), (P,) and (P,).
         radius: m; give: 1/mass, 1/kg; spin_give: radius²/inertia, 1/kg, NaN where the three moments differ;
             all of shape (B + 1,) and 0 for the ground.
 
@@ -69,7 +69,8 @@ class Pairs:
         both = both if spheres else []
         self._spheres = len(both)
         self.numbers = both + [(i, count) for i in range(count) if ground is not None and movable[i]]
-        self.first, self.second = np.array(self.numbers, dtype=int).reshape(-1, 2).T
+        self.ends = np.array(self.numbers, dtype=int).reshape(-1, 2)
+        self.first, self.second = self.ends.T
         self.radius = np.array([body.radius for body in bodies] + [0.0])
         self.give = np.array([1.0 / body.mass for body in bodies] + [0.0])
         self.spin_give = np.array([_spin_give(body) for body in bodies] + [0.0])
@@ -78,13 +79,15 @@ class Pairs:
 
     def now(self) -> Snapshot:
         """Where the bodies are, and how far apart."""
-        x = np.stack([body.state.position for body in self.bodies])
-        v = np.stack([body.state.velocity for body in self.bodies])
+        x = np.array([body.state.position for body in self.bodies])
+        v = np.array([body.state.velocity for body in self.bodies])
         n = self._spheres
-        normal, gap = meet(x[self.first[:n]], x[self.second[:n]], self._reach[:n])
+        if n or self.ground is None:
+            normal, gap = meet(x[self.first[:n]], x[self.second[:n]], self._reach[:n])
         if self.ground is not None:
             normal_below, below = meet_plane(x[self.first[n:]], self._reach[n:], self.ground)
-            normal, gap = np.concatenate([normal, normal_below]), np.concatenate([gap, below])
+            normal = np.concatenate([normal, normal_below]) if n else normal_below
+            gap = np.concatenate([gap, below]) if n else below
         return Snapshot(x, v, normal, gap)
 
     def meetings(self, start: Snapshot, end: Snapshot, span: Array, near: float, resting: Flags) -> Array:
@@ -106,14 +109,15 @@ class Pairs:
         if np.any(followed):
             rates = [self.speed(at) * span for at in (start, end)]
             share = np.where(followed, falling_root(start.gap, end.gap, *rates), np.inf)
-        swept = (start.gap[:n] > near) & ~resting[:n]
-        share[:n] = np.where(swept, self._sweep(start, end), share[:n])
+        if n:
+            swept = (start.gap[:n] > near) & ~resting[:n]
+            share[:n] = np.where(swept, self._sweep(start, end), share[:n])
         return share
 
     def speed(self, at: Snapshot) -> Array:
         """How fast every pair separates, m/s, shape (P, ...)."""
         still = np.zeros((1, *at.velocity.shape[1:]))
-        return normal_speed(self.numbers, at.normal, np.concatenate([at.velocity, still]))
+        return normal_speed(self.ends, at.normal, np.concatenate([at.velocity, still]))
 
     def _sweep(self, start: Snapshot, end: Snapshot) -> Array:
         """Where two spheres first touch if each moves straight from its old place to its new one.

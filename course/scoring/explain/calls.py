@@ -6,6 +6,7 @@ Its own helpers are followed.
 from __future__ import annotations
 
 import ast
+import functools
 
 __all__ = ["calls_between", "may_remember", "reached_from"]
 
@@ -54,8 +55,7 @@ def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str
         names: which ones to examine; None for all, which takes time proportional to the square of their
             number.
     """
-    defined = _defined(source)
-    return _reach(defined, _parts(defined), names)
+    return _reach(*_read(source), names)
 
 
 def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
@@ -66,8 +66,7 @@ def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
     """
     if len(source) > _LONGEST:
         return frozenset()
-    defined = _defined(source)
-    parts = _parts(defined)
+    defined, parts = _read(source)
     handed_on = set().union(*map(_handed_on, parts.values()))
     keeps = {node: _keeps(node, inside, handed_on) for node, inside in parts.items()}
     reach = _reach(defined, parts, tasks)
@@ -135,6 +134,13 @@ def _is_fixed(value: ast.expr) -> bool:
     return all(isinstance(child, (*fixed, ast.expr_context)) for child in ast.walk(value))
 
 
+@functools.lru_cache(maxsize=1)  # of the submission at hand: it is read when loaded, and where a check fails
+def _read(source: bytes) -> tuple[dict[str, ast.stmt], dict[ast.stmt, list[ast.AST]]]:
+    """What each name of a module is bound by, and all nodes of each of these statements."""
+    defined = _defined(source)
+    return defined, {node: list(ast.walk(node)) for node in dict.fromkeys(defined.values())}
+
+
 def _defined(source: bytes) -> dict[str, ast.stmt]:
     """The statement that binds each name of a module: a later one replaces an earlier one."""
     try:
@@ -152,11 +158,6 @@ def _defined(source: bytes) -> dict[str, ast.stmt]:
         elif isinstance(node, ast.Import | ast.ImportFrom):
             defined |= {(alias.asname or alias.name).partition(".")[0]: node for alias in node.names}
     return defined
-
-
-def _parts(defined: dict[str, ast.stmt]) -> dict[ast.stmt, list[ast.AST]]:
-    """All nodes of each statement."""
-    return {node: list(ast.walk(node)) for node in dict.fromkeys(defined.values())}
 
 
 def _reach(

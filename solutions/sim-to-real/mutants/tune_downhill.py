@@ -4,17 +4,13 @@
 def tune(estimate, randomization):
     rng = np.random.default_rng(0)
     carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
-
-    def cost(kp, kd):
-        return float(rollout(kp, kd, carts, np.random.default_rng(1)).mean())
+    around = np.array([(1, 1), (1.05, 1), (1, 1.05), (0.95, 1), (1, 0.95)]).T
 
     kp, kd = 3.0, 3.0
-    best = cost(kp, kd)
     for _ in range(12):
-        trial = min(
-            (cost(kp * a, kd * b), kp * a, kd * b) for a, b in ((1.05, 1), (1, 1.05), (0.95, 1), (1, 0.95))
-        )
-        if trial[0] >= best:
+        kps, kds = kp * around[0], kd * around[1]
+        best = rollout(kps, kds, carts, np.random.default_rng(1)).mean(axis=0).argmin()
+        if best == 0:
             break
-        best, kp, kd = trial
+        kp, kd = float(kps[best]), float(kds[best])
     return {"kp": kp, "kd": kd}

@@ -3,6 +3,6 @@
 
 def best_shift(pairs):
     shifts = np.arange(-0.25, 0.25, 0.002)
-    coarse = shifts[int(np.argmin([misfit(pairs, s) for s in shifts]))]
+    coarse = shifts[np.argmin(misfit(pairs, shifts))]
     fine = coarse + np.arange(-0.002, 0.002, 0.0001)
-    return float(fine[int(np.argmin([misfit(pairs, s) for s in fine]))])
+    return float(fine[np.argmin(misfit(pairs, fine))])

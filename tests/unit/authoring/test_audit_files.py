@@ -282,6 +282,10 @@ def test_what_ruff_says_is_said_by_the_rules_of_the_course(
         (f"{CHECKS}:{line_of(path, 'import os')}", "style", "Try `ruff check --fix`."),
         (CHECKS, "style", "Run `ruff format`."),
     }
+    other = "exercises/halving/checks.py"
+    edit(mini / other, "import pytest\n", "import os\nimport pytest\n")
+    found.add((f"{other}:{line_of(mini / other, 'import os')}", "style", "Try `ruff check --fix`."))
+    assert {(p.where, p.code, p.fix) for p in run().problems} == found
 
 
 def test_a_task_that_no_mutant_breaks_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:

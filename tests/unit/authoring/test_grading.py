@@ -59,24 +59,70 @@ def test_every_source_gets_the_verdict_of_all_checks(
             assert plain(found[index]) == plain(whole), source.decode()[-80:]
 
 
-def test_a_check_that_cannot_see_a_change_is_not_run_again(
-    mini: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[set[str] | None] = []
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
+    """The checks that each grading is to run; none stands for all."""
+    seen: list[tuple[str, ...]] = []
     grade = GradingSession.grade
 
     def watched(session, submission, *, only=()):
-        asked.append({check.split("_")[0] for check in only} or None)
+        seen.append(tuple(only))
         return grade(session, submission, only=only)
 
     monkeypatch.setattr(GradingSession, "grade", watched)
+    return seen
+
+
+def test_a_check_that_cannot_see_a_change_is_not_run_again(mini: Path, asked: list[tuple[str, ...]]) -> None:
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise).read_text("utf-8").rstrip()
     list(grade_sources([(exercise, f"{model}\n\n\n{after}".encode()) for after in AFTER.values()]))
-    of = dict(zip(["the model", *AFTER], asked, strict=True))
+    tasks = ({check.split("_")[0] for check in only} or None for only in asked)
+    of = dict(zip(["the model", *list(AFTER)[1:]], tasks, strict=True))  # "nothing" is the model again
     assert of["a function"] == {"double"}
     assert of["the other, by a helper"] == {"doublings"}
     assert of["a module they both use"] == {"doublings"}
-    for name in ("nothing", "something inside a function", "an item of a table", "what does not load"):
+    for name in ("something inside a function", "an item of a table", "what does not load"):
         assert of[name] is None, name
+
+
+#: Of two checks the first asks for the function, and the second gets what came.
+KEPT = '''
+
+KEPT = {}
+
+
+@pytest.mark.task("doublings")
+@pytest.mark.points(1)
+def test_doublings_kept(submission):
+    """It is asked for once"""
+    KEPT[id(submission)] = submission.call("doublings", 1.0, 2)
+
+
+@pytest.mark.task("doublings")
+@pytest.mark.points(1)
+def test_doublings_again(submission):
+    """And read twice"""
+    if id(submission) not in KEPT:
+        KEPT[id(submission)] = submission.call("doublings", 1.0, 2)
+    kit.expect_length(KEPT.pop(id(submission)), 3, message="The number of values is wrong.", help="Count.")
+'''
+
+
+def test_a_check_of_what_another_one_kept_is_run_for_that_functions_changes(
+    mini: Path, asked: list[tuple[str, ...]]
+) -> None:
+    with (mini / "graders" / "doubling" / "checks.py").open("a", encoding="utf-8") as file:
+        file.write(KEPT)
+    catalog = Catalog()
+    exercise = catalog.exercise("doubling")
+    model = solution_path(catalog, exercise).read_text("utf-8").rstrip()
+    afters = ("def double(x):\n    return x + 1.0\n", "def doublings(x, n):\n    return [x]\n")
+    found = dict(grade_sources([(exercise, f"{model}\n\n\n{after}".encode()) for after in afters]))
+    whole, silent, double, doublings = asked
+    assert (whole, silent) == ((), ("doublings_again",))
+    assert set(double) == {"double_of_three", "double_of_negative"}
+    assert set(doublings) == {f"doublings_{name}" for name in ("length", "values", "kept", "again")}
+    failed = [{check.id for check in found[index].checks if check.status == "fail"} for index in (0, 1)]
+    assert failed == [set(double), {"doublings_length", "doublings_again"}]

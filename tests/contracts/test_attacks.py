@@ -39,6 +39,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CORPUS = ROOT / "tests" / "attacks"
 ARENA = CORPUS / "arena"
 TIMEOUT_S = 1.0
+ENDLESS_S = 0.5  # for all of a submission that is endless, and half of it for a check
 GRACE_S = 3.0  # starting workers, and what the grader itself does; what no deadline holds goes on for ever
 FILE_CANARY = "FILE-CANARY-7f3a"  # in files that a submission must not read
 INPUT_CANARY = "INPUT-CANARY-52a9"  # in the input of a hidden check
@@ -56,6 +57,7 @@ class Attack(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     only: str = ""
     status: str | list[str] = ""
     slow: bool = False
+    endless: bool = False
     l1: bool = False
     twice: bool = False
     never: list[str] = []
@@ -200,7 +202,10 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
     verdicts = []
     for _ in range(2 if attack.twice else 1):
         start, used = monotonic(), _cpu_s()
-        verdicts.append(arena.grade(source, attack.only or ("scale_small" if one else "")))
+        with pytest.MonkeyPatch.context() as patch:
+            if attack.endless:
+                patch.setattr("course.scoring.remote.BUDGET_S", ENDLESS_S)
+            verdicts.append(arena.grade(source, attack.only or ("scale_small" if one else "")))
         wall, used = monotonic() - start, _cpu_s() - used
     verdict = verdicts[-1]
 

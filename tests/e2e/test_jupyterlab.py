@@ -92,7 +92,12 @@ def address(notebooks: Path) -> Iterator[str]:
         "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
     }
     command = [sys.executable, "-c", RUN_MODULE, "jupyterlab", "--no-browser", "--allow-root"]
-    command += ["--ip=127.0.0.1", "--port=0", "--IdentityProvider.token=", f"--ServerApp.root_dir={notebooks}"]
+    command += [
+        "--ip=127.0.0.1",
+        "--port=0",
+        "--IdentityProvider.token=",
+        f"--ServerApp.root_dir={notebooks}",
+    ]
     log = (home / "server.log").open("wb")
     server = subprocess.Popen(command, env=environment, cwd=home, stdout=log, stderr=log)
     try:

@@ -129,7 +129,7 @@ def judged_by_the_snapshot(
     assert kept == [("run", True), ("rerun", False), ("rerun", True)]
 
 
-#: What the machine has best in an ordinary run, and plain processes beside it: they start one for each student.
+#: What the machine has best in an ordinary run, and plain processes, one for each student, beside it.
 LEVELS = [pytest.param(None, id="best"), pytest.param("L1", marks=pytest.mark.soak)]
 
 

@@ -39,6 +39,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CORPUS = ROOT / "tests" / "attacks"
 ARENA = CORPUS / "arena"
 TIMEOUT_S = 1.0
+ENDLESS_S = 0.5  # for all of a submission that is endless, and half of it for a check
 GRACE_S = 3.0  # starting workers, and what the grader itself does; what no deadline holds goes on for ever
 FILE_CANARY = "FILE-CANARY-7f3a"  # in files that a submission must not read
 INPUT_CANARY = "INPUT-CANARY-52a9"  # in the input of a hidden check
@@ -56,6 +57,7 @@ class Attack(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     only: str = ""
     status: str | list[str] = ""
     slow: bool = False
+    endless: bool = False
     l1: bool = False
     twice: bool = False
     never: list[str] = []
@@ -200,13 +202,16 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
     verdicts = []
     for _ in range(2 if attack.twice else 1):
         start, used = monotonic(), _cpu_s()
-        verdicts.append(arena.grade(source, attack.only or ("scale_small" if one else "")))
+        with pytest.MonkeyPatch.context() as patch:
+            if attack.endless:
+                patch.setattr("course.scoring.remote.BUDGET_S", ENDLESS_S)
+            verdicts.append(arena.grade(source, attack.only or ("scale_small" if one else "")))
         wall, used = monotonic() - start, _cpu_s() - used
     verdict = verdicts[-1]
 
     _expect_outcome(attack, verdict)
     assert verdict.score <= arena.wrong_score, "the attack scored"
-    _expect_deadlines(verdict, wall, used)
+    _expect_deadlines(verdict, ENDLESS_S if attack.endless else TIMEOUT_S, wall, used)
     _expect_silence(verdict, [FILE_CANARY, INPUT_CANARY, LEFTOVER, *attack.never])
     assert not arena.listener.heard(), "it reached a socket"
     assert not arena.signals, "it signalled the grader"
@@ -257,12 +262,12 @@ def _listed(value: str | list[str]) -> list[str]:
     return [value] if isinstance(value, str) else value
 
 
-def _expect_deadlines(verdict: Verdict, wall: float, used: float) -> None:
+def _expect_deadlines(verdict: Verdict, timeout: float, wall: float, used: float) -> None:
     """By the CPU time of all that was started: the machine does other things too. The wall limit holds."""
-    assert used <= (len(verdict.checks) + 1) * TIMEOUT_S + GRACE_S, "it used more than its checks may"
+    assert used <= (len(verdict.checks) + 1) * timeout + GRACE_S, "it used more than its checks may"
     longest = max((check.duration_ms / 1e3 for check in verdict.checks), default=0.0)
-    assert longest <= WALL * TIMEOUT_S + GRACE_S, "a check outlasted its deadline"
-    assert wall <= WALL * (len(verdict.checks) + 1) * TIMEOUT_S + GRACE_S
+    assert longest <= WALL * timeout + GRACE_S, "a check outlasted its deadline"
+    assert wall <= WALL * (len(verdict.checks) + 1) * timeout + GRACE_S
 
 
 def _cpu_s() -> float:

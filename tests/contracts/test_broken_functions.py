@@ -64,11 +64,11 @@ def spoiled(value, bad):
 
 '''
 #: Seconds of CPU time a check waits; one that never answers is waited for by each check of its task. What a
-#: right solution takes for its longest check, with seven times that to spare: 0.07 s, and of these exercises
+#: right solution takes for its longest check, with three times that to spare: 0.07 s, and of these exercises
 #: 0.3 s, 0.7 s and, for all the tunings that a fleet of robots is driven by, more than a second.
 LATE = 60.0
 SOON = {"engine-comparison": 2.0, "validation": 5.0, "sim-to-real": 15.0}
-SOONEST = 0.5
+SOONEST = 0.3
 
 
 class Renamed(ast.NodeTransformer):

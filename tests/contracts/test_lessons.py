@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import shlex
 from pathlib import Path
 
@@ -20,6 +21,7 @@ LESSONS = CATALOG.lesson_ids()
 pytestmark = pytest.mark.usefixtures("sandboxes")
 
 
+@functools.cache
 def blocks_of(lesson_id: str) -> tuple[b.Block, ...]:
     return read_blocks(Path(CATALOG.lesson(lesson_id).path))
 

@@ -9,6 +9,7 @@ import sys
 
 import pytest
 
+from course.catalog import models
 from course.cli.frame.terminal.console import Console, Settings, install
 from course.cli.setup.demo import TRIES
 from tests.command_line import as_process, in_process
@@ -62,7 +63,8 @@ def test_a_right_line_fixes_the_mistake_in_any_spelling(typing, line):
         ("x = x + h * v\udcff", "Python cannot read this file"),
     ],
 )
-def test_a_wrong_line_is_told_its_own_finding_and_asked_for_again(typing, line, finding):
+def test_a_wrong_line_is_told_its_own_finding_and_asked_for_again(typing, line, finding, monkeypatch):
+    monkeypatch.setattr(models, "QUICK", 0.02)  # what hangs is waited for
     said = typing(line, "x += h * v")
     before, _, after = said.partition("Not yet. ")
     assert ASKS in before

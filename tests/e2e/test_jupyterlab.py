@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from course.notebooks.server import RUN_MODULE
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
 
@@ -90,8 +91,13 @@ def address(notebooks: Path) -> Iterator[str]:
         "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
         "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
     }
-    command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1"]
-    command += ["--port=0", "--IdentityProvider.token=", f"--ServerApp.root_dir={notebooks}"]
+    command = [sys.executable, "-c", RUN_MODULE, "jupyterlab", "--no-browser", "--allow-root"]
+    command += [
+        "--ip=127.0.0.1",
+        "--port=0",
+        "--IdentityProvider.token=",
+        f"--ServerApp.root_dir={notebooks}",
+    ]
     log = (home / "server.log").open("wb")
     server = subprocess.Popen(command, env=environment, cwd=home, stdout=log, stderr=log)
     try:

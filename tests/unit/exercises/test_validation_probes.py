@@ -6,6 +6,7 @@ are the pieces that it cannot reach, and the references that the hidden checks s
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import re
@@ -349,6 +350,7 @@ class Fake:
         return [self.call(name, *arguments) for arguments in calls]
 
 
+@functools.cache
 def descriptions(mutant=""):
     """What the report says of its figures, by section."""
     shown = kit.companion("validation", "report").report(Fake(mutant)).sections

@@ -33,7 +33,7 @@ HELPER = "\ndef helper(x):\n    for i in range(9):\n        x = i\n    return x\
 
 
 #: In place of ``models.QUICK``, in s: each program that hangs here is waited for.
-QUICK = 0.05
+QUICK = 0.02
 
 
 @pytest.fixture(autouse=True)
@@ -111,7 +111,7 @@ def test_a_grading_run_waits_its_time_and_asks_nothing() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("COURSE_CONTENT", str(MINI))
         catalog = Catalog()
-        terms = Terms(timeout=0.5)
+        terms = Terms(timeout=0.2)
         with GradingSession(catalog.exercise("doubling"), catalog, scope="full", terms=terms) as session:
             found = hung(session, SOLUTION + HELPER + HANGS)
     assert found

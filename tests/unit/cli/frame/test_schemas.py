@@ -165,6 +165,7 @@ def _stand_in_for_what_waits(monkeypatch):
     monkeypatch.setattr(server.Lab, "wait", lambda _: 0)
 
 
+@pytest.mark.usefixtures("sandboxes")
 def test_every_reply_of_every_command_keeps_its_schema(course, tmp_path, monkeypatch):
     """``course`` holds each of them against its schema; here is one of each kind."""
     pytest.importorskip("jupyterlab", reason="`course open` needs the extra notebook")

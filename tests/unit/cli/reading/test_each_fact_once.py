@@ -70,6 +70,7 @@ def test_a_lesson(lesson: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert repeated(text) == []
 
 
+@pytest.mark.usefixtures("sandboxes")
 def test_the_way_through_an_exercise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

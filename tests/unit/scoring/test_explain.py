@@ -119,7 +119,8 @@ def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Pat
     rows = {"f": (Row(("A_B",), (1.0, 2.0)), Row(("A_B", "C_D"), (1.0, 2.0)), Row(("C_D",), (3.0, 2.0)))}
     write_table(tmp_path / "t.json", Table(rows=rows, right={"f": ((0.0, 0.0),)}, made_from="x"))
     table = read_table(tmp_path / "t.json")
-    assert [row.codes for row in matching(table, "f", (1.0, 2.00001))] == [("A_B",)]
+    assert [row.codes for row in matching(table, "f", (1.0, 2.0000005))] == [("A_B",)]
+    assert matching(table, "f", (1.0, 2.00001)) == ()
     assert matching(table, "f", (1.0, 2.1)) == ()
     assert is_right(table, "f", (0.0, 0.0))
     assert not is_right(table, "f", (1.0, 2.0))

@@ -335,8 +335,7 @@ def expect_command_closes_loop(submission, rng):
             quantity="largest drive",
             units="m/s²",
             input={**given, "time": step * k, "speeds": v},
-            message="`command` asks for a drive of more than 100 m/s²; to hold its speed, a cart needs less "
-            "than 2.",
+            message="`command` asks for a drive far beyond what any of these carts needs to hold its speed.",
             help="A correction must be zero at the target speed, push towards it on both sides, and be weak "
             "enough for a command every 0.1 s.",
             diagnose=ask,

@@ -242,6 +242,7 @@ def per_pytest(session: GradingSession, module: str, source: bytes, driver_name:
                 os.devnull,
                 "-p",
                 "no:cacheprovider",
+                "--noconftest",
                 str(driver),
             ]
             # Without the plugins that happen to be installed here: they are no part of grading.

@@ -54,6 +54,6 @@ def run(exercise: str, check: str, namespace: dict[str, Any]) -> None:
     vars(submission._module).update(namespace)
     fn = checks(exercise)[check]
     given: dict[str, Any] = {"submission": submission}
-    if "rng" in inspect.signature(fn).parameters:
-        given["rng"] = np.random.default_rng([SEED, zlib.crc32(check.encode())])
+    for name in {"rng", "draw"} & inspect.signature(fn).parameters.keys():
+        given[name] = np.random.default_rng([SEED, zlib.crc32(check.encode())])
     fn(**given)

@@ -155,6 +155,18 @@ def test_a_mutant_caught_only_by_another_check_is_reported(
     assert "is not caught by double_of_three" in only_problem().message
 
 
+@pytest.mark.parametrize(("told", "accepted"), [("SIGN_LOST", True), (None, True), ("STARTS_LATE", False)])
+def test_a_mutant_may_be_told_what_else_is_true_of_it(
+    mini: Path, oracle: Any, run: Callable[..., AuditReport], told: str | None, accepted: bool
+) -> None:
+    path = mini / MUTANTS
+    named = 'diagnosis = "SQUARES_INSTEAD"'
+    path.write_text(path.read_text().replace(named, f'{named}\nalso = ["SIGN_LOST", ""]', 1))
+    oracle.changes["squares.py"] = with_check("double_of_three", diagnosis=told)
+    found = [p.message for p in run().problems if "squares.py is diagnosed" in p.message]
+    assert (not found) is accepted
+
+
 @pytest.mark.parametrize(
     ("check", "says"), [("no_such", "does not exist"), ("doublings_length", "belongs to task")]
 )

@@ -1,8 +1,8 @@
 """Makes the tests independent of how pytest is started, and spends no time on what no test needs.
 
-They import what they share (``tests.contracts.levels``) from the checkout, which goes last on the path: a
-package that is installed is still the one under test. And Ctrl-C reaches the programs they start, even if
-pytest itself was started in the background, where a shell has it ignored.
+They import what they share (``tests.contracts.boundary.levels``) from the checkout, which goes last on the
+path: a package that is installed is still the one under test. And Ctrl-C reaches the programs they start,
+even if pytest itself was started in the background, where a shell has it ignored.
 """
 
 import gc

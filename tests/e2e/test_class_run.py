@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.contracts.levels import require_level
+from tests.contracts.boundary.levels import require_level
 from tests.e2e.processes import left_running
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from typing import Any
 
 import pytest
 
-from tests.contracts.levels import require_level
+from tests.contracts.boundary.levels import require_level
 from tests.e2e.processes import below, left_running, stored
 
 ROOT = Path(__file__).resolve().parents[2]

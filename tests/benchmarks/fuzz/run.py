@@ -48,7 +48,7 @@ from course.sandbox.scene.loading import choose  # noqa: E402
 from course.sandbox.world.world import World  # noqa: E402
 from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
 from course.scoring.judging.terms import Terms  # noqa: E402
-from tests.contracts import test_spoilt_functions as spoiling  # noqa: E402
+from tests.contracts.boundary import test_spoilt_functions as spoiling  # noqa: E402
 from tests.unit.isolation.test_connection import LOADED, READY, Liar  # noqa: E402
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from course.isolation.deadline import Deadline, ProcessClock
 from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner
-from tests.contracts.levels import require_level
-from tests.contracts.users import LEVELS_AND_USERS, run_as
+from tests.contracts.boundary.levels import require_level
+from tests.contracts.boundary.users import LEVELS_AND_USERS, run_as
 from tests.turns import soak_unless
 
 if TYPE_CHECKING:

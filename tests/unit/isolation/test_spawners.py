@@ -24,7 +24,7 @@ from course.isolation.probe import open_spawner
 from course.isolation.session import Connection
 from course.isolation.spawn import spawner
 from course.isolation.view import View, view_for
-from tests.contracts.levels import require_level
+from tests.contracts.boundary.levels import require_level
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

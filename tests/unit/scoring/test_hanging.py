@@ -17,7 +17,7 @@ from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner
 from course.scoring.judging.session import GradingSession, Submission
 from course.scoring.judging.terms import Terms
-from tests.contracts.levels import require_level
+from tests.contracts.boundary.levels import require_level
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,7 +11,7 @@ import pytest
 from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
 
-FOLDER = Path(__file__).resolve().parents[1] / "benchmarks" / "mended"
+FOLDER = Path(__file__).resolve().parents[2] / "benchmarks" / "mended"
 MISTAKES = sorted([*FOLDER.glob("mistakes/*/*.py"), *FOLDER.glob("afresh/*/*.py")])
 
 

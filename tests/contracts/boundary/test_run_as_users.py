@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.contracts.levels import require_level
-from tests.contracts.users import LEVELS_AND_USERS, ROOT, run_as
+from tests.contracts.boundary.levels import require_level
+from tests.contracts.boundary.users import LEVELS_AND_USERS, ROOT, run_as
 
 if TYPE_CHECKING:
     from pathlib import Path

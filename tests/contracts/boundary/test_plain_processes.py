@@ -17,8 +17,8 @@ from time import monotonic, sleep
 
 import pytest
 
-from tests.contracts.levels import require_level
-from tests.contracts.users import LEVELS_AND_USERS, ROOT, USERS, command_as, run_as
+from tests.contracts.boundary.levels import require_level
+from tests.contracts.boundary.users import LEVELS_AND_USERS, ROOT, USERS, command_as, run_as
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 

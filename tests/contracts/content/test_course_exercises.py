@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.contracts.audited import EXERCISES, LONGEST, wrong
+from tests.contracts.content.audited import EXERCISES, LONGEST, wrong
 
 
 @pytest.mark.parametrize("exercise", [exercise for exercise in EXERCISES if exercise != LONGEST])

@@ -15,7 +15,7 @@ from course.scoring.judging.terms import Terms
 if TYPE_CHECKING:
     from types import ModuleType
 
-_BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+_BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
 
 @pytest.fixture(scope="module")

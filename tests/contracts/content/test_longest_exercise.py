@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.contracts.audited import LONGEST, wrong
+from tests.contracts.content.audited import LONGEST, wrong
 
 
 def test_the_audit_finds_nothing_wrong() -> None:

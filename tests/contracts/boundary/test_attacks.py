@@ -30,12 +30,12 @@ from course.scoring.judging.session import GradingSession, Submission
 from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Verdict, for_student
 from tests.benchmarks.protection import descendants_cpu
-from tests.contracts.levels import require_level
+from tests.contracts.boundary.levels import require_level
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 CORPUS = ROOT / "tests" / "attacks"
 ARENA = CORPUS / "arena"
 TIMEOUT_S = 1.0

@@ -286,7 +286,7 @@ def test_a_file_that_is_wrong_is_named(source: str, problem: str, collect: Any) 
 
 
 def test_the_pytest_that_runs_here_is_one_the_project_allows() -> None:
-    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))["project"]
+    project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text("utf-8"))["project"]
     requirement = next(entry for entry in project["dependencies"] if entry.startswith("pytest"))
     low, high = re.fullmatch(r"pytest>=([\d.]+),<(\d+)", requirement).groups()
     here = tuple(map(int, re.findall(r"\d+", pytest.__version__)[:2]))

@@ -6,7 +6,7 @@ import pytest
 
 from course.isolation.spawn import Level
 from tests.benchmarks.redaction import SENDERS, trial
-from tests.contracts.levels import require_level
+from tests.contracts.boundary.levels import require_level
 from tests.turns import soak_unless
 
 #: A check passes, fails by one of its own sentences, or gives no value in one of five ways.

@@ -14,7 +14,7 @@ from course.ids import WARM_UPS
 from course.isolation.keeping import kept_sandboxes
 from course.progress.mistakes import NO_MISTAKE
 from course.scoring.judging.session import GradingSession, Submission
-from tests.contracts.audited import CATALOG, EXERCISES, IN_PART, programs
+from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs
 
 if TYPE_CHECKING:
     from course.authoring.report import AuditReport

@@ -226,13 +226,12 @@ class LinearStep(_Plain):
         """One step of size h (s) from (q, v) at time t.
 
         Raises:
-            TypeError: q is a single number; a step takes arrays.
+            TypeError: q or v is a single number; a step takes arrays.
             ValueError: accel is not that of an oscillator: it does not pull a unit displacement back.
         """
-        q = np.asarray(q, dtype=float)
-        if not q.ndim:
+        q, p = np.asarray(q, dtype=float), np.asarray(v, dtype=float)
+        if not (q.ndim and p.ndim):
             raise TypeError("This step takes arrays: q and v have the shape (d,), also for d = 1.")
-        p = np.asarray(v, dtype=float)
         pull = -float(np.ravel(accel(t, np.ones(q.shape), np.zeros(q.shape)))[0])
         if not pull > 0.0:
             raise ValueError("This step needs accel = -omega**2 * q; the accel it got does not pull back.")

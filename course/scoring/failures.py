@@ -124,7 +124,7 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
         )
     # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
-    name = failure.type if known else "an exception of its own"
+    name = failure.type if known else "an exception"
     said = one_line(failure.message, _SAID).rstrip(" .") if shown else ""
     begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     return Finding(
@@ -152,8 +152,9 @@ _OTHER: dict[str, tuple[str, str, str]] = {
         "CRASHED",
     ),
     "protocol": (
-        "Your function returned something that is not plain data, or far too much of it.",
-        "Return only numbers, lists, tuples, dicts or arrays of numbers, and no more than is asked for.",
+        "Your function returned, or passed on, something that is not plain data, or far too much of it.",
+        "Return what the README asks for as plain data: real numbers, texts, None, or lists, tuples, dicts "
+        "and arrays of them, and no generator.",
         "NOT_PLAIN_DATA",
     ),
 }

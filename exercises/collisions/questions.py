@@ -94,6 +94,7 @@ FIXED = {
     ),
     "resolve_separating": _calls(
         (1.0, 2.0, [-1, 5, 0], [2, 0, 0], [1, 0, 0], 0.8),
+        (1.0, 2.0, [0, 1, 0], [0.25, 0, 0], [1, 0, 0], 0.8),
         (2.0, 1.0, [1, 2, 3], [1, 4, 3], [0, 1, 0], 0.5),
         (2.0, 1.0, [1, -4, 3], [1, -2, 3], [0, 1, 0], 0.5),
         (2.0, 1.0, [1, 2, 3], [1, 4, 3], [0, -1, 0], 0.5),
@@ -140,11 +141,15 @@ FIXED = {
         # Overlapping: approaching, then parting.
         ([0, 0, 0], [1, 0, 0], 0.5, [0.75, 0, 0], [0, 0, 0], 0.5, 1.0),
         ([0, 0, 0], [-1, 0, 0], 0.5, [0.75, 0, 0], [0, 0, 0], 0.5, 1.0),
+        # Overlapping and coming no nearer: one centre, one velocity, at right angles.
+        ([1, 0, 2], [1, 0, 0], 0.5, [1, 0, 2], [0, 2, 0], 0.5, 1.0),
+        ([0, 0, 0], [1, 0, 0], 0.5, [0.75, 0, 0], [1, 0, 0], 0.5, 1.0),
+        ([0, 0, 0], [0, 1, 0], 0.5, [0.75, 0, 0], [0, -1, 0], 0.5, 1.0),
     ),
     # The README's example, a pair that meets within the first step (for a duration whose quotient by h is not
     # exact), one behind the other, a slow pair, and the first again: nothing that is kept may count.
     "head_on_mended": [
-        *_e(1.0, 0.5, 0.0),
+        *_e(1.0, 0.6, 0.0),
         (paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5), 0.9, 0.03),
         (paths.HeadOn((2.0, 1.0), (-1.5, 0.53), (3.0, 1.0), 0.25, 0.5), 2.0, 0.05),
         (paths.HeadOn((1.0, 2.0), (-0.251, 0.2515), (0.002, -0.001), 0.25, 0.6), 2.0, 0.05),

@@ -35,7 +35,7 @@ def of_head_on(scene, truth, t, x, v, h):
     if _nearly(t, x, v, scene.at(t, truth.contact, truth.after), [truth.contact]):
         return named("PRECISION_LOST")
     if not np.allclose(x[0], scene.x0, atol=1e-9) or not np.allclose(v[0], scene.v0, atol=1e-9):
-        return named(_first_row(x, scene.x0, scene.at([h], truth.contact, truth.after)[0][0]))
+        return named(_first_row((x, v), scene.x0, scene.at([h], truth.contact, truth.after)[0][0]))
     straight, _ = scene.at(t, math.inf, None)
     if np.allclose(x, straight, atol=1e-9) and truth.contact < t[-1]:
         # Scenes that meet later come before, and were right.
@@ -51,7 +51,9 @@ def _of_meeting(scene, truth, t, x, v, h):
         return "IMPULSE_ON_SEPARATING" if 0 < blows < len(v) // 4 else None
     code = _of_wait(scene, truth, t, x, h)
     if not code and not np.allclose(v[-1], truth.after, atol=1e-8):
-        return _of_speeds(scene, v)
+        before = t < truth.contact - 1e-9
+        came = np.allclose(x[before], scene.at(t, math.inf, None)[0][before], atol=1e-8)
+        return _of_speeds(scene, v, came)
     return code or _of_timing(scene, truth, t, x, v, h)
 
 
@@ -64,9 +66,11 @@ def _nearly(t, x, v, path, contacts):
     return all(np.allclose(found, true, rtol=1e-6, atol=1e-6) for found, true in pairs)
 
 
-def _first_row(x, start, later):
+def _first_row(states, start, later):
     """What a path holds in its first row, which is not the initial state. later: where it is one step on."""
-    if len(x) > 2 and np.array_equal(x, np.broadcast_to(x[-1], x.shape)) and not np.allclose(x[0], start):
+    x = states[0]
+    same = all(np.array_equal(rows, np.broadcast_to(rows[-1], rows.shape)) for rows in states)
+    if len(x) > 2 and same and not np.allclose(x[0], start):
         return "ROWS_ALL_THE_SAME"
     missing = np.allclose(x[0], later, atol=1e-8) or not np.any(x[0])
     return "INITIAL_STATE_MISSING" if missing else "INITIAL_STATE_WRONG"
@@ -84,8 +88,8 @@ def _of_wait(scene, truth, t, x, h):
     return None
 
 
-def _of_speeds(scene, v):
-    """The velocities at the end are wrong ones: which?"""
+def _of_speeds(scene, v, came):
+    """The velocities at the end are wrong ones: which? came: whether all is right until the contact."""
     impacts = np.flatnonzero(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1))
     if len(impacts) > 1 and v[impacts[1], 0] <= v[impacts[1], 1]:  # the second one while they move apart
         return "IMPULSE_ON_SEPARATING"
@@ -101,7 +105,7 @@ def _of_speeds(scene, v):
             if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9)
         )
         codes = set(same)
-        if len(codes) == 1:  # where e is 0 or 1, several look alike
+        if came and len(codes) == 1:  # where e is 0 or 1, several look alike
             return codes.pop()
     if _probes.energy(*scene.m, *v[-1]) > _probes.energy(*scene.m, *scene.v0) * (1 + 1e-9):
         return "ENERGY_CREATED"
@@ -152,7 +156,7 @@ def of_drop(scene, truth, t, z, v, h):
         return named("PRECISION_LOST")
     if not math.isclose(z[0], scene.z0, abs_tol=1e-9) or not math.isclose(v[0], scene.v0, abs_tol=1e-9):
         later = scene.at([h], truth.times, truth.speeds)[0][0]
-        return named(_first_row(z[:, None], scene.z0, later))
+        return named(_first_row((z[:, None], v[:, None]), scene.z0, later))
     code = _drop_start(scene, truth, t, z, v, h) or _drop_later(scene, truth, t, z, v)
     return named(code) if code else None
 
@@ -164,7 +168,10 @@ def _drop_start(scene, truth, t, z, v, h):
     off = z - fall
     if before.sum() > 2 and not np.allclose(off[before], 0.0, atol=1e-8):
         return _drop_flight(scene, t, z, v, h, before, off) or "FLIGHT_WRONG"
-    if before.sum() > 2 and not np.allclose(v[before], (scene.v0 - scene.g * t)[before], atol=1e-8):
+    path, _ = scene.at(t, truth.times, truth.speeds)
+    if np.allclose(z, path, atol=1e-8) and not np.allclose(
+        v[before], (scene.v0 - scene.g * t)[before], atol=1e-8
+    ):
         return "VELOCITIES_APART"
     if np.allclose(z, fall, rtol=1e-9, atol=1e-8):
         return "FALLS_THROUGH_FLOOR"
@@ -213,8 +220,15 @@ def _drop_late(scene, truth, t, z, v):
     fallen = scene.z0 + scene.v0 * t[k] - scene.g * t[k] ** 2 / 2
     there = math.isclose(z[k], fallen, abs_tol=1e-9) or math.isclose(z[k], scene.radius, abs_tol=1e-9)
     turned = math.isclose(v[k], -down * scene.restitution, rel_tol=1e-8)
-    turns = math.isclose(v[k], down, rel_tol=1e-8) and k + 1 < len(v) and v[k + 1] > 0
+    # One that turns a step later may also have met a floor at another height.
+    turns = k + 1 < len(v) and math.isclose(v[k], down, rel_tol=1e-8) and _turned(v[k + 1], down, scene, t[1])
     return "IMPACT_AT_SAMPLE" if there and (turned or turns) else None
+
+
+def _turned(speed, down, scene, h):
+    """Whether a speed is that of a ball turned at the sample before, or at this one."""
+    e, g = scene.restitution, scene.g
+    return any(math.isclose(speed, up, rel_tol=1e-8) for up in (-e * down - g * h, -e * (down - g * h)))
 
 
 def _drop_rebound(scene, truth, t, z, v):
@@ -280,6 +294,8 @@ def _drop_impact(scene, truth, t, z, v):
     flies = 0.0 < up < 0.999 * scene.fastest and math.isclose(
         z[k], scene.radius + up * left - scene.g * left**2 / 2, abs_tol=1e-8
     )
+    # A velocity of the wrong sign is that of a much longer flight.
+    flies = flies and abs(left) <= 2 * t[1]
     return "TIME_LEFT_WRONG" if flies and abs(left - (t[k] - truth.times[0])) > 1e-8 else None
 
 

@@ -24,17 +24,18 @@ _DT, _TAU, _SHARE = 0.3, 0.5, 0.45118836
 def of_motor(submission):
     """The mistake that ``motor_step`` makes on commands that neither dead band nor limit touches."""
     calls = [(w, u, _DT, _TAU, 10.0, 2.0) for w, u in _WAYS]
-    calls += [(1.0, 6.0, dt, _TAU, 10.0, 2.0) for dt in (0.01, 1.0)]
+    calls += [(1.0, u, dt, _TAU, 10.0, 2.0) for u in (6.0, -6.0) for dt in (0.01, 1.0)]
     values = [kit.as_number(value, "w_next") for value in submission.call_each("motor_step", calls)]
     if not all(map(math.isfinite, values)):
         return None
-    if values[-2] == values[-1]:
+    up, far_up, down, far_down = values[-4:]
+    if up == far_up != 1.0 and down == far_down != 1.0:
         return named("LAG_WITHOUT_DT")
     shares = [(value - w) / (u - w) for value, (w, u) in zip(values, _WAYS, strict=False)]
     if max(shares) - min(shares) > 1e-9:
         return None
     if abs(shares[0] - _SHARE) > 1e-6:
-        return named("LAG_SHARE_WRONG")
+        return named("LAG_SHARE_WRONG") if 0.0 < shares[0] < 1.0 else None
     return named("DEADBAND_WIDTH") if _other_width(submission) else None
 
 

@@ -174,12 +174,14 @@ def test_lidar_nearest(submission):
     across = ((2.0, 1.0), (1.0, 0.2), (3.5, 2.0), (-1.0, 3.0))  # at x, from -y to y
     walls = [[[x, -y], [x, y]] for x, y in across]
     # To the left a long wall before a short one, whose middle and ends are all nearer than those of the long.
-    walls = np.array([*walls, [[-14.0, 1.5], [1.2, 1.5]], [[-1.0, 1.8], [0.0, 1.8]]])
-    angles = np.array([0.0, 0.3, -0.49, 0.7, 1.8])
-    expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0, 1.5 / math.sin(1.8)]
+    walls += [[[-14.0, 1.5], [1.2, 1.5]], [[-1.0, 1.8], [0.0, 1.8]]]
+    # And two of 1 m, square to a beam from either side: the cross product of unit vectors is 1 or -1.
+    walls = np.array([*walls, [[-0.1, 1.2], [0.9, 1.2]], [[-0.5, -2.5], [0.5, -2.5]]])
+    angles = np.array([0.0, 0.3, -0.49, 0.7, 1.8, math.pi / 2, -math.pi / 2])
+    expected = [1.0, 2.0 / math.cos(0.3), 3.5 / math.cos(0.49), 5.0, 1.5 / math.sin(1.8), 1.2, 2.5]
     value = submission.call("lidar", np.zeros(3), walls, angles, 5.0, 0.0, np.random.default_rng(1))
     kit.expect_array(
-        kit.as_vector(value, 5, "ranges"),
+        kit.as_vector(value, 7, "ranges"),
         expected,
         abs=1e-9,
         source="rounding",

@@ -18,6 +18,7 @@ _BEFORE = np.array([[[1.0, -0.5], [1.0, 9.0]], *_WALL])  # a near wall whose mid
 _WIDE = np.array([[[2.0, -8.0], [2.0, 8.0]]])  # both ends beyond the reach, and next its middle
 _ASIDE = np.array([[[2.0, -0.5], [2.0, 14.0]]])
 _ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
+_ONE_METRE = np.array([[[2.0, -0.5], [2.0, 0.5]]])
 
 #: Four beams in a crooked room, and how far off its walls are along each.
 _CORNERS = np.array([[-2.0, -1.5], [3.0, -1.0], [2.5, 2.0], [-1.5, 1.2]])
@@ -43,6 +44,8 @@ _SCENES = (
     ("BEYOND_RANGE", _ORIGIN, _WALL + np.array([4.0, 0.0]), 0.01, _REACH, _at(0.01, 6.0)),
     ("LONG_WALL_LEFT_OUT", _ORIGIN, _WIDE, 0.1, *_at(0.1, 2.0), (_REACH,)),
     ("LONG_WALL_LEFT_OUT", _ORIGIN, _ASIDE, 0.1, *_at(0.1, 2.0), (_REACH,)),
+    ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE, 0.0, 2.0, (_REACH,)),
+    ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE[:, ::-1], 0.0, 2.0, (_REACH,)),
 )
 #: position, walls, the one beam, the right reading: a wall ahead, one wall along the beam, none within reach
 _PLAIN = (
@@ -52,8 +55,9 @@ _PLAIN = (
 )
 
 
-#: One wall in three places; what a beam at it reads has to differ.
-_SHIFTS = ((0.0, 0.0), (1.0, 0.0), (-0.7, 0.0))
+#: A wall in three places; what a beam at it reads has to differ.
+_SHIFTS = ((0.0, 0.0), (1.0, 0.3), (-0.7, -0.2))
+_SLANTED = np.array([[[2.0, -1.5], [3.0, 2.0]]])
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
@@ -68,19 +72,20 @@ def of_lidar(submission, noisy=True):
     calls = [((_X, _Y, heading), _ROOM, fan) for heading, fan in beams]
     calls += [((-0.5, 0.6, _HEADING), _ROOM, _FAN)]
     calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
-    calls += [(_ORIGIN, _WALL + shift, np.array([0.05])) for shift in _SHIFTS]
+    calls += [(_ORIGIN, wall + shift, np.array([0.05])) for wall in (_WALL, _SLANTED) for shift in _SHIFTS]
     calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
     results = submission.call_each("lidar", calls)
     *fans, moved = (kit.as_vector(result, len(_FAN), "ranges") for result in results[: len(beams) + 1])
-    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[len(beams) + 1 : -3]])
-    shifted = {float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-3:]}
-    if len(shifted) == 1 and shifted != {_REACH}:
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[len(beams) + 1 : -6]])
+    shifted = [float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-6:]]
+    if len(set(shifted)) == 1 and shifted[0] != _REACH:
         return named("WALLS_NOT_READ")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
     if np.all(right) and np.allclose(fans[0], _READS, rtol=0, atol=1e-9):
         return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
-    return _of_scenes(readings, right, _turning(*fans), fixed)
+    room = np.allclose(fans[0], _READS, rtol=0, atol=1e-9)
+    return _of_scenes(readings, right, _turning(*fans), fixed, room)
 
 
 def _turning(turned, ahead, less, more):
@@ -92,10 +97,11 @@ def _turning(turned, ahead, less, more):
     return "HEADING_SUBTRACTED" if np.allclose(turned, less, rtol=0, atol=1e-9) else None
 
 
-def _of_scenes(readings, right, turning, fixed):
+def _of_scenes(readings, right, turning, fixed, room):
     """From what was read in the scenes, and what turning the robot does to the beams of the room.
 
-    fixed: whether moving it changes nothing there
+    fixed: whether moving it changes nothing there; room: whether the room is read as it is, as it is from
+    within although walls have no ends, or parallel ones are seen
     """
     plain, parallel, nothing = right[-3:]
     if not nothing:
@@ -104,11 +110,12 @@ def _of_scenes(readings, right, turning, fixed):
         return None  # beams go astray, and not in a way that is known: nothing else can be told from them
     if turning:
         return named(turning)
-    if np.all(right[:-3]) and not parallel:
+    if np.all(right[:-3]) and not parallel and room:
         return named("PARALLEL_WALLS")
     seen = zip(_SCENES, readings, strict=False)
     codes = (code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9)
-    return next((named(code) for code in codes if fixed or code != "POSITION_IGNORED"), None)
+    only = {"POSITION_IGNORED": fixed, "WALLS_ENDLESS": room}
+    return next((named(code) for code in codes if only.get(code, True)), None)
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything

@@ -96,8 +96,14 @@ def _plays():
     )
     for x, state in places:
         yield x, 1.0, state
-    yield 1.1, 0.3, 0.9
-    yield 1.1, 0.3, 2.0
+    for x, gap, state in (
+        (1.1, 0.3, 0.9),
+        (1.1, 0.3, 2.0),
+        (-3.0, 3.0, 4.0),
+        (-10.0, 2.0, 0.0),
+        (8.0, 5.0, -1.0),
+    ):
+        yield x, gap, state
 
 
 def _signals():

@@ -285,7 +285,11 @@ def expect_fits(submission, cases):
         off[:, 2] = (np.array(found)[:, 2] - right[:, 2]) / np.sqrt(right[:, 0] * right[:, 1])
     off[~np.isfinite(off)] = np.inf
     walk = np.array(found)[:, 1]
-    looks = (lambda *args: sensors.of_density(*args, walk), sensors.of_walk, sensors.of_bias0)
+    looks = (
+        lambda *args: sensors.of_density(*args, walk),
+        lambda *args: sensors.of_walk(*args, submission),
+        sensors.of_bias0,
+    )
     units = ("log of a ratio", "log of a ratio", "sqrt(N K)")
     for column, key in enumerate(keys):
         i = int(np.argmax(np.abs(off[:, column])))

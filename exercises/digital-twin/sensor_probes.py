@@ -48,7 +48,8 @@ def of_counts(counts, wanted):
     if np.all(off % _OVERFLOW == 0) and np.any(off):
         return named("COUNTS_OVERFLOW")
     middle = float(np.median(ratios))
-    steady = np.all(np.abs(ratios - middle) <= within) and middle > 0 and abs(middle - 1) > within
+    # Counts of nearly zero have no factor: any would fit.
+    steady = np.all(np.abs(ratios - middle) <= within) and middle > 2 * within and abs(middle - 1) > within
     return named("COUNTS_OFF_BY_FACTOR") if steady else None
 
 
@@ -73,6 +74,7 @@ def of_imu(submission, bias_first=False):
         (ones, _SLOW, 0.0, _K, 0.3),
         (zeros, _FAST, _K, _K, 0.0),
         (zeros, _FAST, _K, 0.0, 0.3),
+        (zeros, _FAST, 0.0, _K, 0.3),
     )
     runs = submission.call_each("imu", [(*setup, np.random.default_rng(next(seeds))) for setup in setups])
     pairs = [
@@ -94,9 +96,12 @@ def _of_parts(pairs, true):
     measured, bias = pairs[0]  # without a walk the bias is flat, and the rate is not
     rough, flat = (float(np.std(np.diff(part))) for part in (bias, measured))
     rate, walked = pairs[2]  # and without white noise the rate is the true one plus a walk
-    if (np.ptp(measured - bias) < 1e-12 and _is_white(rate - walked - true, np.diff(walked))) or (
-        rough > 0 and _wanders(bias) > 8 and np.ptp(walked) == 0
-    ):
+    still, wandered = pairs[6]  # noise that the true rate makes is none of the walk's
+    if (
+        np.ptp(measured - bias) < 1e-12
+        and np.ptp(still - wandered) > 1e-9
+        and _is_white(rate - walked - true, np.diff(walked))
+    ) or (rough > 0 and _wanders(bias) > 8 and np.ptp(walked) == 0):
         return "STRENGTHS_MIXED"
     if not rough > 0:
         return None
@@ -118,8 +123,10 @@ def _wanders(values):
 
 
 def _of_white(pairs):
-    """From two recordings without a walk."""
+    """From two recordings without a walk, if there is no noise without a density."""
     noise = [measured - bias for measured, bias in pairs[:2]]
+    if np.ptp(np.subtract(*pairs[6])) > 1e-9:
+        return None
     if all(np.ptp(part) < 1e-12 < abs(part[0]) for part in noise):
         other = np.subtract(*pairs[5])  # with other random numbers
         return "WHITE_NOISE_MISSING" if abs(other[0] - noise[0][0]) < 1e-12 else "WHITE_NOISE_SHARED"
@@ -209,6 +216,10 @@ def _of_power(noise, right, powers, missing, factor):
     if not (fast > 0 and slow > 0):
         return missing
     power = math.log(slow / fast) / math.log(_SLOW / _FAST)
+    # A single jump, or tails that a few draws decide, is not how all of them depend on dt.
+    middle_fast, middle_slow = (float(np.median(np.abs(part - np.median(part)))) for part in noise)
+    if middle_fast > 0 and abs(math.log(middle_slow / middle_fast) / math.log(_SLOW / _FAST) - power) > 0.1:
+        return None
     for value, code in powers.items():
         if abs(power - value) < 0.1:
             return code
@@ -217,10 +228,14 @@ def _of_power(noise, right, powers, missing, factor):
 
 
 def _of_both(pairs):
+    (noise, held), (_, walk) = pairs[0], pairs[6]
+    alone = np.std(np.diff(walk)), np.std(noise - held)
     measured, bias = pairs[4]
     white, steps = (measured - bias), np.diff(bias)
-    sizes = np.std(steps) / (_K * math.sqrt(_FAST)), np.std(white) / (_K / math.sqrt(_FAST))
-    if max(abs(size - 1) for size in sizes) > 0.05:
+    rights = _K * math.sqrt(_FAST), _K / math.sqrt(_FAST)
+    if any(abs(size / right - 1) > 0.05 for size, right in zip(alone, rights, strict=True)):
+        return None
+    if any(abs(np.std(x) / right - 1) > 0.05 for x, right in zip((steps, white), rights, strict=True)):
         return "STRENGTHS_MIXED"  # each is right where the other is not asked for
     alike = max(abs(np.corrcoef(white[shift : len(steps) + shift], steps)[0, 1]) for shift in (0, 1))
     return "SAME_DRAW_TWICE" if alike > 0.5 else None
@@ -318,7 +333,7 @@ def _off_by(ratios, factor, rel, scatter=_STEADY):
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_walk(found, cases):
+def of_walk(found, cases, submission):
     """The mistake behind random walks found in recordings; as ``of_density``."""
     right = np.array([case[3] for case in cases])
     ratios = found / right
@@ -327,7 +342,7 @@ def of_walk(found, cases):
         return named("NOISE_COUNTED_AS_DRIFT")
     if not (np.all(np.isfinite(ratios)) and np.all(found >= 0)):
         return None
-    if _off_by(found / right**2, 1.0, 0.5, 2 * _STEADY):
+    if _off_by(found / right**2, 1.0, 0.5, 2 * _STEADY) and _is_square(submission, cases[0], found[0]):
         return named("ROOT_FORGOTTEN")
     both = min(np.mean(ratios > 1.2), np.mean(ratios < 1 / 1.2))
     if both > 0.2 or (both > 0 and np.std(np.log(ratios)) > 0.4):
@@ -336,6 +351,13 @@ def of_walk(found, cases):
     if _off_by(ratios, 1 / math.sqrt(3), 0.15):
         return named("WALK_WITHOUT_THREE")
     return named("WALK_TOO_LARGE" if np.median(ratios) > 1 else "WALK_TOO_SMALL")
+
+
+def _is_square(submission, case, found):
+    """Whether ten times the recording has a walk a hundred times as large: numbers may be near by chance."""
+    still, dt, *_ = case
+    walk = kit.as_number(submission.call("fit_noise", 10 * still, dt)["bias_random_walk"], "bias_random_walk")
+    return math.isclose(walk, 100 * found, rel_tol=0.2)
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything

@@ -58,7 +58,7 @@ def _maps():
     euler = LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
     calm = LinearStep([0.5, 0.02], [0.1], [0.0], [0.4])
     yield from ((verlet, 3.7), (flipped, 4.0), (spiral, 0.6), (pocket, 1.7), (small, 2.3))
-    yield from ((euler, 2.9), (calm, 1.3))
+    yield from ((euler, 2.9), (calm, 1.3), (verlet, 50.0))
 
 
 QUESTIONS = {

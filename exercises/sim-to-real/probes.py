@@ -226,8 +226,11 @@ _LIKENESSES = (
         "LAG_NOT_SUM",
         lambda got, true: not _alike(got["lag"], got["tau"] + got["latency"], 0.02),
     ),
-    ("LATENCY_IGNORED", lambda got, true: np.median(np.abs(got["latency"])) < 0.012),
-    ("LAG_IGNORED", lambda got, true: np.median(np.abs(got["tau"])) < 0.012),
+    (
+        "LATENCY_IGNORED",
+        lambda got, true: np.median(np.abs(got["latency"])) < 0.012 and np.median(got["m"]) > 0,
+    ),
+    ("LAG_IGNORED", lambda got, true: np.median(np.abs(got["tau"])) < 0.012 and np.median(got["m"]) > 0),
     (
         "TIME_FROM_SHEET",
         lambda got, true: len(got["tau"]) > 1 and any(_sheet(got, true, k) for k in ("tau", "latency")),
@@ -235,6 +238,12 @@ _LIKENESSES = (
     (
         "PARAMETER_FIXED",
         lambda got, true: len(got["m"]) > 1 and any(_fixed(got, true, k) for k in NAMES),
+    ),
+    (
+        "ESTIMATE_NEGATIVE",
+        lambda got, true: (
+            np.median(got["m"]) < 0 or min(np.median(got[k]) for k in ("tau", "latency")) < -0.01
+        ),
     ),
     (
         "FORCE_SCALED",
@@ -358,7 +367,9 @@ def of_gains(submission, estimate, box, gains, success):
         (
             "DELAY_IGNORED",
             # A quarter of a second more changes the best gains so much that no grid is too coarse to show it.
-            lambda: same[2] and _is_best(kp, kd, prompt, box) and unmoved((sooner, box), (very_late, box)),
+            lambda: (
+                same[2] and _is_best(kp, kd, prompt, box, 1.5) and unmoved((sooner, box), (very_late, box))
+            ),
         ),
         # Gains that stay for heavy carts too are at the search's edge, which the box cannot move.
         ("RANDOMIZATION_IGNORED", lambda: same[3] and not same[0] and unmoved(*boxes)),
@@ -469,11 +480,15 @@ def _better(gains, success):
     return max(((kp * a, kd * b) for a, b in _AROUND), key=lambda pair: success(*pair))
 
 
-def _is_best(kp, kd, estimate, box):
-    """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate."""
+def _is_best(kp, kd, estimate, box, most=3.0):
+    """Whether no gains around (kp, kd) do clearly better on carts drawn from the box about the estimate.
+
+    Where hardly a cart settles, gains are as good as any around them, and suit none: they have to settle
+    within ``most``, s, in the mean.
+    """
     factors = np.array(_AROUND).T
     mean = _settling((kp * factors[0], kd * factors[1]), estimate, box).mean(axis=0)
-    return bool(mean.min() > 0.85 * mean[0] and mean[0] < 3.0)
+    return bool(mean.min() > 0.85 * mean[0] and mean[0] < most)
 
 
 def _settling(gains, estimate, box):

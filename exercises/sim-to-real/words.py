@@ -106,7 +106,7 @@ def box_of(plan):
         if not (0.0 < low <= high < math.inf):
             logarithms = low < 0 < high and math.isclose(-low, high)
             kit.fail(
-                "An interval of the randomisation box does not consist of positive factors.",
+                "An interval of the randomisation box is not two positive factors, the smaller first.",
                 diagnose=named("BOX_IN_LOGARITHMS" if logarithms else "BOX_REVERSED"),
                 input={"parameter": name},
                 actual=[low, high],

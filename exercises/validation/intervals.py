@@ -91,7 +91,9 @@ def expect_level(submission, rng, statistic):
         for e, seed in zip(series, seeds, strict=True)
     ]
     again = [(*calls[0][:-1], np.random.default_rng(seed)) for seed in (seeds[0], seeds[0] + 1)]
-    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", calls + again))
+    # A short series, of which there are more resamples than it has samples.
+    short = (series[0][:60], statistic, 8, 100, 0.32, np.random.default_rng(seeds[0]))
+    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", [*calls, short, *again]))
     shown = {"N": 240, "block": 16, "n_boot": 120, "statistic": "mean of e**2, times a number"}
     _expect_chance(submission, ends[[0, -2, -1]], shown)
     wide, narrow = ends[:8], ends[8:16]

@@ -52,11 +52,12 @@ class Recording:
     noise: float
 
 
-def record(rng, run_id, seconds, dt, noise, *, swing=1.0):
+def record(rng, run_id, seconds, dt, noise, *, swing=1.0, begin=0.0):
     """Drive the real cart once, and measure.
 
     Args:
         swing: how far it is driven, as a multiple of the usual.
+        begin: the first time, s.
     """
     omega = 2 * np.pi * rng.uniform([0.4, 0.8, 1.2], [0.7, 1.1, 1.6])
     # Each sine moves the cart by about as much, whatever its frequency; the force of no frequency keeps it
@@ -65,7 +66,7 @@ def record(rng, run_id, seconds, dt, noise, *, swing=1.0):
     steady = FRICTION * rng.choice([-1.0, 1.0]) * rng.uniform(0.6, 1.4)
     phase = rng.uniform(0, 2 * np.pi, 3)
     drive = Drive(np.append(amplitude, steady), np.append(omega, 0.0), np.append(phase, np.pi / 2))
-    t = dt * np.arange(round(seconds / dt) + 1)
+    t = begin + dt * np.arange(round(seconds / dt) + 1)
     return Recording(run_id, t, drive, drive.speed(t) + noise * rng.standard_normal(len(t)), noise)
 
 

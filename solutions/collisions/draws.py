@@ -137,6 +137,20 @@ def overlap(rng, approach):
     return xa, va, ra, xb, va + speed * n + across(rng, n), rb, 1.0
 
 
+def level(rng):
+    """Spheres that overlap and come no nearer: with one centre, at one velocity, or moving at right angles.
+
+    In whole numbers, so that x . v is exactly zero.
+    """
+    ra, rb = rng.uniform(2.0, 4.0, 2).tolist()
+    xa, va, v = (rng.integers(-4, 5, 3).astype(float) for _ in range(3))
+    a, b = rng.integers(1, 4, 2).tolist()
+    turn = rng.permutation(3)
+    apart, along = np.array([a, 0.0, -b])[turn] / 2, np.array([b, 2.0, a])[turn]
+    pairs = ((xa, va + v + 0.5), (xa + apart, va), (xa + apart, va + along))
+    return [(xa, va, ra, xb, vb, rb, 1.0) for xb, vb in pairs]
+
+
 def same_meeting(rng, share):
     """One meeting four times: as it is, from a train, from elsewhere, exchanged."""
     xa, va, ra, xb, vb, rb, dt = passing(rng, 3, share)
@@ -256,6 +270,16 @@ def short_hop(rng):
     )
     high, up = (rng.uniform(0.05, 0.12), rng.uniform(0.1, 0.3)) * np.array([g * h * h, g * h])
     return paths.Drop(radius + float(high), float(up), radius, float(rng.uniform(0.45, 0.85)), g), 20 * h, h
+
+
+def slim(rng):
+    """A pair whose radii, in m, are smaller than the step, in s, and the time to the contact within it."""
+    h, radius = float(rng.uniform(0.15, 0.3)), float(rng.uniform(0.01, 0.03))
+    va, vb = rng.uniform((0.5, -2.0), (2.0, -0.5)).tolist()
+    contact = (int(rng.integers(3, 7)) + rng.uniform(0.3, 0.7)) * h
+    left = float(rng.uniform(-2.0, 2.0))
+    places = left, left + 2 * radius + (va - vb) * contact
+    return paths.HeadOn(masses(rng), places, (va, vb), radius, float(rng.uniform(0.2, 0.8))), 12 * h, h
 
 
 def early(rng):

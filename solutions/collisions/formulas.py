@@ -426,7 +426,7 @@ _TOUCHING = (
 _IMPACTS = {
     "acts": (
         ("IMPULSE_ON_SEPARATING", lambda c: True),
-        ("NORMAL_REVERSED", lambda c: c < 0),
+        ("APPROACH_REVERSED", lambda c: c < 0),
     ),
     "factor": FACTORS,
     "give": GIVES,
@@ -441,7 +441,7 @@ _IMPACTS = {
         ("MASS_NOT_INVERSE", lambda j, m, other: j * m),
         ("MASSES_IGNORED", lambda j, m, other: j),
         ("MASSES_SWAPPED", lambda j, m, other: j / other),
-        ("MASSES_SWAPPED", lambda j, m, other: j * other),
+        ("MASS_NOT_INVERSE", lambda j, m, other: j * other),
         ("MASS_NOT_INVERSE", lambda j, m, other: j / (m + other)),
         ("MASS_NOT_INVERSE", lambda j, m, other: j / m**2),
         ("MASS_NOT_INVERSE", lambda j, m, other: j / math.sqrt(m)),
@@ -545,7 +545,7 @@ TERMS = {
                 ("RADIUS_IGNORED", lambda r, d: -d),
                 ("DISTANCE_IGNORED", lambda r, d: r),
             ),
-            "touching": (*_TOUCHING, ("DEPTH_SIGN_FLIPPED", lambda deep: deep <= 0)),
+            "touching": (*_TOUCHING, ("TOUCHING_INVERTED", lambda deep: deep <= 0)),
             "radii": (
                 ("RADIUS_IGNORED", lambda a, b: 0.0),
                 ("ONE_RADIUS_ONLY", lambda a, b: a),
@@ -603,7 +603,7 @@ TERMS = {
             ),
             "touching": (
                 *_TOUCHING,
-                ("DEPTH_SIGN_FLIPPED", lambda deep: deep <= 0),
+                ("TOUCHING_INVERTED", lambda deep: deep <= 0),
             ),
         },
     ),
@@ -692,9 +692,9 @@ TERMS = {
                 ("MOTION_NOT_RELATIVE", lambda va, vb: va),
                 ("MOTION_NOT_RELATIVE", lambda va, vb: va + vb),
                 ("MOTION_NOT_RELATIVE", lambda va, vb: -va - vb),
-                ("TIME_NEGATED", lambda va, vb: vb - va),
+                ("MOTION_REVERSED", lambda va, vb: vb - va),
             ),
-            "real": (("MISS_IS_A_NUMBER", abs), ("MISS_IS_A_NUMBER", lambda room: max(room, 0.0))),
+            "real": (("MISS_NOT_SEEN", abs), ("MISS_NOT_SEEN", lambda room: max(room, 0.0))),
             "middle": (
                 ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing),
                 ("MIDDLE_TERM_WRONG", lambda nearing, speed2: nearing / math.sqrt(speed2)),
@@ -731,7 +731,7 @@ OTHERS = {
         (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
-        (("NORMAL_REVERSED",), _reversed(_impact())),
+        (("APPROACH_REVERSED",), _reversed(_impact())),
         (("EACH_BODY_ALONE",), _each_alone),
         (("RETURNS_SWAPPED",), _swapped(_impact())),
         (("MASSES_SWAPPED",), _exchanged(_impact())),
@@ -739,7 +739,7 @@ OTHERS = {
         (("PERFECTLY_STICKY",), _stick),
     ],
     "resolve_with_friction": [
-        (("NORMAL_REVERSED",), _reversed(_impact(friction=_coulomb))),
+        (("APPROACH_REVERSED",), _reversed(_impact(friction=_coulomb))),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets, friction=_coulomb)) for meets in _BY_ONE),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),

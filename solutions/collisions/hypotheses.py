@@ -14,6 +14,14 @@ from course.grading import kit
 
 formulas = kit.sibling(__file__, "formulas")
 
+#: What else is true of a program with a mistake, by its code.
+ALSO = {
+    "SPEED_UNSIGNED": ("IMPULSE_ON_SEPARATING",),
+    "GRAVITY_WRONG": ("OTHER_GRAVITY",),
+    "RESTING_JITTER": ("SINKS_THROUGH_FLOOR",),
+    "REBOUND_COMPLEMENT": ("RESTS_TOO_EARLY",),
+}
+
 
 def hypotheses():
     """Task, codes of what is wrong, and function of each, those with one mistake first."""
@@ -198,7 +206,7 @@ _DROP = {
         ("RESTITUTION_DOUBLED", lambda e: 1 + e),
         ("RESTITUTION_DOUBLED", lambda e: 2 * e),
         ("RESTITUTION_HALVED", lambda e: e / 2),
-        ("RESTITUTION_SIGN_FLIPPED", lambda e: 1 - e),
+        ("REBOUND_COMPLEMENT", lambda e: 1 - e),
     ),
     "floor": (
         ("RADIUS_IGNORED", lambda r: 0.0),
@@ -208,8 +216,8 @@ _DROP = {
     "fall": (
         ("EULER_IN_FLIGHT", 1.0),
         ("EULER_IN_FLIGHT", 0.0),
-        ("GRAVITY_WRONG", 0.25),
-        ("GRAVITY_WRONG", -0.5),
+        ("FLIGHT_WRONG", 0.25),
+        ("FLIGHT_WRONG", -0.5),
     ),
     "pull": (("GRAVITY_WRONG", -1.0), ("GRAVITY_WRONG", 2.0), ("GRAVITY_WRONG", 0.5), ("GRAVITY_WRONG", 0.0)),
     "count": _HEAD_ON["count"],

@@ -25,6 +25,7 @@ def _never(rng):
         meets,
         (xa, va, ra, xb, vb, rb, 3 * dt),
         *overlaps,
+        *draws.level(rng),
     ]
 
 
@@ -91,7 +92,11 @@ PUBLIC = {
         *draws.ends(draws.line(rng)),
         *(change(rng, draws.line(rng)) for change in draws.MASSES),
     ],
-    "impulse_separating": lambda rng: [*(draws.parting(draws.line(rng)) for _ in range(3)), draws.line(rng)],
+    "impulse_separating": lambda rng: [
+        *(draws.parting(draws.line(rng)) for _ in range(3)),
+        draws.parting(draws.slow_line(rng)),
+        draws.line(rng),
+    ],
     "impulse_walls": lambda rng: [draws.wall(draws.line(rng), side) for side in (0, 1)],
     "resolve_oblique": lambda rng: [
         *(draws.impact(rng, d) for d in (3, 3, 2)),
@@ -101,6 +106,7 @@ PUBLIC = {
     ],
     "resolve_separating": lambda rng: [
         *(draws.carried(rng, draws.parting(draws.impact(rng, d)), way) for d, way in ((3, 1.0), (2, -1.0))),
+        draws.parting(draws.slow(rng, 3)),
         draws.impact(rng, 3),
     ],
     "resolve_walls": lambda rng: [

@@ -247,12 +247,12 @@ _LIDAR = {
     ),
     "vector": (
         ("BEAM_SIN_COS_SWAPPED", lambda c: (np.sin(c), np.cos(c))),
-        ("WALL_VECTOR_REVERSED", lambda c: (-np.cos(c), -np.sin(c))),
+        ("BEAM_REVERSED", lambda c: (-np.cos(c), -np.sin(c))),
     ),
     "start": (
         ("POSITION_IGNORED", lambda walls, place: walls[:, 0]),
         ("WALL_VECTOR_REVERSED", lambda walls, place: place - walls[:, 0]),
-        ("WALL_VECTOR_REVERSED", lambda walls, place: walls[:, 0] + place),
+        ("POSITION_SIGN_FLIPPED", lambda walls, place: walls[:, 0] + place),
         ("WALL_ENDS_MIXED", lambda walls, place: walls[:, 1] - place),
     ),
     "along_wall": (("WALL_ENDS_MIXED", lambda walls: walls[:, 0] - walls[:, 1]),),
@@ -261,6 +261,7 @@ _LIDAR = {
         ("WALLS_ENDLESS", lambda share: True),
         ("WALLS_ENDLESS_ONE_WAY", lambda share: share >= 0),
         ("WALLS_ENDLESS_ONE_WAY", lambda share: share <= 1),
+        ("NOTHING_IS_HIT", lambda share: share != share),  # noqa: PLR0124 - false for each
     ),
     "pick": (
         (

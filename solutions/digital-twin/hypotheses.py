@@ -12,6 +12,9 @@ from course.grading import kit
 
 formulas, motions = (kit.sibling(__file__, name) for name in ("formulas", "motions"))
 
+#: What else is true of a program with a mistake, by its code.
+ALSO = {"COUNTS_ARE_STEPS": ("COUNTS_DEPEND_ON_OTHERS",)}
+
 
 def hypotheses():
     """Task, codes of what is wrong, and function of each, those with one mistake first."""

@@ -297,6 +297,7 @@ _DRIVE = {
 #: Rolling straight, along the old heading or the new: both at once are one mistake.
 _EULER = {"chord": lambda turn: 1.0, "middle": lambda heading, turn: heading}
 _TURNED_FIRST = {"chord": lambda turn: 1.0, "middle": lambda heading, turn: heading + turn}
+_STRAIGHT = {term: forms for term, forms in _DRIVE.items() if term not in {"chord", "middle"}}
 
 # -- the twin -------------------------------------------------------------------------------------------
 
@@ -418,7 +419,7 @@ TERMS = {
     "motor_step": [(_motor, {}, _MOTOR), (_motor, {"clips_first": True}, _MOTOR)],
     "backlash": [(_play, {}, _PLAY)],
     "delay_line": [(_delay, {}, _DELAY)],
-    "diff_drive_step": [(_arc, {}, _DRIVE), (_arc, _EULER, _DRIVE), (_arc, _TURNED_FIRST, _DRIVE)],
+    "diff_drive_step": [(_arc, {}, _DRIVE), *((_arc, base, _STRAIGHT) for base in (_EULER, _TURNED_FIRST))],
     "sync": [(_sync, {}, _SYNC), (_sync, {"late": "used"}, _LATE)],
     "command": [
         (_command, {}, _COMMAND),

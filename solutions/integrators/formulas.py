@@ -212,6 +212,7 @@ def _weights(divisor):
     return tuple(w / divisor for w in (1, 2, 2, 1))
 
 
+_OF_ALL = {"FACTOR_WRONG": "WEIGHTS_DO_NOT_ADD_UP", "TERM_MISSING": "STATE_NOT_ADVANCED"}
 _RK4_TERMS = {
     "gives": _GIVES,
     "weights": (
@@ -295,7 +296,8 @@ _RK4_TERMS = {
             for some in ((1, 2, 1, 1), (1, 1, 2, 1), (1, 1, 1, 1))
         ),
     ),
-    "size": _sizes(1.0),
+    # A factor of both sums is one of all the weights.
+    "size": tuple((_OF_ALL.get(code, code), form) for code, form in _sizes(1.0)),
     "sign": _SIGN,
 }
 
@@ -346,7 +348,7 @@ TERMS = {
             _EULER_TERMS
             | {
                 "time": (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 0.5), ("STAGE_TIMES_WRONG", 2.0)),
-                "moves": (("SEMI_IMPLICIT_IS_EULER", "old"),),
+                "moves": (("END_TIME_OLD_POSITION", "old"),),
             },
         ),
     ],

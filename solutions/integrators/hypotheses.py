@@ -14,6 +14,15 @@ from course.grading import kit
 
 formulas = kit.sibling(__file__, "formulas")
 
+#: What else is true of a program with a mistake, by its code.
+ALSO = {
+    "INITIAL_STATE_WRONG": ("INITIAL_STATE_MISSING",),
+    "ROWS_ALL_THE_SAME": ("INITIAL_STATE_WRONG",),
+    "TRUNCATED_AND_SHORT": ("OFF_BY_ONE_SAMPLE",),
+    "WEIGHT_SIGN_FLIPPED": ("WEIGHTS_DO_NOT_ADD_UP",),
+    "STAGE_TIMES_BEHIND": ("TIME_OUTSIDE_STEP",),
+}
+
 
 def hypotheses():
     """Task, codes of what is wrong, and function of each, those with one mistake first."""

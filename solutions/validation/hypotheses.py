@@ -68,7 +68,7 @@ _FOLDS = {
         ("MEAN_OF_RUNS", lambda e: np.sqrt(np.mean([np.mean(run**2) for run in e]))),
         ("ROOT_MISSING", lambda e: np.mean(np.concatenate(e) ** 2)),
         ("NOT_AVERAGED", lambda e: np.sqrt(np.sum(np.concatenate(e) ** 2))),
-        ("NOT_AVERAGED", lambda e: np.sum([np.sqrt(np.mean(run**2)) for run in e])),
+        ("SUM_OF_RUNS", lambda e: np.sum([np.sqrt(np.mean(run**2)) for run in e])),
         ("MEAN_REMOVED", lambda e: np.std(np.concatenate(e))),
         ("MEAN_ABSOLUTE", lambda e: np.mean(np.abs(np.concatenate(e)))),
         ("BIAS_FOR_RMSE", lambda e: np.mean(np.concatenate(e))),
@@ -129,6 +129,11 @@ def _lag(pairs):
     if key not in _LAGS:
         _LAGS[key] = model.best_shift(pairs)
     return _LAGS[key]
+
+
+def _step(pairs):
+    """The smallest step of the runs, s."""
+    return min(float(s["t"][1] - s["t"][0]) for s, _ in pairs)
 
 
 def _validate(
@@ -225,9 +230,10 @@ _RULES = [
 ]
 
 
-def _in_some(half):
-    """A rule for the width of all intervals, and of one alone."""
-    for keys in _SOME:
+def _in_some(code, half):
+    """A rule for the width of all intervals, and of one alone; of samples there is no lag."""
+    for some in _SOME:
+        keys = [key for key in some if code != "SAMPLES_COUNTED" or key != "lag_s"]
         yield lambda key, *known, keys=keys: half(*known) if key in keys else facts.half(known[1])
 
 
@@ -255,7 +261,8 @@ def _judging():
     for code, keys, rule in slips:
         if code != "POINT_ESTIMATE_JUDGED":
             yield code, _by_rule(keys, rule)
-        if code != "BURDEN_REVERSED":  # of a number there is no more to say
+        # Of a number there is no more to say, and a measure that is not judged has none.
+        if code not in {"BURDEN_REVERSED", "MEASURE_NOT_JUDGED"}:
             yield code, _by_rule(keys, rule, points=True)
 
 
@@ -300,11 +307,11 @@ _VERDICT = {
         ("LAG_SIGN", lambda pairs: -_lag(pairs)),
         ("LAG_SIGN", lambda pairs: abs(_lag(pairs))),
         ("LAG_IN_SAMPLES", lambda pairs: _lag(pairs) / (pairs[0][1]["t"][1] - pairs[0][1]["t"][0])),
-        ("LAG_WHOLE_SAMPLES", lambda pairs: round(_lag(pairs) / 0.02) * 0.02),
+        ("LAG_WHOLE_SAMPLES", lambda pairs: round(_lag(pairs) / _step(pairs)) * _step(pairs)),
         ("LAG_MEAN_OF_RUNS", lambda pairs: np.mean([_lag([pair]) for pair in pairs])),
         ("LAG_NOT_BEST", lambda pairs: _lag(pairs[:1])),
     ),
-    "half": tuple((code, form) for code, half in _RULES for form in _in_some(half)),
+    "half": tuple((code, form) for code, half in _RULES for form in _in_some(code, half)),
     "middle": (("CENTRED_ON_THE_REST", lambda value, without: np.mean(without)),),
     "wrong": tuple(_judging()),
     "few": (

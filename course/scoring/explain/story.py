@@ -56,7 +56,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     exercise has a code for it, that one. Then a program that fits decides. If none fits, the probes decide:
     first the origin of a nan, then causes, then consequences. Of several causes, the one that most checks
     name is taken, and none if two are named equally often. A cause is said of every check that saw no other;
-    a consequence only of those that saw it.
+    a consequence, and where a nan comes from, only of those that saw it. Beside a nan, or where none is named
+    most, consequences stay with the checks that saw them.
 
     Args:
         failures: its failed checks, in order.
@@ -70,18 +71,21 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     codes = OWN_WORDS if kept else STATE
     state = next((guess for guess in guesses if guess.code in codes), None)
     if kept and state is None:
-        state = merged(shared, words) if shared and shared[0] in OWN_WORDS else KEPT
+        state = merged(shared, words, fits) if shared and shared[0] in OWN_WORDS else KEPT
     if state:
         return Story(state, True, own)
     if shared:
-        return Story(merged(shared, words), True, own)
+        return Story(merged(shared, words, fits), True, own)
+    # Beside a nan, or where no consequence prevails, what a check saw of its own stays with it.
+    seen = own | {f.check for f in left if f.guess and words.kind(f.guess.code) == "consequence"}
     if not all(failure.finite for failure in left):
-        return Story(_origin(left, words), False, own)
+        return Story(_origin(left, words), False, seen, frozenset(f.check for f in left if f.finite))
     for kind in ("cause", "nan", "consequence"):
         said = [guess for guess in guesses if words.kind(guess.code) == kind]
         if said:
             named = _most_named(said)
-            return Story(named, False, own, _contradicted(left, named, words))
+            keeps = kind == "nan" or (kind == "consequence" and named is None)
+            return Story(named, False, seen if keeps else own, _contradicted(left, named, words))
     return Story(None, False, own)
 
 
@@ -100,14 +104,16 @@ def common(fits: Sequence[Row], guesses: Sequence[str] = ()) -> tuple[str, ...]:
     return tuple(dict.fromkeys(code for code in fits[0].codes if code in shared))
 
 
-def merged(codes: Sequence[str], words: Words) -> Diagnosis:
-    """One diagnosis of several mistakes, under the code of the first."""
+def merged(codes: Sequence[str], words: Words, fits: Sequence[Row]) -> Diagnosis:
+    """One diagnosis of the mistakes that the fitting programs share, under the code of the first."""
     parts = [words(code) for code in codes]
-    if len(parts) == 1:
+    if all(len(row.codes) == 1 for row in fits):
         return parts[0]
-    looks = " And another: ".join(part.looks_like for part in parts)
-    advice = " And: ".join(part.advice for part in parts)
-    return Diagnosis(parts[0].code, f"Two mistakes at once would give these results. {looks}", advice)
+    looks = " The other: ".join(part.looks_like for part in parts)
+    advice = " Or, against the other: ".join(part.advice for part in parts)
+    return Diagnosis(
+        parts[0].code, f"Two mistakes at once would give these results. One of them: {looks}", advice
+    )
 
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
@@ -127,7 +133,7 @@ def _contradicted(failures: Sequence[Failure], named: Diagnosis | None, words: W
     if named is None:
         return frozenset()
     kind = words.kind(named.code)
-    if kind == "consequence":
+    if kind != "cause":
         return frozenset(f.check for f in failures if not f.guess or f.guess.code != named.code)
     others = (f for f in failures if f.guess and f.guess.code != named.code)
     return frozenset(f.check for f in others if f.guess and words.kind(f.guess.code) == kind)

@@ -224,12 +224,16 @@ def _become(node: ast.AST, other: ast.AST) -> None:
 def tried(exercise: Exercise, session: GradingSession, program: Neighbour) -> list[CheckResult] | None:
     """The checks that a program fails; None if it had to be given up."""
 
+    late = []
+
     def give_up(*_: object) -> None:
+        late.append(True)
         raise _GivenUpError
 
     checks = [check.id for check in session.checks if check.task == program.task]
     signal.signal(signal.SIGPROF, give_up)
-    signal.setitimer(signal.ITIMER_PROF, _PATIENCE)
+    # Again and again: a probe may have caught the first.
+    signal.setitimer(signal.ITIMER_PROF, _PATIENCE, 1.0)
     try:
         submission = Submission({exercise.module: program.source.encode()})
         verdict = session.grade(submission, only=checks)
@@ -237,6 +241,8 @@ def tried(exercise: Exercise, session: GradingSession, program: Neighbour) -> li
         return None
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
+    if late:
+        return None
     return [check for check in verdict.checks if check.status not in {Status.PASS, Status.SKIP}]
 
 

@@ -283,7 +283,7 @@ def test_moment_overlap(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
-        [draws.overlap(rng, approach) for approach in (True, False, True, False)],
+        [*(draws.overlap(rng, approach) for approach in (True, False, True, False)), *draws.level(rng)],
         "For spheres that overlap from the start the result is wrong.",
         "Approaching means now; parting means None, for there is nothing to do.",
     )
@@ -333,7 +333,7 @@ def test_head_on_drawn(submission, rng):
 @pytest.mark.points(2)
 def test_head_on_large_steps(submission, rng):
     """However fast the balls and however long the step, and also in the first step, they meet"""
-    cases = [*(draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)), draws.early(rng)]
+    cases = [*(draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)), draws.early(rng), draws.slim(rng)]
     values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
     for (scene, t_end, h), truth, value in zip(cases, bundles.meetings(cases), values, strict=True):
         bundles.expect_head_on(

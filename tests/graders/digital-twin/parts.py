@@ -38,6 +38,9 @@ def expect_hall(submission, rng):
     calls.append((poses[0], rays.long_before_short(poses[0], rng), angles, r_max, 0.0, rng))
     others = poses[1], rays.hall(rng), rng.uniform(-3.1, 3.1, 40), 0.8 * r_max
     calls += [(*call, 0.0, rng) for call in bundles.one_by_one(calls[0][:4], others)]
+    # A wall of a metre, square to a beam: the cross product of their directions is 1, or -1.
+    x, ends = rng.uniform(0.5, 2.0), rng.permutation([-0.5, 0.5])
+    calls.append((np.zeros(3), np.array([[[x, y] for y in ends]]), np.array([0.0]), r_max, 0.0, rng))
     message = "In an unknown hall, without noise, a distance is wrong."
     for call, value in zip(calls, submission.call_each("lidar", calls), strict=True):
         expect_ranges(submission, value, *call[:4], message)

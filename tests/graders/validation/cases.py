@@ -54,7 +54,7 @@ def pushed_runs(rng, lengths):
 
 
 def recordings(rng, count=4, dts=(0.01, 0.02), swings=(1.0,)):
-    """Runs of the real cart, of different length; with these steps and swings in turn."""
+    """Runs of the real cart, of different length and start; with these steps and swings in turn."""
     return [
         twins.record(
             rng,
@@ -63,6 +63,7 @@ def recordings(rng, count=4, dts=(0.01, 0.02), swings=(1.0,)):
             dts[i % len(dts)],
             rng.uniform(0.02, 0.03),
             swing=swings[i % len(swings)],
+            begin=rng.choice([0.0, rng.uniform(-2.0, 9.0)]),
         )
         for i in range(count)
     ]

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from course.authoring.exercises.unprotected import LocalSubmission
 from course.grading import kit
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -127,6 +128,9 @@ def test_a_bias_is_called_carried_over_only_if_it_starts_where_the_last_one_ende
     assert told("imu", fixed) is None
 
 
+FITS = LocalSubmission("", replaced={"fit_noise": right.fit_noise})
+
+
 def test_densities_that_err_both_ways_and_densities_that_are_too_large_are_not_taken_for_each_other():
     cases = sensor_bundles.recordings(np.random.default_rng(2), 8, lambda: (0.01, 0.002, 0.003, 0.05))
     density, walk = np.full(8, 0.002), np.full(8, 0.003)
@@ -138,7 +142,7 @@ def test_densities_that_err_both_ways_and_densities_that_are_too_large_are_not_t
     assert code(walk, density) == "FIT_SWAPPED"
     assert code(density * np.tile([0.8, 1.2], 4)) == "DENSITY_SCATTERS"
     small = walk * np.array([0.6, 0.5, 0.01, 0.02, 0.6, 0.05, 0.3, 0.01])
-    assert sensors.of_walk(small, cases).code == "WALK_TOO_SMALL"  # for all of them
+    assert sensors.of_walk(small, cases, FITS).code == "WALK_TOO_SMALL"  # for all of them
 
 
 def test_a_scanner_that_ignores_one_coordinate_is_not_told_that_it_never_moves():
@@ -186,7 +190,10 @@ def test_a_turn_rate_that_is_never_zero_is_no_code_for_straight_ahead(rate):
 
 REST = '"t": t_measured'
 SYNC = [
-    (None, [(REST, '"t": twin["t"] + 0.3 * dt')]),  # it lags behind, and does not stand still
+    (
+        "TIME_NOT_THE_LATEST",
+        [(REST, '"t": twin["t"] + 0.3 * dt')],
+    ),  # it lags behind, and does not stand still
     ("TIME_NOT_ADVANCED", [(REST, '"t": twin["t"]')]),
     ("SMALL_SURPRISES_IGNORED", [("z - x", "(z - x) * (abs(z - x) > 3 * twin['sigma'])")]),
     ("NO_CORRECTION", [("x + 0.3 * surprise", "x")]),

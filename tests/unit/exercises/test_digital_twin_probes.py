@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from course.authoring.exercises.unprotected import LocalSubmission
 from course.grading import kit
 from course.scoring.explain import fingerprint, matching, read_table
 from course.scoring.explain.fingerprint import read
@@ -183,7 +184,7 @@ DIRECTIONS = [
     ("BEAM_IN_DEGREES", beams(lambda a, h: a + math.degrees(h))),
     ("BEAM_IN_DEGREES", beams(lambda a, h: np.radians(a + h))),
     ("BEAM_SIN_COS_SWAPPED", beams(lambda a, h: math.pi / 2 - a - h)),
-    ("WALL_VECTOR_REVERSED", beams(lambda a, h: a + h + math.pi)),
+    ("BEAM_REVERSED", beams(lambda a, h: a + h + math.pi)),
     ("WALLS_BEHIND_SEEN", both_ways),
     ("HEADING_IGNORED", lambda pose, *rest: both_ways((*pose[:2], 0.0), *rest)),
     (None, beams(lambda a, h: a + 2 * h)),
@@ -375,6 +376,22 @@ def test_a_density_without_its_root_of_two_is_told_so():
     assert sensors.of_density(found, [(still, 0.01, 0.002)]).code == "DENSITY_FROM_DIFFERENCES"
 
 
+FITS = LocalSubmission("", replaced={"fit_noise": right.fit_noise})
+
+
+def _squared(still, dt):
+    found = right.fit_noise(still, dt)
+    return {**found, "bias_random_walk": found["bias_random_walk"] ** 2}
+
+
+def test_a_walk_is_a_square_only_if_it_grows_like_one():
+    cases = sensor_bundles.recordings(np.random.default_rng(2), 8, lambda: (0.01, 0.002, 0.003, 0.05))
+    squares = np.array([_squared(case[0], case[1])["bias_random_walk"] for case in cases])
+    squared = LocalSubmission("", replaced={"fit_noise": _squared})
+    assert sensors.of_walk(squares, cases, squared).code == "ROOT_FORGOTTEN"
+    assert sensors.of_walk(squares, cases, FITS).code == "WALK_TOO_SMALL"  # near the square by chance
+
+
 def test_walks_and_biases_are_told_what_is_known_of_them_and_no_more():
     rng = np.random.default_rng(2)
     cases = sensor_bundles.recordings(rng, 8, lambda: (0.01, 0.002, 0.003, 0.05))
@@ -382,13 +399,13 @@ def test_walks_and_biases_are_told_what_is_known_of_them_and_no_more():
     biases = np.array([case[4] for case in cases])
     assert min(biases) < 0 < max(biases)
     for code, factor in (("WALK_WITHOUT_THREE", 3**-0.5), ("WALK_TOO_SMALL", 0.2), ("WALK_TOO_LARGE", 1.7)):
-        assert sensors.of_walk(factor * walks, cases).code == code
+        assert sensors.of_walk(factor * walks, cases, FITS).code == code
     assert (
-        sensors.of_walk(3**-0.5 * walks * np.tile([0.3, 0.8, 1.2, 1.6], 2), cases).code
+        sensors.of_walk(3**-0.5 * walks * np.tile([0.3, 0.8, 1.2, 1.6], 2), cases, FITS).code
         != "WALK_WITHOUT_THREE"
     )
     neighbours = np.array([np.std(np.diff(case[0])) / 0.1 for case in cases])
-    assert sensors.of_walk(neighbours, cases).code == "NOISE_COUNTED_AS_DRIFT"
+    assert sensors.of_walk(neighbours, cases, FITS).code == "NOISE_COUNTED_AS_DRIFT"
     assert sensors.of_bias0(np.abs(biases), cases).code == "BIAS0_WITHOUT_SIGN"
     assert sensors.of_bias0(biases + 1.0, cases) is None
 

@@ -75,6 +75,7 @@ def test_frozen_times_are_recognised_in_a_runge_kutta_method_of_another_form():
     assert probes.of_step(fake, "rk4_step").code == "STAGE_TIMES_FROZEN"
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_an_unknown_formula_is_described_by_how_it_converges():
     def off_by_a_tenth(accel, t, q, v, h):
         q_next, v_next = formulas.RIGHT["rk4_step"][0](accel, t, q, v, h)
@@ -86,7 +87,16 @@ def test_an_unknown_formula_is_described_by_how_it_converges():
         return q + h * (0.25 * v + 0.75 * (v + 2 * h / 3 * a)), v + h * (0.25 * a + 0.75 * b)
 
     assert probes.of_step(Fake(rk4_step=off_by_a_tenth), "rk4_step").code == "DOES_NOT_CONVERGE"
+    def divided(accel, t, q, v, h):
+        """RK4 with 2 / k2 for 2 k2 in the position: the error falls and rises again."""
+        k1, a1 = v, accel(t, q, v)
+        k2, a2 = v + h / 2 * a1, accel(t + h / 2, q + h / 2 * k1, v + h / 2 * a1)
+        k3, a3 = v + h / 2 * a2, accel(t + h / 2, q + h / 2 * k2, v + h / 2 * a2)
+        k4, a4 = v + h * a3, accel(t + h, q + h * k3, v + h * a3)
+        return q + h / 6 * (k1 + 2 / k2 + 2 * k3 + k4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+
     assert probes.of_step(Fake(rk4_step=ralston), "rk4_step").code == "ORDER_TOO_LOW"
+    assert probes.of_step(Fake(rk4_step=divided), "rk4_step") is None
 
 
 MIXED = [order for order in itertools.permutations(range(3)) if order != (0, 1, 2)]

@@ -188,6 +188,29 @@ def test_where_a_value_is_nan_only_what_makes_it_nan_is_told() -> None:
     assert told("SIGN_FLIPPED", finite=False) is None
 
 
+def test_a_nan_is_told_where_it_was_met_and_other_checks_keep_what_they_saw() -> None:
+    met, finite = failures("NOT_A_NUMBER", finite=False), failures(None, "ZERO_LENGTH", "ENERGY_GROWS")[1:]
+    story = story_of([*met, *finite], (), WORDS)
+    assert story.diagnosis
+    assert story.diagnosis.code == "NOT_A_NUMBER"
+    assert story.bare == {"check_1", "check_2"}
+    assert "check_2" in story.own
+    # A wall's nan, seen by a probe beside finite numbers that are wrong.
+    story = story_of(failures("ZERO_LENGTH", "ENERGY_GROWS", None), (), WORDS)
+    assert story.diagnosis
+    assert story.diagnosis.code == "ZERO_LENGTH"
+    assert story.bare == {"check_1", "check_2"}
+    assert "check_1" in story.own
+
+
+def test_of_two_mistakes_of_which_one_is_known_it_is_said_that_there_are_two() -> None:
+    fits = Row(("SIGN_FLIPPED", "MASS_SWAPPED"), (0.0,)), Row(("ENERGY_GROWS", "MASS_SWAPPED"), (0.0,))
+    shared = story_of(failures(None), fits, WORDS).diagnosis
+    assert shared
+    assert shared.code == "MASS_SWAPPED"
+    assert "Two mistakes at once" in shared.looks_like
+
+
 def test_a_check_that_saw_a_fact_keeps_it() -> None:
     story = story_of(failures("CHANGED_IN_PLACE", "SIGN_FLIPPED"), (), WORDS)
     assert story.own == {"check_0"}

@@ -20,6 +20,7 @@ from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import accepted_files, compose, solution_path, solutions_folder
 from course.grading import kit
 from course.scoring.checks.companions import words
+from course.scoring.explain.fingerprint import numbers_of
 from course.scoring.explain.table import FILE, Row, Table, is_right, write_table
 from course.scoring.explain.words import FILE as WORDS
 from course.scoring.judging.explaining import answer_numbers, answers, tasks_asked
@@ -87,13 +88,26 @@ def table_of(catalog: Catalog, exercise: Exercise) -> Table:
         answers=_plain(_expected(exercise)),
     )
     rows: dict[str, dict[tuple[float, ...], dict[tuple[str, ...], Row]]] = {name: {} for name in right}
+    says = {task: _says(questions, task, next(_right(catalog, exercise, task))) for task in tasks}
     for task, codes, function in hypotheses_of(catalog, exercise):
+        if len(codes) > 1 and 4 * _says(questions, task, function) < says[task]:
+            continue
         for name, sums in sums_of(questions, task, function).items():
             known = rows[name].setdefault(sums, {})
             if not is_right(made, name, sums) and not any(len(other) < len(codes) for other in known):
                 known.setdefault(codes, Row(codes, sums))
     made.rows.update({name: _kept(some) for name, some in rows.items()})
     return made
+
+
+def _says(questions: ModuleType, task: str, function: Callable[..., Any]) -> int:
+    """How many different numbers are among a function's answers.
+
+    Two mistakes that leave hardly any, so that nothing is ever hit, would fit whatever else hits nothing.
+    """
+    calls = questions.QUESTIONS.get(task, ())
+    local: Any = LocalSubmission("", replaced={task: function})
+    return len({*numbers_of(answers(local, task, calls)).round(9)})
 
 
 def _kept(rows: dict[tuple[float, ...], dict[tuple[str, ...], Row]]) -> tuple[Row, ...]:

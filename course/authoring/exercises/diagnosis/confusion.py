@@ -49,8 +49,8 @@ __all__ = [
 FILE = "confusion.json"
 #: Task, codes of what is wrong, and function.
 _Program = tuple[str, tuple[str, ...], "Callable[..., Any]"]
-#: Only every n-th program with two mistakes is tried, because there are thousands.
-_EVERY = 100
+#: Programs that are tried for a task: all with one mistake, and of those with two as many as are missing.
+_EACH = 200
 
 
 class Reported(msgspec.Struct, frozen=True, array_like=True):
@@ -86,12 +86,17 @@ class _Rehearsal(GradingSession):
 
 
 def confusion_of(
-    catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None, every: int = _EVERY
+    catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None, each: int = _EACH
 ) -> Confusion:
-    """Try every known wrong program with one mistake, and every ``every``-th with two."""
+    """Try ``each`` known wrong programs for every task: all with one mistake, then some with two."""
     known = list(hypotheses_of(catalog, exercise))
     chosen = [item for item in known if len(item[1]) == 1]
-    chosen += [as_one(exercise, item) for item in [item for item in known if len(item[1]) > 1][::every]]
+    for task in (task.id for task in exercise.task):
+        left = each - sum(item[0] == task for item in chosen)
+        pairs = [item for item in known if len(item[1]) > 1 and item[0] == task]
+        # Spread evenly over all there are.
+        some = [pairs[i * len(pairs) // left] for i in range(left)] if left < len(pairs) else pairs
+        chosen += [as_one(exercise, item) for item in some]
     rows: dict[str, tuple[Reported, ...]] = {}
     done, scopes = 0, ("public", "full")
     for scope in scopes:
@@ -108,6 +113,7 @@ def confusion_of(
 def as_one(exercise: Exercise, program: _Program) -> _Program:
     """A program with two mistakes; if it answers every question like one with a single mistake, it is that.
 
+    If it answers like others with two, and the table has only those, it is one of them.
     Two terms of a formula may be changed so that one mistake results: Runge and Kutta's four slopes, of which
     only the ends count and the last starts from the first, are Heun's method.
     """
@@ -117,8 +123,9 @@ def as_one(exercise: Exercise, program: _Program) -> _Program:
         matching(table, name, sums)
         for name, sums in sums_of(kit.companion(exercise.id, "questions"), task, function).items()
     ]
-    if len(fits) == 1 and fits[0] and len(fits[0][0].codes) == 1:
-        codes = fits[0][0].codes
+    rows = fits[0] if len(fits) == 1 else ()
+    if rows and (len(rows[0].codes) == 1 or set(codes) not in [set(row.codes) for row in rows]):
+        codes = rows[0].codes
     return task, codes, function
 
 
@@ -194,13 +201,20 @@ def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
 
 
 def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
-    """Says under which field of ``Tally`` the programs of a row are counted."""
+    """Says under which field of ``Tally`` the programs of a row are counted.
+
+    ``ALSO`` in ``hypotheses.py`` has, by code, what else is true of a program with that mistake.
+    """
     own, names = words(exercise.id), _names(exercise)
+    also: dict[str, tuple[str, ...]] = getattr(kit.reference(exercise.id, "hypotheses"), "ALSO", {})
 
     def fate(row: Reported) -> str:
         if row.said == "survives":
             return "survived"
-        if row.said in row.codes or any((row.task, code, row.said) in names for code in row.codes):
+        if any(
+            row.said in {code, *also.get(code, ())} or (row.task, code, row.said) in names
+            for code in row.codes
+        ):
             return "named"
         return "general" if not row.said or own.kind(row.said) != "cause" else "otherwise"
 

@@ -87,6 +87,7 @@ def test_an_unknown_formula_is_described_by_how_it_converges():
         return q + h * (0.25 * v + 0.75 * (v + 2 * h / 3 * a)), v + h * (0.25 * a + 0.75 * b)
 
     assert probes.of_step(Fake(rk4_step=off_by_a_tenth), "rk4_step").code == "DOES_NOT_CONVERGE"
+
     def divided(accel, t, q, v, h):
         """RK4 with 2 / k2 for 2 k2 in the position: the error falls and rises again."""
         k1, a1 = v, accel(t, q, v)

@@ -110,7 +110,7 @@ def merged(codes: Sequence[str], words: Words, fits: Sequence[Row]) -> Diagnosis
     if all(len(row.codes) == 1 for row in fits):
         return parts[0]
     looks = " The other: ".join(part.looks_like for part in parts)
-    advice = " Or, against the other: ".join(part.advice for part in parts)
+    advice = " And for the other: ".join(part.advice for part in parts)
     return Diagnosis(
         parts[0].code, f"Two mistakes at once would give these results. One of them: {looks}", advice
     )

@@ -11,7 +11,7 @@ def test_known_falls(submission):
     """Falls from 1, 20 and 300 m take as long as they should"""
     cases = [
         ((1.0, 9.81), 0.451523640986),
-        ((20.0, 9.81), 2.01927510938),
+        ((20.0,), 2.01927510938),  # on earth, unless another g is given
         ((300.0, 9.81), 7.82061887006),
     ]
     for args, expected in cases:
@@ -22,7 +22,7 @@ def test_known_falls(submission):
             source="closed form, written down to twelve digits: only rounding is allowed",
             quantity="time of the fall",
             units="s",
-            input=dict(zip(("height", "g"), args, strict=True)),
+            input=dict(zip(("height", "g"), args, strict=False)),
             message="The time of the fall is wrong.",
             help="Start from the height after a time t, and ask when it is zero.",
         )

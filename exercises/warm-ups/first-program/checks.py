@@ -14,10 +14,14 @@ ROUNDING = "closed form: only rounding is allowed"
 def test_gap_is_a_number(submission):
     """The distance between two balls at one sample"""
     first, second = [[0.0, 1.0], [1.5, 1.0]], [[5.0, -2.0], [3.0, -2.0]]
-    for k, expected in ((0, 5.0), (1, 1.5)):
+    for one, other, k, expected in (
+        (first, second, 0, 5.0),
+        (first, second, 1, 1.5),
+        (second, first, 0, 5.0),
+    ):
         kit.expect_close(
             kit.expect_accepts(
-                lambda k=k: submission.call("gap", first, second, k),
+                lambda one=one, other=other, k=k: submission.call("gap", one, other, k),
                 "TypeError",
                 input={"k": k},
                 message="The program stops here, with a TypeError.",
@@ -56,6 +60,18 @@ def test_run_begins_at_the_start(submission):
         input={"n": 3},
         message="A run of three steps does not have four samples.",
         help="Count the start, and the state after each step.",
+    )
+    x, v, a, n, h = 10.0, 2.0, -9.81, 100, 0.01
+    late = kit.as_vector(kit.as_list(submission.call("run", x, v, a, n), "the run")[-1], 2, "the last sample")
+    kit.expect_array(
+        late,
+        [x + v * n * h + a * (n * h) ** 2 / 2, v + a * n * h],
+        abs=abs(a) * n * h**2,
+        source="a method of first order is off by a t h / 2",
+        quantity="position and velocity after a second",
+        input={"x": x, "v": v, "a": a, "n": n},
+        message="The steps of the program were right as it was given, and no longer are.",
+        help="Only what is in the list at the beginning is missing.",
     )
 
 

@@ -10,7 +10,7 @@ from course.grading import kit
 def test_accelerations(submission):
     """With and without the motor, level and raised"""
     cases = [
-        ((0.0, 2.0, 1.0, 0.0, 9.81), -14.715),
+        ((0.0, 2.0, 1.0, 0.0), -14.715),  # on earth, unless another g is given
         ((12.0, 2.0, 1.0, 0.3, 9.81), 3.94222356252),
         ((-1.0, 0.5, 0.6, -1.0, 1.62), -18.8548910054),
     ]
@@ -22,7 +22,7 @@ def test_accelerations(submission):
             source="closed form, written down to twelve digits: only rounding is allowed",
             quantity="angular acceleration",
             units="rad/s^2",
-            input=dict(zip(("torque", "m", "l", "angle", "g"), args, strict=True)),
+            input=dict(zip(("torque", "m", "l", "angle", "g"), args, strict=False)),
             message="The angular acceleration is wrong.",
             help="Add the torques first, then divide by the moment of inertia about the end.",
         )

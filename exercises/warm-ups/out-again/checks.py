@@ -47,5 +47,5 @@ def test_within_slop(submission):
             units="m/s",
             input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
             message="Bodies that overlap by no more than the slop are moved.",
-            help="The speed is never negative: a contact does not pull.",
+            help="Within the slop nothing is pushed: the speed is zero, neither positive nor negative.",
         )

@@ -92,9 +92,8 @@ def _braking(submission):
     """What friction does in the prediction that it should not: speed a cart up, or brake each one alike."""
     slow, fast = (_expected_speed(submission, v) for v in (1.0, 2.0))
     if slow is not None and slow > 1.03:
-        smooth = _expected_speed(
-            submission, 1.0, friction=0.05
-        )  # hardly any: it is friction that speeds it up
+        # With hardly any friction it must be slower: then it is friction that speeds it up.
+        smooth = _expected_speed(submission, 1.0, friction=0.05)
         return "FRICTION_SPEEDS_UP" if smooth is not None and slow > smooth + 0.02 else None
     # Friction of 0.5 1/s takes 0.1 m/s off in 0.2 s at 1 m/s, and twice as much at 2 m/s.
     alike = slow is not None and fast is not None and 1.0 - slow > 0.03 and abs(slow + 1.0 - fast) < 0.01

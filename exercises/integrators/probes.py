@@ -207,9 +207,11 @@ def _rate(submission, task):
     hs, errors = kit.march_errors(submission, task, problem, [16, 32, 64])
     if not np.all(np.isfinite(errors)) or errors[-1] > 0.5 * errors[0]:
         return "DOES_NOT_CONVERGE"
-    slopes = np.diff(np.log(errors)) / np.diff(np.log(hs)) if errors[-1] > 0 else np.array([math.inf])
-    # Errors that fall by less than the first power of h, or by half as much again, come of chance.
-    steady = slopes.min() > 0.7 and slopes.max() < 1.5 * slopes.min()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slopes = np.diff(np.log(errors)) / np.diff(np.log(hs)) if errors[-1] > 0 else np.array([math.inf])
+    # Of 98 known programs with too low an order, both slopes are 0.92 or more, and alike to 5 %. Errors that
+    # rise and fall by chance are not.
+    steady = slopes.min() > 0.8 and slopes.max() < 1.2 * slopes.min()
     return "ORDER_TOO_LOW" if steady and slopes[-1] < ORDERS[task] - 0.4 else None
 
 
@@ -267,7 +269,8 @@ def of_count(submission, n, h):
             submission.call("integrate", IDENTITY, Oscillator(1.0), [1.0], [0.0], t_end, size), "tqv"
         )
         rows.append(len(kit.as_vector(t)) - count - 1)
-        if np.ndim(q) == 2 and len(q) == count + 1 and rows[-1]:
+        full = kit.attempt(lambda q=q, count=count: kit.as_array(q, (count + 1, 1), "q"))
+        if rows[-1] and full is not None:
             return named("TIMES_NOT_AS_ROWS")
     if rows[0] == rows[1] and abs(rows[0]) == 1:
         return named("OFF_BY_ONE_SAMPLE")

@@ -77,7 +77,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     if shared:
         return Story(merged(shared, words, fits), True, own)
     # Beside a nan, or where no consequence prevails, what a check saw of its own stays with it.
-    seen = own | {f.check for f in left if f.guess and words.kind(f.guess.code) == "consequence"}
+    saw = {f.check for f in left if f.finite and f.guess and words.kind(f.guess.code) == "consequence"}
+    seen = own | saw
     if not all(failure.finite for failure in left):
         return Story(_origin(left, words), False, seen, frozenset(f.check for f in left if f.finite))
     for kind in ("cause", "nan", "consequence"):

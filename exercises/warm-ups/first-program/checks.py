@@ -62,9 +62,9 @@ def test_run_begins_at_the_start(submission):
         help="Count the start, and the state after each step.",
     )
     x, v, a, n, h = 10.0, 2.0, -9.81, 100, 0.01
-    late = kit.as_vector(kit.as_list(submission.call("run", x, v, a, n), "the run")[-1], 2, "the last sample")
+    states = kit.as_list(submission.call("run", x, v, a, n), "the run")
     kit.expect_array(
-        late,
+        states[-1] if states else [],
         [x + v * n * h + a * (n * h) ** 2 / 2, v + a * n * h],
         abs=abs(a) * n * h**2,
         source="a method of first order is off by a t h / 2",

@@ -113,7 +113,8 @@ def neighbours(exercise: Exercise, catalog: Catalog, task: str, each: int, seed:
         places = list(_places(tree, task, others))
         random.Random(f"{seed} {name} {task}").shuffle(places)
         styles[name] = _edited(tree, places)
-    known: set[str] = set()
+    known = {ast.unparse(ast.parse(source)) for source in sources.values()}
+    right = len(known)
     while styles:
         for name in list(styles):
             text = next(styles[name], None)
@@ -124,14 +125,18 @@ def neighbours(exercise: Exercise, catalog: Catalog, task: str, each: int, seed:
                 before = ast.unparse(ast.parse(sources[name])).splitlines()
                 lines = list(difflib.unified_diff(before, text.splitlines(), n=2, lineterm=""))
                 yield Neighbour(task, name, text, "\n".join(lines[2:]))
-                if len(known) == each:
+                if len(known) == right + each:
                     return
 
 
 def _places(tree: ast.Module, task: str, others: frozenset[str]) -> Iterator[tuple[int, int, int]]:
     """Where an edit can be made for a task: which statement of the module, which node of it, which edit."""
-    # The last definition counts: a variant's stands after the solution's.
-    bodies = {node.name: i for i, node in enumerate(tree.body) if hasattr(node, "name")}
+    # The last binding of a name counts: a variant's stands after the solution's.
+    bodies: dict[str, int] = {}
+    for i, node in enumerate(tree.body):
+        targets = node.targets if isinstance(node, ast.Assign) else ()
+        names = [getattr(node, "name", ""), *(each.id for each in targets if isinstance(each, ast.Name))]
+        bodies |= dict.fromkeys(filter(None, names), i)
     mine, todo = set(), [task] if task in bodies else []
     while todo:
         name = todo.pop()

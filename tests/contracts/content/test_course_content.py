@@ -13,6 +13,7 @@ from course.grading import kit
 from course.ids import WARM_UPS
 from course.isolation.keeping import kept_sandboxes
 from course.progress.mistakes import NO_MISTAKE
+from course.scoring.checks.companions import words
 from course.scoring.judging.session import GradingSession, Submission
 from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs
 
@@ -116,6 +117,18 @@ def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog:
         assert set(table.rows) == {"public", "full"}
         rows = [row for scope in table.rows.values() for row in scope]
         assert [row for row in rows if fate(row) == "otherwise"] == []
+
+
+def test_what_one_run_shows_is_told_by_the_checks_that_saw_it(catalog: Catalog) -> None:
+    """What begins with "Here" is true of one run; a cause is told by every check of its task."""
+    kinds = {
+        (exercise.id, code): entry.kind
+        for exercise in catalog.exercises()
+        for code, entry in words(exercise.id).entries.items()
+        if entry.looks_like.startswith("Here ")
+    }
+    assert len(kinds) > 10
+    assert [code for code, kind in kinds.items() if kind == "cause"] == []
 
 
 def test_two_changed_terms_that_make_one_known_mistake_are_that_mistake(catalog: Catalog) -> None:

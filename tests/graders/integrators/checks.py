@@ -136,9 +136,8 @@ def test_verlet_frequency(submission, rng):
     with np.errstate(all="ignore"):
         # Samples of a turning pointer obey x[k+1] + x[k-1] = 2 cos(angle) x[k].
         cosine = float(x[1:-1] @ (x[2:] + x[:-2]) / (2 * x[1:-1] @ x[1:-1]))
-    if np.all(
-        np.isfinite(x)
-    ):  # a pointer that does not turn has a frequency, too: none, or half a turn a step
+    # A pointer that does not turn has a frequency, too: none, or half a turn a step.
+    if np.all(np.isfinite(x)):
         cosine = min(max(cosine, -1.0), 1.0) if math.isfinite(cosine) else 1.0
     kit.expect_close(
         math.acos(cosine) / h if math.isfinite(cosine) else math.nan,

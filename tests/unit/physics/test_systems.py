@@ -147,3 +147,9 @@ def test_a_statistic_is_the_average_of_its_polynomial():
 def test_a_statistic_refuses_what_are_no_samples(samples):
     with pytest.raises(ValueError, match="shape"):
         STATISTIC(samples)
+
+
+@pytest.mark.parametrize(("q", "v"), [(1.0, np.zeros(1)), (np.zeros(1), 1.0)])
+def test_a_step_refuses_single_numbers(q, v):
+    with pytest.raises(TypeError, match="takes arrays"):
+        VERLET_MAP(lambda t, q, v: -q, 0.0, q, v, 0.1)

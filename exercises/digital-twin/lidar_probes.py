@@ -47,8 +47,10 @@ _SCENES = (
     ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE, 0.0, 2.0, (_REACH,)),
     ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE[:, ::-1], 0.0, 2.0, (_REACH,)),
 )
-#: position, walls, the one beam, the right reading: a wall ahead, one wall along the beam, none within reach
+#: position, walls, the one beam, the right reading: a wall ahead whose ends come in one order and in the
+#: other, one wall along the beam, none within reach
 _PLAIN = (
+    (_ORIGIN, _WALL[:, ::-1], 0.3, *_at(0.3, 2.0)),
     (_ORIGIN, _WALL, 0.3, *_at(0.3, 2.0)),
     (_ORIGIN, np.concatenate((_LONG, _WALL)), 0.0, 2.0),
     (_ORIGIN, _WALL + np.array([40.0, 0.0]), 2.0, _REACH),
@@ -103,14 +105,16 @@ def _of_scenes(readings, right, turning, fixed, room):
     fixed: whether moving it changes nothing there; room: whether the room is read as it is, as it is from
     within although walls have no ends, or parallel ones are seen
     """
-    plain, parallel, nothing = right[-3:]
+    turned, plain, parallel, nothing = right[-4:]
     if not nothing:
         return named("NO_HIT_NOT_MAX")
+    if turned != plain and readings[-3 if turned else -4] == _REACH:
+        return named("WALLS_ONE_SIDED")
     if not plain:
         return None  # beams go astray, and not in a way that is known: nothing else can be told from them
     if turning:
         return named(turning)
-    if np.all(right[:-3]) and not parallel and room:
+    if np.all(right[:-4]) and not parallel and room:
         return named("PARALLEL_WALLS")
     seen = zip(_SCENES, readings, strict=False)
     codes = (code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9)

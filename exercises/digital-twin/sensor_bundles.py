@@ -360,7 +360,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         middle = float(np.median(off))
     kit.expect_true(
         missed == 0.0 and abs(middle) < 0.5 * sigma,
-        "Of one long wall, the readings are not about its distances.",
+        "Of one long wall, the readings do not scatter about its distances.",
         help="Read the same wall with sigma = 0 first, then add the noise, which goes either way.",
         input=given,
         diagnose=ask,

@@ -216,6 +216,7 @@ def test_choose_nothing(submission, draw):
                 (reports, [need("noise_db", "==", 0.0)], None),
                 (reports, [need("noise_db", "==", False)], None),
                 (reports, [need("restitution", "==", 0.6003)], None),
+                (reports, [need("restitution", "==", math.nextafter(0.6, 1.0))], None),
                 (reports, [need("restitution", ">=", math.nextafter(0.6, 1.0))], None),
                 (reports, [need("restitution", "<=", math.nextafter(0.389, 0.0))], None),
                 (reports, [need("linear_damping", "<=", 2.0)], "balsa"),

@@ -120,8 +120,12 @@ def expect_clean(submission, task, system, t, whole, h):
         input=given,
     )
     _expect_plain_motion(submission, task, args, given)
+    _expect_fall(submission, task, args)
     _expect_the_same_again(submission, task, args, given)
-    _expect_whole(submission, task, system, [*args[1:2], *whole, h], wanted, given)
+    _expect_whole(submission, task, system, [t, *whole, h], wanted, given)
+    between = [t, whole[0], whole[1] + 0.5, h]
+    floats = kit.as_pair(submission.call(task, system, t, args[2], between[2], h), 2)
+    _expect_whole(submission, task, system, between, floats, {**given, "v": between[2]})
     # An acceleration of whole numbers, too, must not leave the result without room for fractions.
     floats = kit.as_pair(submission.call(task, _spring, *args[1:]), 2)
     spring = {"accel": "-4 * q, of whole numbers", "t": t, "q": whole[0], "v": whole[1], "h": h}
@@ -153,10 +157,48 @@ def _expect_plain_motion(submission, task, args, given):
             source="uniform motion: only rounding is allowed",
             quantity=name,
             input=told,
-            message="Without an acceleration a body far away does not move on uniformly.",
+            message="Without an acceleration a body far away does not move on with its velocity.",
             help="Without an acceleration every method gives q + h v and v.",
             diagnose=lambda: probes.of_step(submission, task),
         )
+
+
+#: How far a constant acceleration moves a step, in a h**2; semi-implicit Euler may start with either half.
+_FALLS = {
+    "explicit_euler_step": (0.0,),
+    "semi_implicit_euler_step": (1.0, 0.0),
+    "velocity_verlet_step": (0.5,),
+    "rk4_step": (0.5,),
+}
+
+
+def _expect_fall(submission, task, args):
+    """Under a constant acceleration, from rest, at the origin and both: zero is a number like any other."""
+    _, t, q, v, h = args
+    fall = FreeFall(7.0)
+    a = fall(t, q, v)
+    starts = ((q, v), (q, 0 * v), (0 * q, v), (0 * q, 0 * v))
+    values = submission.call_each(task, [(fall, t, *start, h) for start in starts])
+    for i, ((at, speed), value) in enumerate(zip(starts, values, strict=True)):
+        q_next, v_next = kit.as_pair(value, 2)
+        ends = [at + h * speed + share * h**2 * a for share in _FALLS[task]]
+        nearest = min(ends, key=lambda end: np.max(np.abs(end - np.nan_to_num(q_next))))
+        for actual, expected, name in ((q_next, nearest, "q_next"), (v_next, speed + h * a, "v_next")):
+            kit.expect_array(
+                actual,
+                expected,
+                rel=1e-12,
+                abs=1e-12,
+                source="exact for a constant acceleration: only rounding is allowed",
+                quantity=name,
+                input={"accel": "-7 along the last axis", "t": t, "q": at, "v": speed, "h": h},
+                message="Under a constant acceleration the step is not what the method gives.",
+                help="A constant acceleration a moves the velocity by h a, wherever the body is and however "
+                "fast.",
+                diagnose=lambda i=i: (
+                    probes.of_step(submission, task) or (probes.named("ZERO_IS_SPECIAL") if i else None)
+                ),
+            )
 
 
 def _expect_the_same_again(submission, task, args, given):

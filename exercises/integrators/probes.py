@@ -398,8 +398,9 @@ def of_order(submission, value, hs, errors):
         pairings = ((hs, errors[::-1]), (np.sort(hs), np.sort(errors)[::-1]))
         flipped = (-right, *(convergence_order(*pairing) for pairing in pairings))
         alike = any(math.isclose(value, one, rel_tol=1e-6) for one in flipped)
-        # The sign of what is nearly nothing, or divided by it, is chance.
-        tells = 1e-3 < -value < 100.0
+        # The sign of what is nearly nothing, or divided by it, is chance; so is that of some of scattered points.
+        shrinks = np.all(np.diff(np.asarray(errors)[np.argsort(hs)]) > 0)
+        tells = 1e-3 < -value < 100.0 and shrinks
         code = "ORDER_SIGN_FLIPPED" if alike else "ORDER_NEGATIVE" if tells else None
         return named(code) if code else None
     last = {error: h for h, error in zip(hs, errors, strict=True)}

@@ -18,7 +18,7 @@ named = words.named
 @pytest.mark.points(4)
 def test_plan_complete(submission):
     """The plan names at least three gaps from three sources, in words that can be executed"""
-    plan = submission.call("plan")
+    plan, again = submission.call_each("plan", [(), ()])
     gaps = words.gaps_of(plan)
     for i, gap in enumerate(gaps):
         judge.expect_words(i, gap)
@@ -38,6 +38,13 @@ def test_plan_complete(submission):
         diagnose=lambda: words.of_promise(plan["metric"], threshold),
         expected=["success", "0.90 or more and below 1"],
         actual=[plan["metric"], threshold],
+    )
+    kit.expect_true(
+        repr(again) == repr(plan),
+        "Called again, plan returns another plan.",
+        diagnose=named("PLAN_VARIES"),
+        expected=plan,
+        actual=again,
     )
 
 

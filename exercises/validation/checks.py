@@ -116,7 +116,11 @@ def test_coverage_counts(submission):
     lo = np.array([0.3, -0.1, 0.7, 1.1, -2.3, 0.9, 0.2, -0.6, 4.1, 0.8])
     hi = lo + width
     shared.expect_coverage(submission, np.where(np.arange(10) % 2, lo, hi), lo, hi)
-    shared.expect_coverage(submission, np.arange(7), np.arange(7) // 2, 8 - np.arange(7))
+    y = np.arange(7)
+    shared.expect_coverage(submission, y, y // 2, 8 - y)
+    # Whole values and ends that are none, then the other way round: nothing may be cut off.
+    shared.expect_coverage(submission, y, y + np.array([0.5, -0.5, 0.2, -0.3, -1.0, 0.4, -2.0]), y + 0.9)
+    shared.expect_coverage(submission, y + 0.5, y, y + y % 2)
 
 
 @pytest.mark.task("block_bootstrap_ci")
@@ -150,7 +154,8 @@ def test_energy_error_falling(submission):
     for mass in (1.0, 1e-5):
         shared.expect_energies(submission, q, v, lambda q, v, m=mass: float(m * (0.5 * v @ v + 9.81 * q[-1])))
     whole = np.array([[-4], [-5], [-9]]), np.array([[0], [-4], [-10]])
-    shared.expect_energies(submission, *whole, lambda q, v: float(0.5 * v @ v + 9.81 * q[-1]))
+    for heights, speeds in (whole, (whole[0], whole[1] + 0.3), (whole[0] - 0.6, whole[1])):
+        shared.expect_energies(submission, heights, speeds, lambda q, v: float(0.5 * v @ v + 9.81 * q[-1]))
 
 
 @pytest.mark.task("contact_force_error")
@@ -160,7 +165,9 @@ def test_contact_force_late(submission):
     t = 0.001 * np.arange(61)
     sim, real = shared.pulse(t, 0.021, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.02, 80.0, 0.4)
     weak = shared.pulse(t, 0.033, 0.024, 5.0)
-    shared.expect_forces(submission, [(sim, real, 0.001), (sim, real + weak, 0.001)])
+    # As a sensor counts them, in tenths of a millinewton: whole numbers.
+    counts = np.rint(1e4 * sim).astype(int), np.rint(1e4 * real).astype(int)
+    shared.expect_forces(submission, [(sim, real, 0.001), (sim, real + weak, 0.001), (*counts, 0.001)])
 
 
 @pytest.mark.task("cross_validate")
@@ -241,4 +248,5 @@ def _expect_by_hand(submission, task, first, second):
         np.array([[3, 0], [2, -5], [1, 4]]),
         np.array([[[2, 1], [1, 3]], [[5, -2], [-2, 4]], [[1, 0], [0, 7]]]),
     )
-    shared.expect_normalised(submission, task, *whole, (first, second))
+    for errors, spreads in (whole, (whole[0], whole[1] + 0.5 * np.eye(2)), (whole[0] + 0.5, whole[1])):
+        shared.expect_normalised(submission, task, errors, spreads, (first, second))

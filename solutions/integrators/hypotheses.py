@@ -222,6 +222,8 @@ def _slopes():
     yield on("ORDER_FROM_ENDS", lambda x, y: float((y[1] - y[0]) / (x[1] - x[0])))
     yield on("ORDER_FROM_ENDS", lambda x, y: float((y[-1] - y[-2]) / (x[-1] - x[-2])))
     yield on("ORDER_FROM_ENDS", lambda x, y: float((y[x.argmax()] - y[x.argmin()]) / (x.max() - x.min())))
+    for i in (0, -1):  # the two smallest steps, the two largest
+        yield on("ORDER_FROM_ENDS", by_size(lambda slopes, i=i: slopes[i]))
     yield on("ORDER_THROUGH_ORIGIN", _origin)
     yield on("ORDER_THROUGH_ORIGIN", lambda x, y: float(np.mean(y / x)))
     for mean in (np.mean, np.median, np.max, np.min):

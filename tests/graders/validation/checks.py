@@ -115,6 +115,8 @@ def test_consistency_band_sweep(submission, rng):
     # And some that agree in two of the three with the first.
     dof, count, alpha = settings[0]
     settings += [(dof + 1, count, alpha), (dof, 2 * count, alpha), (dof, count, 0.5 * (alpha + 0.2))]
+    # A long campaign: more degrees of freedom than any table has.
+    settings.append((int(rng.integers(4, 8)), int(rng.integers(300, 600)), alpha))
     _expect_bands(submission, settings)
 
 

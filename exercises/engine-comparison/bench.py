@@ -6,6 +6,8 @@ submission, and what came back, be it a report or a failure, is kept for the che
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import itertools
 import math
 import weakref
@@ -124,13 +126,22 @@ def reported(found: list[Case], spared: int) -> list[Case]:
     return [case for case in found if case.failure is None]
 
 
-def engine(case: Case) -> Any:
-    """The engine as student code gets it: two methods and nothing behind them."""
+class _Handed:
+    """An engine as student code gets it. A copy jitters as the original would, and notes runs with it."""
 
-    def info() -> dict[str, float]:
-        return dict(case.box.info())
+    def __init__(self, case: Case) -> None:
+        self._case = case
 
-    def run(*args: Any, **kwargs: Any) -> Any:
+    def __deepcopy__(self, memo: Any) -> _Handed:
+        box = self._case.box
+        same = dataclasses.replace(box, noise=copy.deepcopy(box.noise))
+        return _Handed(dataclasses.replace(self._case, box=same))
+
+    def info(self) -> dict[str, float]:
+        return dict(self._case.box.info())
+
+    def run(self, *args: Any, **kwargs: Any) -> Any:
+        case = self._case
         try:
             values = _in_order(args, kwargs)
             answer = case.box.run(*values)
@@ -151,7 +162,11 @@ def engine(case: Case) -> Any:
                 case.through.append(run[2][0])
         return answer
 
-    return kit.black_box(info=info, run=run)
+
+def engine(case: Case) -> Any:
+    """The engine as student code gets it: two methods and nothing behind them."""
+    handed = _Handed(case)
+    return kit.black_box(info=handed.info, run=handed.run)
 
 
 def _is_shot(run: tuple[Any, ...], dt: float) -> bool:

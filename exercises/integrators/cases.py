@@ -121,6 +121,7 @@ def expect_clean(submission, task, system, t, whole, h):
     )
     _expect_plain_motion(submission, task, args, given)
     _expect_fall(submission, task, args)
+    _expect_sum(submission, task, args)
     _expect_the_same_again(submission, task, args, given)
     _expect_whole(submission, task, system, [t, *whole, h], wanted, given)
     between = [t, whole[0], whole[1] + 0.5, h]
@@ -199,6 +200,27 @@ def _expect_fall(submission, task, args):
                     probes.of_step(submission, task) or (probes.named("ZERO_IS_SPECIAL") if i else None)
                 ),
             )
+
+
+def _expect_sum(submission, task, args):
+    """On a spring, the step from (q, v) is the sum of those from (q, 0) and (0, v): it is linear."""
+    _, t, q, v, h = args
+    spring, parts = Oscillator(1.7), ((q, v), (q, 0 * v), (0 * q, v))
+    values = submission.call_each(task, [(spring, t, *part, h) for part in parts])
+    whole, still, middle = (np.array(kit.as_pair(value, 2)) for value in values)
+    for actual, expected, name in zip(still + middle, whole, ("q_next", "v_next"), strict=True):
+        kit.expect_array(
+            actual,
+            expected,
+            rel=1e-12,
+            abs=1e-12,
+            source="a linear map: only rounding is allowed",
+            quantity=f"{name}, summed",
+            input={**spring.params(), "t": t, "q": q, "v": v, "h": h},
+            message="On a spring, the steps from (q, 0) and from (0, v) do not add up to that from (q, v).",
+            help="The same formulas hold for a body at rest and for one where nothing pulls it.",
+            diagnose=lambda: probes.of_step(submission, task) or probes.of_zeros(submission, task, spring),
+        )
 
 
 def _expect_the_same_again(submission, task, args, given):

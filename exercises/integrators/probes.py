@@ -58,6 +58,14 @@ def of_step(submission, task, run=None):
     return named(code, left) if code else None
 
 
+def of_zeros(submission, task, spring):
+    """Whether steps on a spring that do not add up do so from states without a zero."""
+    pairs = ((_Q, _V), (2 * _V, _Q), (_Q + 2 * _V, _V + _Q))
+    values = submission.call_each(task, [(spring, _T, *pair, _H) for pair in pairs])
+    one, other, both = (np.array(kit.as_pair(value, 2)) for value in values)
+    return named("ZERO_IS_SPECIAL") if np.allclose(one + other, both, rtol=1e-9, atol=1e-12) else None
+
+
 def of_whole_numbers(submission, task, result=None):
     """Why a step from integers differs from the same step from floats, or fails. result: of the step."""
     if kit.attempt(lambda: _remembers(submission, task)):
@@ -398,7 +406,8 @@ def of_order(submission, value, hs, errors):
         pairings = ((hs, errors[::-1]), (np.sort(hs), np.sort(errors)[::-1]))
         flipped = (-right, *(convergence_order(*pairing) for pairing in pairings))
         alike = any(math.isclose(value, one, rel_tol=1e-6) for one in flipped)
-        # The sign of what is nearly nothing, or divided by it, is chance; so is that of some of scattered points.
+        # The sign of what is nearly nothing, or divided by it, is chance; so is that of a part of scattered
+        # points.
         shrinks = np.all(np.diff(np.asarray(errors)[np.argsort(hs)]) > 0)
         tells = 1e-3 < -value < 100.0 and shrinks
         code = "ORDER_SIGN_FLIPPED" if alike else "ORDER_NEGATIVE" if tells else None

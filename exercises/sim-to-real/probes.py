@@ -346,8 +346,8 @@ def of_gains(submission, estimate, box, gains, success):
             "KD_IS_RATIO",
             lambda: _are_ratios([gains, *other]) and _would_do(kp, kp * kd, gains, estimate, box, success),
         ),
-        # At the start the mark is 1 m away: a force far above friction, so that the cart does come near it.
-        ("NO_DAMPING", lambda: kd < 0.05 * kp and kp > 5 * estimate["Fc"][0]),
+        # The mark is 1 m away: with less than friction the cart never moves, damped or not.
+        ("NO_DAMPING", lambda: kd < 0.05 * kp and kp > estimate["Fc"][0]),
         (
             "ESTIMATE_IGNORED",
             lambda: (

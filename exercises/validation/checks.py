@@ -44,21 +44,26 @@ def test_wrap_angle_some(submission):
     """Angles around the turn come out between minus half a turn and half a turn"""
     small = np.array([0.3, -0.3, 3.0, -3.0, 0.0, 1.8, -2.4, 1.0, -2.0])
     turns = np.array([0, 1, -1, 1, 0, -1, 1, 30, -20])
-    angles = small + 2 * np.pi * turns
-    inspected = submission.call_inspect("wrap_angle", angles)
-    values = kit.as_vector(inspected.value, len(angles), "the result")
-    kit.expect_array(
-        values,
-        small,
-        abs=1e-9,
-        source="rounding",
-        quantity="angle",
-        units="rad",
-        input={"e": angles},
-        message="At least one angle does not come back as the one in [-pi, pi) that has its direction.",
-        help="Subtract as many whole turns as it takes, until every angle lies in [-pi, pi).",
-    )
-    shared.expect_left_alone(inspected, [angles], ["e"])
+    whole = np.array([2, -3, 4, -5, 7, -40, 100])
+    rest = np.remainder(whole + np.pi, 2 * np.pi) - np.pi
+    for angles, right in ((small + 2 * np.pi * turns, small), (whole, rest)):
+        inspected = submission.call_inspect("wrap_angle", angles)
+        values = kit.as_vector(inspected.value, len(angles), "the result")
+        kit.expect_array(
+            values,
+            right,
+            abs=1e-9,
+            source="rounding",
+            quantity="angle",
+            units="rad",
+            input={"e": angles},
+            message="At least one angle does not come back as the one in [-pi, pi) that has its direction.",
+            help="Subtract as many whole turns as it takes, until every angle lies in [-pi, pi).",
+            diagnose=lambda angles=angles, right=right: probes.of_whole(
+                submission, "wrap_angle", [angles], lambda found: np.allclose(found, right, atol=1e-9)
+            ),
+        )
+        shared.expect_left_alone(inspected, [angles], ["e"])
 
 
 @pytest.mark.task("nees")
@@ -143,6 +148,7 @@ def test_bootstrap_chance(submission):
     """The width depends on alpha, the given statistic is used, and all random numbers come from rng"""
     statistic = systems.AveragePolynomial([0.0, 0.0, 1.0])
     intervals.expect_level(submission, np.random.default_rng(161), statistic)
+    intervals.expect_whole(submission)
 
 
 @pytest.mark.task("energy_error")
@@ -192,6 +198,7 @@ def test_cross_validate_lengths(submission):
         u = rng.standard_normal(n)
         data.append({"u": u, "y": (1 + 0.3 * i) * u + 0.05 * rng.standard_normal(n)})
     shared.expect_folds(submission, data, 3)
+    shared.expect_folds(submission, [{**run, "y": np.rint(10 * run["y"]).astype(int)} for run in data], 3)
 
 
 @pytest.mark.task("validate")

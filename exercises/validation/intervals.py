@@ -44,7 +44,7 @@ def expect_resamples(submission, seed):
     code = probes.of_resamples(found)
     if code is not None:
         kit.fail(
-            "The resamples that are passed to the statistic are not made as they should be.",
+            "The statistic does not get the resamples that it should get.",
             help="Join blocks of neighbours, drawn with replacement, until there are as many as in e.",
             diagnose=probes.named(code),
             expected="24 resamples of 250 samples in blocks of 12",
@@ -63,6 +63,23 @@ def expect_resamples(submission, seed):
             actual=found.inspected.value,
         )
     shared.expect_left_alone(found.inspected, [found.e], ["e"])
+
+
+def expect_whole(submission):
+    """Of errors that are whole numbers the interval is the same as of these numbers as floats."""
+    e = np.rint(20 * np.sin(np.arange(60) ** 1.3)).astype(int)
+    asked = [(x, shared.MEAN, 5, 40, 0.2, np.random.default_rng(7)) for x in (e, e.astype(float))]
+    ends = shared.interval_ends(submission.call_each("block_bootstrap_ci", asked))
+    kit.expect_array(
+        ends[0],
+        ends[1],
+        rel=1e-9,
+        source="the same resamples, drawn by generators with the same seed",
+        quantity="lo and hi",
+        input={"e": e, "block": 5, "n_boot": 40, "alpha": 0.2},
+        message="For errors that are whole numbers the interval is another than for the same ones as floats.",
+        diagnose=probes.named("WHOLE_NUMBERS"),
+    )
 
 
 def expect_centred(submission, ends, statistics, shown):

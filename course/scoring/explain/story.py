@@ -110,11 +110,11 @@ def merged(codes: Sequence[str], words: Words, fits: Sequence[Row]) -> Diagnosis
     parts = [words(code) for code in codes]
     if all(len(row.codes) == 1 for row in fits):
         return parts[0]
-    looks = " The other: ".join(part.looks_like for part in parts)
+    # Of a program with one of them alone; with both at once it need not be so.
+    looks = " Of the other: ".join(part.looks_like for part in parts)
     advice = " And for the other: ".join(part.advice for part in parts)
-    return Diagnosis(
-        parts[0].code, f"Two mistakes at once would give these results. One of them: {looks}", advice
-    )
+    both = "Two mistakes at once would give these results. What is said of one of them alone: "
+    return Diagnosis(parts[0].code, both + looks, advice)
 
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:

@@ -1,7 +1,7 @@
 """Full marks, and every mutant caught, under every seed.
 
     python tests/benchmarks/calibration/seeds.py EXERCISE... [--seeds 1000] [--accepted 1000] [--mutants 200]
-        [--first 1] [--variant NAME] [--log FILE]
+        [--first 1] [--variant NAME] [--log FILE] [--kept]
 
 A grading of the model solution or of an accepted variant has to give full marks; one of a mutant what
 mutants.toml says: points of its task only, by the check and with the diagnosis it names. What is not so is
@@ -11,8 +11,10 @@ The first seed is a grading run: every check, in a worker. With the others the s
 process, before the checks of the tasks that it does in its own way, where one of them draws; everything
 else would come out as with the first seed, or is the model solution's, which has its own turn. What ends
 its worker (an endless loop, too much memory) stays in workers, with ten seeds, and so does, with all of them,
-what keeps something between two calls, since a second worker is asked about that. With --log what is done is
-noted in a file, and a run with the same file goes on there, as long as exercise and program are the same.
+what keeps something between two calls, since a second worker is asked about that. What is done is noted in
+a file, seeds.jsonl beside this one, and is not done again as long as it holds: full marks are decided by the
+checks, what a mutant is told by the known mistakes and the kinds of diagnoses as well, and neither by how it
+is worded. --kept says how much of what is asked for stands there.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ import json
 import re
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -34,7 +37,12 @@ sys.path[:0] = [str(ROOT)]
 from course.authoring.exercises.diagnosis.confusion import made_from  # noqa: E402
 from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
 from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
-from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
+from course.authoring.exercises.variants import (  # noqa: E402
+    accepted_files,
+    compose,
+    exercise_graders,
+    solution_path,
+)
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.explain.words import OWN_WORDS  # noqa: E402
 from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
@@ -47,6 +55,7 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.scoring.verdict import Verdict
 
+LOG = Path(__file__).with_suffix(".jsonl")
 #: Gradings of a program that ends its worker: each takes the whole deadline.
 _ENDING = 10
 
@@ -89,30 +98,34 @@ class Seeded(GradingSession):
 class Log:
     """How many gradings of a program were not as they should be, by what decides it."""
 
-    def __init__(self, path: Path | None) -> None:
+    def __init__(self, path: Path) -> None:
         self._path = path
-        lines = path.read_text(encoding="utf-8").splitlines() if path and path.is_file() else []
+        lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
         self._done = {tuple(key): wrong for *key, wrong in map(json.loads, lines)}
 
     def done(self, *key: Any) -> int | None:
         return self._done.get(key)
 
     def note(self, *key: Any, wrong: int) -> None:
-        if self._path:
-            with self._path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps([*key, wrong]) + "\n")
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps([*key, wrong]) + "\n")
 
 
 def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) -> int:
     """Grade under many seeds; how many gradings were not as they should be."""
-    log, wrong, state = Log(options.log), 0, made_from(catalog, exercise)
+    log, wrong = Log(options.log), 0
+    told, decided = made_from(catalog, exercise), _checks_of(catalog, exercise)
     # What is asked is whether the answer is right: a machine that does other work too must not cost a mark.
+    counts: Counter[tuple[str, bool]] = Counter()
     with Seeded(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
         for program in programs(exercise, catalog, options):
             digest = hashlib.sha256(program.source).hexdigest()[:16]
+            state = told if program.name.startswith("mutants/") else decided
             key = exercise.id, state, program.name, digest, options.first, program.seeds
             short = log.done(*key)
-            if short is None:
+            if options.kept:
+                counts["mutants" if state is told else "right programs", short is not None] += 1
+            elif short is None:
                 start = time.perf_counter()
                 short, graded = _grade(session, program, options.first)
                 log.note(*key, wrong=short)
@@ -122,8 +135,20 @@ def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace)
                     f"{exercise.id} {program.name}: {graded - short} of {graded} {what}, {took:.3f} s each",
                     flush=True,
                 )
-            wrong += short
+            wrong += short or 0
+    for kind in ("right programs", "mutants") if options.kept else ():
+        done, all_of_them = counts[kind, True], counts[kind, True] + counts[kind, False]
+        print(f"{exercise.id}: {done} of {all_of_them} {kind}")
     return wrong
+
+
+def _checks_of(catalog: Catalog, exercise: Exercise) -> str:
+    """A digest of the code that decides whether a program has full marks."""
+    found = hashlib.sha256()
+    for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
+        for path in sorted(folder.glob("*.py")):
+            found.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return found.hexdigest()[:16]
 
 
 def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) -> Iterator[Program]:
@@ -197,7 +222,10 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=200, help="for each mutant")
     parser.add_argument("--first", type=int, default=1, help="the first seed")
     parser.add_argument("--variant", action="append", default=[], help="only this one; repeatable")
-    parser.add_argument("--log", type=Path, help="note what is done here, and leave out what is noted")
+    parser.add_argument(
+        "--log", type=Path, default=LOG, help="what is done is noted here, and not done again"
+    )
+    parser.add_argument("--kept", action="store_true", help="grade nothing; say how much is noted")
     options = parser.parse_args()
     catalog = Catalog()
     wrong = [grade_all(catalog.exercise(name), catalog, options) for name in options.exercise]

@@ -62,18 +62,22 @@ def test_bias_variance_offset(submission, rng):
 def test_wrap_angle_many_turns(submission, rng):
     """Angles many turns away in both directions, and half a turn itself; the argument stays unchanged"""
     e = np.concatenate([rng.uniform(-600, 600, 40), rng.uniform(-3, 3, 10), [np.pi, -np.pi, 0.0]])
-    inspected = submission.call_inspect("wrap_angle", e)
-    values = kit.as_vector(inspected.value, len(e), "the result")
-    # Around half a turn both signs are right, so the result is compared on the circle.
-    apart = np.abs(np.angle(np.exp(1j * (values - e))))
-    kit.expect_true(
-        bool(np.all(np.abs(values) <= np.pi + 1e-9) and np.all(apart <= 1e-9)),
-        "At least one angle is not wrapped, or its direction has changed.",
-        help="Subtract as many whole turns as it takes, until every angle lies in [-pi, pi).",
-        input={"e": e},
-        actual=values,
-    )
-    shared.expect_left_alone(inspected, [e], ["e"])
+    for angles in (e, rng.integers(-600, 600, 20)):
+        inspected = submission.call_inspect("wrap_angle", angles)
+        values = kit.as_vector(inspected.value, len(angles), "the result")
+        # Around half a turn both signs are right, so the result is compared on the circle.
+        apart = np.abs(np.angle(np.exp(1j * (values - angles))))
+        kit.expect_true(
+            bool(np.all(np.abs(values) <= np.pi + 1e-9) and np.all(apart <= 1e-9)),
+            "At least one angle is not wrapped, or its direction has changed.",
+            help="Subtract as many whole turns as it takes, until every angle lies in [-pi, pi).",
+            input={"e": angles},
+            actual=values,
+            diagnose=lambda angles=angles: shared.probes.of_whole(
+                submission, "wrap_angle", [angles], lambda found: np.max(np.abs(found)) <= np.pi
+            ),
+        )
+        shared.expect_left_alone(inspected, [angles], ["e"])
 
 
 # -- consistency ----------------------------------------------------------------------------------------

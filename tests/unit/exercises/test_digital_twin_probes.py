@@ -785,7 +785,7 @@ def test_readings_that_miss_a_wall_are_not_blamed_on_the_noise():
 
     with pytest.raises(kit.CheckFailed) as failed:
         sensor_bundles.expect_scan_noise(Fake("lidar", joined), 8.0, 0.05, np.random.default_rng(1))
-    assert "readings are not about its distances" in failed.value.finding.message
+    assert "readings do not scatter about its distances" in failed.value.finding.message
 
 
 def counts_in_single_precision(theta, counts_per_rev):

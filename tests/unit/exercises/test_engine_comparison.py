@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import itertools
 import math
@@ -113,6 +114,19 @@ def test_engines_that_show_the_same_numbers_differ_inside():
                 assert any(one[key] != other[key] for one, other in known), (seed, key)
         assert any(abs(one["linear_damping"] / other["linear_damping"] - 1) > 0.02
                    for one, other in known if other["linear_damping"])  # fmt: skip
+
+
+def test_a_copy_of_an_engine_repeats_itself_jitter_and_all():
+    # Calls are made again from such copies: what varies by itself must not pass for something that is kept.
+    box = dataclasses.replace(boxes.CORK, jitter=1e-3, noise=np.random.default_rng(3))
+    case = bench.Case("cork", box, boxes.TRUTH["cork"])
+    handed = bench.engine(case)
+    before = copy.deepcopy(handed)
+    asked = "spring", [1.0], [0.0], 0.05, 3, [0.0]
+    runs = [[engine["$methods"]["run"](*asked)[0] for _ in range(2)] for engine in (handed, before)]
+    assert np.array_equal(*runs)
+    assert not np.array_equal(*runs[0])
+    assert len(case.runs) == 4
 
 
 @pytest.mark.parametrize(("kept", "code"), [(True, "VALUE_KEPT"), (False, None)])

@@ -7,6 +7,7 @@ The table is kept with the solution, and the page about the graders shows it.
 from __future__ import annotations
 
 import hashlib
+import json
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -130,13 +131,14 @@ def as_one(exercise: Exercise, program: _Program) -> _Program:
 
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
-    """A digest of every file that affects the diagnosis of a wrong program."""
+    """A digest of every file that affects the diagnosis of a wrong program; how it is worded does not."""
+    home = exercise.readme_path.parent
     found = hashlib.sha256(digest(catalog, exercise).encode())
-    for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
-        for path in sorted(
-            [*folder.glob("*.py"), *folder.glob("diagnoses.toml"), *folder.glob("hypotheses.json")]
-        ):
+    for folder in (home, exercise_graders(catalog, exercise)):
+        for path in sorted([*folder.glob("*.py"), *folder.glob("hypotheses.json")]):
             found.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    kinds = {code: entry.kind for code, entry in words(exercise.id).entries.items()}
+    found.update(json.dumps(kinds, sort_keys=True).encode())
     return found.hexdigest()[:16]
 
 

@@ -6,7 +6,7 @@ values that the engine's rule for two materials needs. Three things are switched
 them the test would measure something else: sleeping, motors that hold joints, and contacts between the bodies
 of a chain.
 
-*Well set*: an engine's options are listed in ``adapters/<engine>.toml``, each with what it does, the
+*Well set*: an engine's options are listed in ``options/<engine>.toml``, each with what it does, the
 documentation it was read from, and the values worth trying for a topic; those left alone are listed as well.
 Of all combinations, including the defaults, the one whose mean over the phases of a step is closest to the
 truth is used; of equally good ones, the one that changes the fewest options. No engine's solver gets more
@@ -110,7 +110,7 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 @functools.cache
 def options_of(engine: str) -> Options:
     """The options of an engine, as its file lists them."""
-    path = files("course").joinpath("engines", "adapters", f"{engine}.toml")
+    path = files("course").joinpath("engines", "options", f"{engine}.toml")
     return msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), Options)
 
 

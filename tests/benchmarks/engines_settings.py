@@ -4,7 +4,7 @@
     python tests/benchmarks/engines_settings.py --engine ode     one engine; --scenario: one scenario
     python tests/benchmarks/engines_settings.py --compare         try again, and say what would be chosen now
 
-The rule is in course/engines/settings.py; the values that are tried are beside the adapters. Needs all
+The rule is in course/engines/settings.py; the values that are tried are in course/engines/options. Needs all
 extras. It takes about ten minutes of one processor. After it, tests/benchmarks/engines_reference.py has to
 measure again.
 """

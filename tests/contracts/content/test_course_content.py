@@ -110,7 +110,7 @@ def _summary(source: str) -> list[tuple[str, str]]:
 
 
 def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog: Catalog) -> None:
-    """As the audit keeps the tables: made from the checks, probes and words that there are."""
+    """As the audit keeps the tables: made from the checks, probes and known mistakes that there are."""
     for exercise in catalog.exercises():
         table, fate = read_confusion(catalog, exercise), fate_of(exercise)
         assert table is not None

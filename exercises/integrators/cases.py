@@ -166,20 +166,20 @@ def _expect_plain_motion(submission, task, args, given):
 def _expect_sum(submission, task, args):
     """In free fall and on a spring a step is linear but for a constant: steps add up."""
     _, t, q, v, h = args
-    for system in (FreeFall(7.0), Oscillator(1.7)):
+    for system, name in ((FreeFall(7.0), "free fall"), (Oscillator(1.7), "a spring")):
         states = ((q, 0 * v), (0 * q, v), (q, v), (0 * q, 0 * v))
         values = submission.call_each(task, [(system, t, *state, h) for state in states])
         # What is no number everywhere is told elsewhere.
         still, middle, *rest = (np.nan_to_num(kit.as_pair(value, 2)) for value in values)
-        for actual, expected, name in zip(still + middle, sum(rest), ("q_next", "v_next"), strict=True):
+        for actual, expected, part in zip(still + middle, sum(rest), ("q_next", "v_next"), strict=True):
             kit.expect_array(
                 actual,
                 expected,
                 rel=1e-12,
                 abs=1e-12,
                 source="linear but for a constant: only rounding is allowed",
-                quantity=f"{name}, summed",
-                input={**system.params(), "t": t, "q": q, "v": v, "h": h},
+                quantity=f"{part}, summed",
+                input={"accel": name, **system.params(), "t": t, "q": q, "v": v, "h": h},
                 message="The steps from (q, 0) and (0, v) do not add up to those from (q, v) and (0, 0).",
                 help="The same formulas hold for a body at rest and for one where nothing pulls it.",
                 diagnose=lambda: probes.of_step(submission, task) or probes.of_zeros(submission, task),

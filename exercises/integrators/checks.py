@@ -352,28 +352,28 @@ def test_stable_step_ends(submission, draw):
 @pytest.mark.task("explicit_euler_step")
 @pytest.mark.points(0)
 def test_explicit_euler_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers"""
+    """The step leaves q and v alone, and takes zeros and whole numbers"""
     _expect_clean(submission, "explicit_euler_step")
 
 
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(0)
 def test_semi_implicit_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers"""
+    """The step leaves q and v alone, and takes zeros and whole numbers"""
     _expect_clean(submission, "semi_implicit_euler_step")
 
 
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(0)
 def test_verlet_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers"""
+    """The step leaves q and v alone, and takes zeros and whole numbers"""
     _expect_clean(submission, "velocity_verlet_step")
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(0)
 def test_rk4_arguments(submission):
-    """The step leaves q and v alone and takes whole numbers"""
+    """The step leaves q and v alone, and takes zeros and whole numbers"""
     _expect_clean(submission, "rk4_step")
 
 

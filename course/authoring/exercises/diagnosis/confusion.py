@@ -7,6 +7,7 @@ The table is kept with the solution, and the page about the graders shows it.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 from collections import Counter
 from dataclasses import dataclass
@@ -39,6 +40,7 @@ __all__ = [
     "Reported",
     "Tally",
     "as_one",
+    "code_of",
     "confusion_of",
     "fate_of",
     "made_from",
@@ -132,14 +134,18 @@ def as_one(exercise: Exercise, program: _Program) -> _Program:
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of every file that affects the diagnosis of a wrong program; how it is worded does not."""
-    home = exercise.readme_path.parent
-    found = hashlib.sha256(digest(catalog, exercise).encode())
-    for folder in (home, exercise_graders(catalog, exercise)):
-        for path in sorted([*folder.glob("*.py"), *folder.glob("hypotheses.json")]):
-            found.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    code = code_of(catalog, exercise, "*.py", "hypotheses.json")
+    found = hashlib.sha256(digest(catalog, exercise).encode() + code)
     kinds = {code: entry.kind for code, entry in words(exercise.id).entries.items()}
     found.update(json.dumps(kinds, sort_keys=True).encode())
     return found.hexdigest()[:16]
+
+
+def code_of(catalog: Catalog, exercise: Exercise, *patterns: str) -> bytes:
+    """The files of an exercise and of its graders that decide about a program, in a row."""
+    folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
+    paths = [path for folder in folders for path in sorted(itertools.chain(*map(folder.glob, patterns)))]
+    return b"".join(path.name.encode() + b"\0" + path.read_bytes() + b"\0" for path in paths)
 
 
 def _tried(

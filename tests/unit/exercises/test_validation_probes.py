@@ -421,6 +421,16 @@ def test_a_band_that_is_near_is_told_from_one_that_is_not(factor, expected):
     assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected
 
 
+def test_a_search_that_ends_too_early_is_told_from_one_without_alpha():
+    exactly = formulas.exactly()
+    solution = Fake()
+    solution.set(
+        "consistency_band", lambda *setting: [min(end, 900.0 / setting[1]) for end in exactly(*setting)]
+    )
+    setting = 5, 400, 0.05
+    assert code(probes.of_band(solution, setting, [2.25, 2.25], exactly(*setting))) == "FEW_DEGREES_ONLY"
+
+
 def test_an_array_of_the_type_of_whole_numbers_is_recognised():
     def nees(err, covariance):
         result = np.zeros_like(err[:, 0])
@@ -438,10 +448,10 @@ def test_an_array_of_the_type_of_whole_numbers_is_recognised():
 
 def test_a_band_without_alpha_and_a_symmetric_one_are_recognised():
     right = formulas.exactly()(2, 20, 0.05)
-    for ends, again, expected in (
-        ([1.2, 3.1], [1.2, 3.1], "ALPHA_IGNORED"),
-        ([1.4, 2.6], [1, 3], "NORMAL_BAND"),
+    for ends, band, expected in (
+        ([1.2, 3.1], lambda *_: [1.2, 3.1], "ALPHA_IGNORED"),
+        ([1.4, 2.6], lambda dof, runs, alpha: [1.4 - alpha, 2.6 + alpha], "NORMAL_BAND"),
     ):
         solution = Fake()
-        solution.set("consistency_band", lambda *_, again=again: again)
+        solution.set("consistency_band", band)
         assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected

@@ -35,7 +35,11 @@ def expect_hall(submission, rng):
     poses = np.column_stack((rng.uniform(-1.5, 1.5, (5, 2)), rng.uniform(-6, 6, 5)))
     angles = np.sort(rng.uniform(-3.1, 3.1, 40))
     calls = [(pose, walls, angles, r_max, 0.0, rng) for pose in poses]
-    calls.append((poses[0], rays.long_before_short(poses[0], rng), angles, r_max, 0.0, rng))
+    # One beam goes through the middle of both walls, and either may come last.
+    walls = rays.long_before_short(poses[0], rng)
+    x, y = np.mean(walls[1], axis=0) - poses[0][:2]
+    beams = np.append(angles, np.angle(np.exp(1j * (np.arctan2(y, x) - poses[0][2]))))
+    calls += [(poses[0], pair, beams, r_max, 0.0, rng) for pair in (walls, walls[::-1])]
     others = poses[1], rays.hall(rng), rng.uniform(-3.1, 3.1, 40), 0.8 * r_max
     calls += [(*call, 0.0, rng) for call in bundles.one_by_one(calls[0][:4], others)]
     # A wall of a metre, square to a beam: the cross product of their directions is 1, or -1.

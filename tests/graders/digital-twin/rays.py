@@ -43,9 +43,9 @@ def hall(rng):
 
 
 def long_before_short(pose, rng):
-    """A long wall and, behind it, a short one with nearer middle and ends; shape (2, 2, 2)."""
+    """A long wall and, behind it, a short one with nearer middle and ends; shape (2, 2, 2), in this order."""
     near, reach, half = rng.uniform(0.8, 1.2), rng.uniform(2.0, 2.4), rng.uniform(0.3, 0.6)
     walls = np.array([[[near, -8.0], [near, reach]], [[near + 0.3, -half], [near + 0.3, half]]])
     angle = rng.uniform(0, 2 * np.pi)
     c, s = np.cos(angle), np.sin(angle)
-    return rng.permutation(walls @ np.array([[c, s], [-s, c]]) + np.asarray(pose)[:2])
+    return walls @ np.array([[c, s], [-s, c]]) + np.asarray(pose)[:2]

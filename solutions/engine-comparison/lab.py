@@ -8,6 +8,7 @@ Each is drawn so that every key of the report takes values that a guess or a sli
 from __future__ import annotations
 
 import functools
+import math
 
 import numpy as np
 
@@ -140,6 +141,12 @@ def _between(rng, low, high):
     return float(rng.uniform(low, high))
 
 
+def _off_whole_millimetres(depth):
+    """At least 0.2 mm from one, so that a depth in whole millimetres is never near enough."""
+    part, whole = math.modf(1e3 * depth)
+    return 1e-3 * (whole + 0.2 + 0.6 * part)
+
+
 # -- the eight: what each is there for ------------------------------------------------------------------
 
 
@@ -190,7 +197,7 @@ def _accurate(rng):
         "dt": 1 / 240,
         "step": boxes.rk4,
         "cone": boxes.square_pyramid,
-        "softness": _between(rng, 0.001, 0.003),
+        "softness": _off_whole_millimetres(_between(rng, 0.001, 0.003)),
         "restitution": _between(rng, 0.6, 0.9),
         "jitter": 10 ** _between(rng, -12.0, -11.0),
     }

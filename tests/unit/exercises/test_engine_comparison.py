@@ -116,6 +116,13 @@ def test_engines_that_show_the_same_numbers_differ_inside():
                    for one, other in known if other["linear_damping"])  # fmt: skip
 
 
+def test_a_depth_in_whole_millimetres_is_never_near_enough():
+    rel, abs_, *_ = probing.TOLERANCES["rest_penetration"]
+    for seed in range(200):
+        depths = [engine.get("softness", 0.0) for engine in lab.drawn(seed)]
+        assert any(abs(round(depth, 3) - depth) > rel * depth + abs_ for depth in depths), seed
+
+
 def test_a_copy_of_an_engine_repeats_itself_jitter_and_all():
     # Calls are made again from such copies: what varies by itself must not pass for something that is kept.
     box = dataclasses.replace(boxes.CORK, jitter=1e-3, noise=np.random.default_rng(3))

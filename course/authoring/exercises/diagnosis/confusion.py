@@ -142,9 +142,12 @@ def made_from(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def code_of(catalog: Catalog, exercise: Exercise, *patterns: str) -> bytes:
-    """The files of an exercise and of its graders that decide about a program, in a row."""
+    """The files that decide about a program, in a row: the exercise's, its graders' and the references'."""
     folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
     paths = [path for folder in folders for path in sorted(itertools.chain(*map(folder.glob, patterns)))]
+    solution = solution_path(catalog, exercise)
+    others = sorted(solution.parent.glob("*.py"))
+    paths += [path for path in others if path not in (solution, solution.with_name("hypotheses.py"))]
     return b"".join(path.name.encode() + b"\0" + path.read_bytes() + b"\0" for path in paths)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.authoring.exercises.diagnosis.build import hypotheses_of
-from course.authoring.exercises.diagnosis.confusion import as_one, fate_of, read_confusion
+from course.authoring.exercises.diagnosis.confusion import as_one, code_of, fate_of, read_confusion
 from course.authoring.exercises.variants import solution_path
 from course.grading import kit
 from course.ids import WARM_UPS
@@ -117,6 +117,15 @@ def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog:
         assert set(table.rows) == {"public", "full"}
         rows = [row for scope in table.rows.values() for row in scope]
         assert [row for row in rows if fate(row) == "otherwise"] == []
+
+
+def test_what_decides_about_a_program_includes_what_answers_for_it(catalog: Catalog) -> None:
+    """A reference that draws other engines decides as much as a check; the model solution is a program."""
+    exercise = catalog.exercise("engine-comparison")
+    code = code_of(catalog, exercise, "*.py")
+    reference = solution_path(catalog, exercise).with_name("lab.py")
+    assert reference.read_bytes() in code
+    assert solution_path(catalog, exercise).read_bytes() not in code
 
 
 def test_what_one_run_shows_is_told_by_the_checks_that_saw_it(catalog: Catalog) -> None:

@@ -227,12 +227,13 @@ def _concerned(task, calls, values, truth):
     if task != "impulse_1d" and not task.startswith("resolve"):
         return None
     pairs = list(zip(calls, values, truth, strict=True))
-    wrong = [pair for pair in pairs if not _same(pair[2], pair[1])]
+    right = [_same(known, value) for _, value, known in pairs]
+    wrong = [pair for pair, met in zip(pairs, right, strict=True) if not met]
     idle = [(0.0 if task == "impulse_1d" else (call[2], call[3])) for call, _, _ in wrong]
     if all(_closing(task, call) <= 0 for call, _, _ in wrong):
         kept = task == "impulse_1d" or not any(_momentum_lost(call, value) for call, value, _ in wrong)
         return "IMPULSE_ON_SEPARATING" if kept else None
-    struck = any(pair not in wrong and _closing(task, pair[0]) > 0 for pair in pairs)
+    struck = any(met and _closing(task, call) > 0 for (call, _, _), met in zip(pairs, right, strict=True))
     if struck and all(_same(still, value) for still, (_, value, _) in zip(idle, wrong, strict=True)):
         return "SOME_PAIRS_SPARED"
     if task == "impulse_1d" or (not struck and len(wrong) < 2):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from course.authoring.exercises.grading import GradeSources, grade_sources
 from course.authoring.exercises.variants import compose, solution_path, solutions_folder
+from course.scoring.failures import OURS
 from course.scoring.verdict import Status
 
 if TYPE_CHECKING:
@@ -113,6 +114,15 @@ def judge(mutant: Mutant, verdict: Verdict) -> tuple[Fault, ...]:
         )
         for check in failed
         if check.task != mutant.task
+    ]
+    faults += [
+        Fault(
+            f"breaks the diagnosis of check {check.id}: {check.traceback.removeprefix(OURS)}.",
+            "A probe gets whatever a wrong program returns; let it look before it computes.",
+            "diagnosis",
+        )
+        for check in failed
+        if check.traceback and check.traceback.startswith(OURS)
     ]
     if all(check.points == check.max_points for check in failed):
         faults.append(Fault("loses no points.", "Give points to the checks that catch it.", "check"))

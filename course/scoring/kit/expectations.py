@@ -16,8 +16,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
+import msgspec
 import numpy as np
 
 from course.isolation.failures import IsolationError
@@ -50,6 +51,7 @@ __all__ = [
     "fail",
 ]
 
+_Part = TypeVar("_Part", bound=msgspec.Struct | None)
 Diagnose = Diagnosis | str | Callable[[], Diagnosis | str | None] | None
 
 
@@ -97,14 +99,21 @@ def fail(
             expected=plain(expected),
             actual=plain(actual),
             units=units,
-            tolerance=tolerance,
-            first_divergence=first_divergence,
+            tolerance=_of_plain(tolerance),
+            first_divergence=_of_plain(first_divergence),
         ),
         broke,
         bare,
         found if isinstance(found, Diagnosis) else None,
         comparison,
     )
+
+
+def _of_plain(part: _Part) -> _Part:
+    """The same with Python's own numbers: a limit that a check works out is one of numpy's."""
+    if part is None:
+        return part
+    return type(part)(**{key: plain(value) for key, value in msgspec.structs.asdict(part).items()})
 
 
 def _explained(diagnose: Diagnose) -> tuple[Diagnosis | str | None, str]:

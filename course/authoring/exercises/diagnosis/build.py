@@ -180,13 +180,17 @@ def _expected(exercise: Exercise) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Plain values that JSON has; infinities as text."""
+    """Plain values that JSON has, from which ``known_answers`` makes the same again; infinities as text."""
     if is_dataclass(value) and not isinstance(value, type):
         return [_plain(item) for item in asdict(value).values()]
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, np.ndarray):
+        return {"array": _plain(value.tolist())}
+    if isinstance(value, tuple):
+        return {"tuple": [_plain(item) for item in value]}
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
+    if isinstance(value, list):
         return [_plain(item) for item in value]
     return str(value) if isinstance(value, float) and math.isinf(value) else value

@@ -10,6 +10,7 @@ import pytest
 
 from course.authoring.audit import audit
 from course.catalog.load import Catalog
+from course.scoring.failures import OURS
 from course.scoring.verdict import Problem, Status, Verdict
 
 if TYPE_CHECKING:
@@ -117,6 +118,13 @@ failing = {"status": Status.FAIL, "points": 0.0}
             f"{MUTANTS}:7",
             "mutant",
             "loses no points",
+        ),
+        (
+            "squares.py",
+            with_check("double_of_three", traceback=f"{OURS}KeyError: 3"),
+            f"{MUTANTS}:8",
+            "mutant",
+            "breaks the diagnosis of check double_of_three: KeyError: 3.",
         ),
         (
             "squares.py",

@@ -187,10 +187,9 @@ def _plain(value: Any) -> Any:
         return _plain(value.item())
     if isinstance(value, np.ndarray):
         return {"array": _plain(value.tolist())}
-    if isinstance(value, tuple):
-        return {"tuple": [_plain(item) for item in value]}
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
+    if isinstance(value, tuple | list):
+        items = [_plain(item) for item in value]
+        return {"tuple": items} if isinstance(value, tuple) else items
     return str(value) if isinstance(value, float) and math.isinf(value) else value

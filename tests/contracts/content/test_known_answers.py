@@ -1,0 +1,94 @@
+"""What a student's own machine says of wrong programs, where nothing answers for them.
+
+A wheel has no references: the public checks with fixed inputs take what they expect from ``hypotheses.json``.
+Each known wrong program is told the same there as beside the references.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, is_dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from course.authoring.exercises.mutants import mutant_path
+from course.authoring.exercises.variants import compose, solution_path
+from course.catalog.load import Catalog
+from course.catalog.locate import content
+from course.grading import kit
+from course.scoring.explain.table import FILE, read_table
+from course.scoring.failures import OURS
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.terms import Terms
+
+if TYPE_CHECKING:
+    from course.scoring.verdict import CheckResult
+
+CATALOG = Catalog()
+pytestmark = pytest.mark.usefixtures("sandboxes")
+#: The exercises whose public checks know answers that their references give.
+ANSWERED = [
+    exercise.id
+    for exercise in CATALOG.exercises()
+    if (path := exercise.readme_path.with_name(FILE)).is_file() and read_table(path).answers
+]
+
+
+def _wrong(exercise_id: str) -> dict[str, bytes]:
+    exercise = CATALOG.exercise(exercise_id)
+    solution = solution_path(CATALOG, exercise)
+    return {
+        mutant.file: compose(solution, mutant_path(CATALOG, exercise, mutant))
+        for mutant in CATALOG.mutants(exercise)
+    }
+
+
+def _told(exercise_id: str, programs: dict[str, bytes]) -> dict[str, list[CheckResult]]:
+    exercise = CATALOG.exercise(exercise_id)
+    with GradingSession(exercise, CATALOG, scope="public", terms=Terms(home=True, timeout=5.0)) as session:
+        return {
+            name: list(session.grade(Submission({exercise.module: source})).checks)
+            for name, source in programs.items()
+        }
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Equal, and of the same kinds all the way down; numpy's own numbers are as good as Python's."""
+    if is_dataclass(one) and not isinstance(one, type):
+        return _same(list(asdict(one).values()), other)
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray):
+        return isinstance(other, np.ndarray) and np.array_equal(one, other)
+    if isinstance(one, list | tuple):
+        return type(one) is type(other) and len(one) == len(other) and all(map(_same, one, other))
+    return bool(one == other) and not isinstance(other, np.ndarray | list | tuple | dict)
+
+
+@pytest.mark.parametrize("exercise_id", ANSWERED)
+def test_a_known_answer_is_of_the_kind_that_the_reference_gives(exercise_id: str) -> None:
+    for check, right in kit.companion(exercise_id, "bundles").known().items():
+        for one, known in zip(right, kit.known_answers(exercise_id, check), strict=True):
+            assert _same(one, known), (check, one, known)
+
+
+@pytest.mark.parametrize("exercise_id", ANSWERED)
+def test_a_wrong_program_is_told_the_same_without_the_references(
+    exercise_id: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    programs = _wrong(exercise_id)
+    beside = _told(exercise_id, programs)
+    monkeypatch.setattr(type(content()), "solution_folder", lambda _, __: None)
+    assert kit.reference(exercise_id, "formulas") is None
+    alone = _told(exercise_id, programs)
+    for name in programs:
+        for one, other in zip(beside[name], alone[name], strict=True):
+            assert not (other.traceback or "").startswith(OURS), (name, other.traceback)
+            assert (one.id, one.status, one.diagnosis, one.message, one.help) == (
+                other.id,
+                other.status,
+                other.diagnosis,
+                other.message,
+                other.help,
+            ), name

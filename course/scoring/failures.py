@@ -127,12 +127,27 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     name = failure.type if known else "an exception"
     said = one_line(failure.message, _SAID).rstrip(" .") if shown else ""
     begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
+    advice = f"{begin} the function yourself and read the traceback from the bottom up."
     return Finding(
         message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
-        help=f"{begin} the function yourself and read the traceback from the bottom up.",
+        help=_at_a_terminal(failure) or advice,
         diagnosis="RAISED",
         actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
     )
+
+
+def _at_a_terminal(failure: StudentFailure) -> str:
+    """The advice where code wants somebody at a terminal; "" where it does not."""
+    for call, alone in (("input", "EOFError"), ("breakpoint", "BdbQuit")):
+        if failure.type == alone:
+            return (
+                f"Nobody types while a check runs. Take `{call}()` out of the function, "
+                "and use it in a file of your own that imports this one."
+            )
+    for name in ("exit", "quit"):
+        if failure.type == "NameError" and f"'{name}'" in failure.message:
+            return f"`{name}` belongs to Python's prompt. End a function with `return`, or let it raise."
+    return ""
 
 
 _OTHER: dict[str, tuple[str, str, str]] = {

@@ -18,7 +18,7 @@ from course.cli.frame.terminal.console import Console, current
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Update
-from course.errors import UsageError
+from course.errors import NotFoundError, UsageError
 from course.progress.workspace import same_text, write_atomically
 
 if TYPE_CHECKING:
@@ -80,6 +80,12 @@ def reset(
     shown = here.workspace.shown(path)
     step = f"course check {chosen.id}"
     there = path.is_file()
+    if not there and chosen.id not in here.workspace.started():
+        raise NotFoundError(
+            f"You have not started {chosen.id}: there is nothing to reset.",
+            help=f"Start it: `course start {chosen.id}`.",
+            code="not_started",
+        )
     if there and path.read_bytes() == stub:
         console.line(f"{shown} is the stub already; nothing was changed.")
         console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))

@@ -86,7 +86,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
     """
 
     history = here.history(exercise)
-    again = f"course check {exercise.id}"
+    started = exercise.id in here.workspace.started()
+    again = f"course check {exercise.id}" if started else f"course start {exercise.id}"
     task = _task(exercise, history, wanted)
     last = history.last
     if last is None:

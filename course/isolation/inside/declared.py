@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import importlib.machinery
 import itertools
+import math
 import opcode
 import sys
 import types
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["ImportNotDeclaredError", "Imports", "StandIn"]
 
 
+_BINARY = ("add", "sub", "mul", "matmul", "truediv", "floordiv", "mod", "divmod", "pow", "and", "or", "xor")
 _UNPACK = opcode.opmap["UNPACK_SEQUENCE"]
 
 
@@ -31,8 +33,9 @@ class ImportNotDeclaredError(ImportError):
 class StandIn(types.ModuleType):
     """A stand-in for a package that a submission may not import, if it imports it at its top level.
 
-    While the submission loads, it silently accepts any use, so that a plot at the end of a file costs
-    nothing. After that every use raises: only the tasks that need the package fail.
+    It stands for whatever is imported from there too. While the submission loads, it silently accepts any
+    use, so that a plot at the end of a file costs nothing. After that every use raises: only the tasks that
+    need the package fail.
     """
 
     loading = True
@@ -66,9 +69,27 @@ class StandIn(types.ModuleType):
         operation, argument = caller.f_code.co_code[caller.f_lasti : caller.f_lasti + 2]
         return itertools.repeat(self, argument if operation == _UNPACK else 0)
 
+    def __float__(self) -> float:
+        self._use()
+        return math.nan
+
+    def __index__(self) -> int:
+        self._use()
+        return 0
+
     def _use(self) -> None:
         if not StandIn.loading:
             raise _not_declared(self.__name__.partition(".")[0], self._allowed)
+
+
+# Operators are looked up on the class, so __getattr__ does not see them: a constant is used by them alone.
+for _operator in (
+    *(f"__{side}{name}__" for name in _BINARY for side in ("", "r", "i")),
+    *("__neg__", "__pos__", "__abs__", "__invert__", "__lt__", "__le__", "__gt__", "__ge__", "__round__"),
+    # numpy asks for these two, in its ufuncs and in its functions.
+    *("__array_ufunc__", "__array_function__"),
+):
+    setattr(StandIn, _operator, StandIn.__call__)
 
 
 def _not_declared(package: str, allowed: str) -> ImportNotDeclaredError:

@@ -10,6 +10,7 @@ from course.scoring.verdict import CheckResult, Finding, Problem, Status
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise
+    from course.isolation.failures import StudentFailure
     from course.isolation.session import LoadRefusedError
     from course.scoring.checks.collected import Check
     from course.scoring.places import Places
@@ -101,15 +102,28 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
             "Take that import out. Plots and experiments belong in a file of your own that imports this one.",
         )
     if refused.stage == "import":
+        said = f": {failure.message.rstrip(' .')}" if failure.message else ""
         return Problem(
             "import_error",
-            f"{where}: loading it raises {failure.type}: {failure.message}.",
-            "A file that is checked must load without errors: try `python -c 'import ...'` on it.",
+            f"{where}: loading it raises {failure.type}{said}.",
+            _loads_elsewhere(failure) or f"A checked file must load without errors: try `python {module}`.",
         )
     message = f"{module} ends its process while it is loaded ({failure.message})."
     return Problem(
         "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
     )
+
+
+def _loads_elsewhere(failure: StudentFailure) -> str:
+    """The advice for a file that may well load where it was written; "" for any other."""
+    if "OSError" in failure.bases:
+        return (
+            "A check runs apart from your files and from the network. Read data in a file of your own that "
+            "imports this one."
+        )
+    if failure.type == "EOFError":
+        return "Nobody types while a check runs. Ask in a file of your own that imports this one."
+    return ""
 
 
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
@@ -125,7 +139,7 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         # Python gives the same message for a non-ASCII letter in another encoding and for a file that is not
         # text.
         letters = "Save it as UTF-8, or declare its encoding in the first line. "
-        other = "Was something else saved under its name? `course reset` puts the stub back, and keeps it."
+        other = "Was something else saved under its name? `course reset` puts the stub back, and keeps a copy."
         return message, letters + other if "encoding" in reason else other
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
     message = f"{where}: Python cannot read this file: {failure.message}{shown}."

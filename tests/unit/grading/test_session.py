@@ -128,8 +128,8 @@ def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
         (b"while True: pass", "import_timeout"),
         (b"def other(): pass", "no_declared_functions"),
         (b"import course.physics.integrators as theirs", "no_declared_functions"),
-        (b"import course\nhalf = course.answer / 2", "import_error"),
-        (b"from pytest import absent; absent + 1", "import_error"),
+        (b"import course\nfound = ''.startswith(course.answer)", "import_error"),
+        (b"from pytest import absent; ''.startswith(absent)", "import_error"),
     ],
 )
 def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
@@ -141,6 +141,23 @@ def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
     assert verdict.error is not None
     assert verdict.error.code == code
     assert verdict.error.help
+
+
+@pytest.mark.parametrize(
+    ("source", "advice"),
+    [
+        (b"open('data.csv')", "A check runs apart from your files"),
+        (b"input()", "Nobody types while a check runs."),
+        (b"raise KeyboardInterrupt", "try `python doubling.py`"),
+    ],
+)
+def test_a_file_that_does_not_load_is_told_what_is_different_in_a_check(
+    session: GradingSession, source: bytes, advice: str
+) -> None:
+    error = grade(session, source).error
+    assert error is not None
+    assert (error.code, ": ." in error.message) == ("import_error", False)
+    assert advice in error.help
 
 
 def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSession) -> None:

@@ -96,7 +96,7 @@ def test_source_that_python_cannot_read_is_refused_as_syntax(
         "1 / 0",
         "import sys; sys.exit(0)",
         "raise KeyboardInterrupt",
-        "import helper_not_there.x as y; y.z + 1",
+        "import helper_not_there.x as y; ''.startswith(y)",
     ],
 )
 def test_source_that_raises_is_refused_at_import_with_its_line(load: Any, source: str) -> None:
@@ -148,9 +148,41 @@ def test_an_import_with_something_to_fall_back_on_falls_back(load: Any) -> None:
     assert load(f"{source}@njit\ndef f():\n    return 3\n").call("f") == 3
 
 
-def test_a_package_that_the_top_level_computes_with_is_refused_with_its_line(load: Any) -> None:
+CONSTANTS = """\
+import math
+import numpy as np
+from scipy.constants import g, pi
+half, root, size = g / 2, math.sqrt(pi), [0] * pi
+def product(h): return h * g
+def power(h): return g ** 2
+def less(h): return h < g
+def minus(h): return -g
+def whole(h): return range(g)
+def real(h): return math.sqrt(g)
+def ufunc(h): return np.sqrt(g)
+def times_array(h): return np.ones(2) * g
+def inside_array(h): return np.array([h, g]) + 1
+def function(h): return np.linalg.norm(g)
+def from_above(h): return half * h
+def without(h): return h
+"""
+
+
+def test_a_constant_of_another_package_fails_where_it_is_used_and_says_why(load: Any) -> None:
+    connection = load(CONSTANTS)
+    assert connection.call("without", 2.0) == 2.0
+    lines = [line for line in CONSTANTS.splitlines() if line.startswith("def ")]
+    for line in lines[:-1]:
+        name = line[4 : line.index("(")]
+        with pytest.raises(StudentFailure) as caught:
+            connection.call(name, 2.0)
+        assert caught.value.type == "ImportNotDeclaredError", (name, caught.value.message)
+        assert "'scipy'" in caught.value.message, name
+
+
+def test_a_package_that_the_top_level_cannot_do_without_is_refused_with_its_line(load: Any) -> None:
     with pytest.raises(LoadRefusedError) as caught:
-        load("x = 1\nimport scipy\ny = 2 * scipy.constants.g\n")
+        load("x = 1\nimport scipy\ny = ''.join(scipy.constants.g)\ny[3]\n")
     assert (caught.value.stage, caught.value.failure.line) == ("import", 2)
     assert "scipy" in caught.value.failure.message
 

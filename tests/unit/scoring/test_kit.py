@@ -255,6 +255,21 @@ def test_where_no_input_is_hidden_the_message_repeats_the_exception_s_own():
     assert "README" not in finding.help, "a warm-up's has no example"
 
 
+@pytest.mark.parametrize(
+    ("type_", "message", "said"),
+    [
+        ("EOFError", "EOF when reading a line", "`input()`"),
+        ("BdbQuit", "", "`breakpoint()`"),
+        ("NameError", "name 'exit' is not defined", "`exit` belongs to Python's prompt"),
+        ("NameError", "name 'quit' is not defined", "`quit` belongs to Python's prompt"),
+        ("NameError", "name 'exits' is not defined", "read the traceback"),
+    ],
+)
+def test_what_wants_somebody_at_the_keyboard_is_told_that_nobody_is_there(type_, message, said):
+    failure = StudentFailure("error", type=type_, message=message, line=3)
+    assert said in failures.finding_of(failure).help
+
+
 # -- diagnosis ----------------------------------------------------------------------------------------
 
 

@@ -41,6 +41,14 @@ def test_reset_keeps_a_copy_and_prints_its_path(course, workspace, write):
     assert "nothing was changed" in course("reset", "doubling").out
 
 
+def test_reset_of_an_exercise_that_was_not_started_makes_nothing_of_it(course, workspace):
+    before = _all_files(workspace)
+    ran = course("reset", "halving", "--yes", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (5, "not_started")
+    assert "course start halving" in ran.json["error"]["help"]
+    assert _all_files(workspace) == before
+
+
 def test_reset_writes_nothing_if_the_copy_cannot_be_made(course, workspace, write):
     path = write("mine")
     before = path.read_bytes()

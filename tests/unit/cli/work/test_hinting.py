@@ -67,6 +67,12 @@ def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(
     assert (again["reason"], again["hint"]) == ("unchanged", told)
 
 
+def test_before_its_start_an_exercise_has_no_hint_and_starting_it_is_next(course, workspace):
+    assert course("hint", "halving", "--json").json["next"]["command"] == "course start halving"
+    course("start", "halving")
+    assert course("hint", "halving", "--json").json["next"]["command"] == "course check halving"
+
+
 def test_an_untouched_stub_earns_no_hint(course, workspace):
     course("check", "doubling")
     ran = course("hint", "doubling")

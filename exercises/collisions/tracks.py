@@ -243,12 +243,16 @@ def _drop_rebound(scene, truth, t, z, v):
     rebound = math.sqrt(max(v[k] ** 2 + 2 * scene.g * (z[k] - scene.radius), 0.0)) / scene.fastest
     if math.isclose(rebound * scene.fastest, speed, rel_tol=1e-8):
         return None
-    e = scene.restitution
-    if math.isclose(rebound * scene.fastest, e * abs(scene.v0 - scene.g * t[k]), rel_tol=1e-8):
-        return "SPEED_AT_STEP_END"
-    from_zero = math.sqrt(scene.fastest**2 + 2 * scene.g * scene.radius)
-    if math.isclose(rebound * scene.fastest, e * from_zero, rel_tol=1e-8):
-        return "FALLS_TO_ZERO"
+    e, g = scene.restitution, scene.g
+    gains = [factor * g * (z[k - 1] - scene.radius) for factor in (0.5, 1.0, 4.0)] if k else []
+    squares = [
+        ("SPEED_AT_STEP_END", (scene.v0 - g * t[k]) ** 2),
+        ("FALLS_TO_ZERO", scene.fastest**2 + 2 * g * scene.radius),
+        *(("FALL_WITHOUT_TWO", v[k - 1] ** 2 + gain) for gain in gains),
+    ]
+    for code, square in squares:
+        if math.isclose(rebound * scene.fastest, e * math.sqrt(max(square, 0.0)), rel_tol=1e-8):
+            return code
     names = (code for code, becomes in _PARTINGS[:3] if math.isclose(rebound, becomes(e), rel_tol=1e-8))
     return next(names, None)
 

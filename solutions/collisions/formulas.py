@@ -74,6 +74,7 @@ def _give(ma, mb):
 GIVES = (
     ("MASS_NOT_INVERSE", lambda ma, mb: ma + mb),
     ("MASS_NOT_INVERSE", lambda ma, mb: 1 / (ma + mb)),
+    ("MASS_NOT_INVERSE", lambda ma, mb: 1 / _give(ma, mb)),
     ("IMPULSE_HALVED", lambda ma, mb: 2 * _give(ma, mb)),
     ("MEAN_MASS", lambda ma, mb: 2 / (ma + mb)),
     ("MEAN_MASS", lambda ma, mb: 4 / (ma + mb)),
@@ -374,16 +375,16 @@ def _gap_over_speed(xa, va, ra, xb, vb, rb, dt):
     return max(gap, 0.0) / speed if gap <= speed * dt else None
 
 
-def _mixed(right_root):
-    """b without its factor 2 beside b² - 4 a c, over 2 a or, with ``right_root``, the other way round."""
+def _mixed(twice, four, over):
+    """Of two forms of the quadratic formula: b = ``twice`` x . v, b² - ``four`` a c, all over ``over`` a."""
 
     def time_of_impact(xa, va, ra, xb, vb, rb, dt):
         x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
-        a, b, c = float(v @ v), float(x @ v), float(x @ x) - (ra + rb) ** 2
+        a, b, c = float(v @ v), twice * float(x @ v), float(x @ x) - (ra + rb) ** 2
         if b >= 0 or c <= 0:
             return 0.0 if b < 0 else None
-        room = b * b - a * c if right_root else b * b - 4 * a * c
-        t = (-b - math.sqrt(max(room, 0.0))) / (2 * a)
+        room = b * b - four * a * c
+        t = (-b - math.sqrt(max(room, 0.0))) / (over * a)
         return t if room >= 0 and 0 <= t <= dt else None
 
     return time_of_impact
@@ -759,8 +760,10 @@ OTHERS = {
     "time_of_impact": [
         (("TUNNELS",), _at_the_end_only(exact=False)),
         (("TUNNELS",), _at_the_end_only(exact=True)),
-        (("QUADRATIC_MIXED",), _mixed(right_root=False)),
-        (("QUADRATIC_MIXED",), _mixed(right_root=True)),
+        *(
+            (("QUADRATIC_MIXED",), _mixed(*form))
+            for form in ((1, 4, 2), (1, 1, 2), (1, 4, 1), (2, 1, 1), (2, 1, 2))
+        ),
         (("MISSES_COUNT_AS_HITS",), _head_on_always),
         (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),

@@ -239,6 +239,10 @@ _DROP = {
         ("SPEED_AT_STEP_END", lambda v, v_next: abs(v_next)),
         ("SPEED_AT_STEP_START", lambda v, v_next: abs(v)),
     ),
-    "depth": (("FALLS_TO_ZERO", lambda z, low: z),),
+    "depth": (
+        ("FALLS_TO_ZERO", lambda z, low: z),
+        ("FALL_WITHOUT_TWO", lambda z, low: max(z - low, 0.0) / 2),
+        ("FALL_WITHOUT_TWO", lambda z, low: max(z - low, 0.0) / 4),
+    ),
     "passes": (("FALLS_THROUGH_FLOOR", True),),
 }

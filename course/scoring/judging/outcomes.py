@@ -139,7 +139,9 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         # Python gives the same message for a non-ASCII letter in another encoding and for a file that is not
         # text.
         letters = "Save it as UTF-8, or declare its encoding in the first line. "
-        other = "Was something else saved under its name? `course reset` puts the stub back, and keeps a copy."
+        other = (
+            "Was something else saved under its name? `course reset` puts the stub back, and keeps a copy."
+        )
         return message, letters + other if "encoding" in reason else other
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
     message = f"{where}: Python cannot read this file: {failure.message}{shown}."

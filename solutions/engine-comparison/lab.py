@@ -75,6 +75,9 @@ def uneven_verlet(share):
     return step
 
 
+_G = 9.81
+
+
 @functools.lru_cache(maxsize=256)
 def drawn(seed: int):
     """The parameters of the boxes of one grading run, in a fixed order."""
@@ -129,7 +132,7 @@ def _scene(rng, dt, **engine):
         "dt": dt,
         "omega": _between(rng, 1.5, 5.0),
         "mass": _between(rng, 0.4, 3.0),
-        "g": 9.81,
+        "g": _G,
         "mu": _between(rng, 0.4, 0.9),
         "radius": _between(rng, 0.06, 0.15),
         "wall_thickness": _between(rng, 0.02, 0.08),
@@ -141,10 +144,17 @@ def _between(rng, low, high):
     return float(rng.uniform(low, high))
 
 
-def _off_whole_millimetres(depth):
-    """At least 0.2 mm from one, so that a depth in whole millimetres is never near enough."""
-    part, whole = math.modf(1e3 * depth)
-    return 1e-3 * (whole + 0.2 + 0.6 * part)
+def _off_whole_millimetres(softness, dt):
+    """About as soft, but a body lies at least 0.2 mm from a whole number of them deep: rounded to one, no
+    depth is near enough.
+
+    At rest what the damper takes from a step's fall, h g, is missing from the spring: the depth is s - 2 c
+    sqrt(s) with c = h sqrt(g) / 4.
+    """
+    c = dt * math.sqrt(_G) / 4
+    part, whole = math.modf(1e3 * (softness - 2 * c * math.sqrt(softness)))
+    depth = 1e-3 * (whole + 0.2 + 0.6 * part)
+    return (c + math.sqrt(c * c + depth)) ** 2
 
 
 # -- the eight: what each is there for ------------------------------------------------------------------
@@ -197,7 +207,7 @@ def _accurate(rng):
         "dt": 1 / 240,
         "step": boxes.rk4,
         "cone": boxes.square_pyramid,
-        "softness": _off_whole_millimetres(_between(rng, 0.001, 0.003)),
+        "softness": _off_whole_millimetres(_between(rng, 0.001, 0.003), 1 / 240),
         "restitution": _between(rng, 0.6, 0.9),
         "jitter": 10 ** _between(rng, -12.0, -11.0),
     }

@@ -332,6 +332,8 @@ def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
 
 def _advice(value: Any, wanted: str) -> str:
     """The advice for a value of the wrong kind."""
+    if any(isinstance(item, complex) for item in _leaves(value)):
+        return "A fractional power of a negative number is complex in Python: test its sign before."
     if wanted == "a number" and isinstance(value, list | tuple | np.ndarray):
         return "Return one plain number: no brackets around it, and no array, not even of one element."
     if wanted.startswith("an array of numbers") and isinstance(value, list | tuple):
@@ -341,6 +343,8 @@ def _advice(value: Any, wanted: str) -> str:
 
 def _kind(value: Any) -> str:
     """The kind of a value, in words that reveal nothing of its content."""
+    if isinstance(value, complex | np.ndarray) and np.iscomplexobj(value):
+        return "an array of complex numbers" if np.ndim(value) else "a complex number"
     return _KINDS.get(type(value), "something else")
 
 

@@ -244,7 +244,7 @@ def _drop_rebound(scene, truth, t, z, v):
     if math.isclose(rebound * scene.fastest, speed, rel_tol=1e-8):
         return None
     e, g = scene.restitution, scene.g
-    gains = [factor * g * (z[k - 1] - scene.radius) for factor in (0.5, 1.0, 4.0)] if k else []
+    gains = [factor * g * (z[k - 1] - scene.radius) for factor in (0.5, 1.0)] if k else []
     squares = [
         ("SPEED_AT_STEP_END", (scene.v0 - g * t[k]) ** 2),
         ("FALLS_TO_ZERO", scene.fastest**2 + 2 * g * scene.radius),

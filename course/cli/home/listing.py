@@ -36,7 +36,10 @@ def exercises() -> int:
             indent=0,
             width=4,
         )
-    console.note("In the order of the lessons, with the chapter's numbers; `ours` has none there.")
+    console.note(
+        "In the order of the lessons. A number is the chapter's; what is `ours` has none and is called by "
+        "its name."
+    )
     left = next((state for state in states if state.state not in {"passed", "complete"}), None)
     step = f"course start {left.id}" if left is not None and left.state == "new" else ""
     if left is not None and not step:

@@ -42,7 +42,9 @@ def test_a_stub_that_already_works_is_found(mini: Path) -> None:
 
 
 def test_a_stub_that_cannot_be_loaded_is_found(mini: Path) -> None:
-    edit(mini / "exercises/halving/halving.py", "def halve", "import absent\nx = 1 + absent.x\n\n\ndef halve")
+    edit(
+        mini / "exercises/halving/halving.py", "def halve", "import absent\nx = len(absent.x)\n\n\ndef halve"
+    )
     found = [p.message for p in audit(Catalog(), "halving").problems if p.code == "stub"]
     assert any("cannot be graded" in message for message in found)
 

@@ -270,6 +270,14 @@ def test_what_wants_somebody_at_the_keyboard_is_told_that_nobody_is_there(type_,
     assert said in failures.finding_of(failure).help
 
 
+@pytest.mark.parametrize("value", [1j, np.complex128(1j), np.array([1j, 2.0]), [1j, 2.0]])
+def test_a_complex_result_is_told_where_it_may_come_from(value):
+    for read in (kit.as_number, lambda value: kit.as_vector(value, 2)):
+        finding = finding_of(read, value)
+        assert "fractional power of a negative number" in finding.help
+        assert isinstance(value, list) or "complex number" in finding.message
+
+
 # -- diagnosis ----------------------------------------------------------------------------------------
 
 

@@ -89,10 +89,10 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
         # A function that gave no value was not measured; the reason takes its place.
         label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
         if not _is_said(check):
-            rows.append((label, f"{actual}{unit(units)}"))
+            rows.append((label, f"{actual}{_unit_of(check.actual, units)}"))
     if check.expected is not None:
         within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
-        rows.append(("expected", f"{expected}{unit(units)}{within}"))
+        rows.append(("expected", f"{expected}{_unit_of(check.expected, units)}{within}"))
     if check.input:
         rows.append(("input", format_input(check.input)))
     if check.first_divergence:
@@ -102,6 +102,11 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
     if check.diagnosis:
         rows.append(("diagnosis", check.diagnosis))
     return rows
+
+
+def _unit_of(value: Any, units: str) -> str:
+    """A unit to follow a value: numbers have one, alone or in a list; None, text and truth values have none."""
+    return unit(units) if isinstance(value, int | float | list | tuple) and not isinstance(value, bool) else ""
 
 
 def _is_said(check: CheckResult) -> bool:

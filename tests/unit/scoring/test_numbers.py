@@ -13,8 +13,9 @@ from course.scoring.numbers import (
     format_tolerance,
     format_value,
     in_points,
+    numbers_of,
 )
-from course.scoring.verdict import Tolerance
+from course.scoring.verdict import CheckResult, Tolerance
 
 
 @pytest.mark.parametrize(
@@ -69,3 +70,15 @@ def test_one_point_is_singular() -> None:
     assert [in_points(value) for value in (1.0, 2, 0, 0.5, 1.004)] == [
         "1 point", "2 points", "0 points", "0.5 points", "1 point",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("actual", "shown"),
+    [(0.5, "0.5 m"), (3, "3 m"), ([1.0, 2.0], "[1, 2] m"), (None, "None"), (False, "False"), ("a word", "a word")],
+)
+def test_only_numbers_have_a_unit(actual, shown):
+    check = CheckResult(
+        id="c", title="A check", task="t", status="fail", visibility="public", points=0.0, max_points=1.0,
+        actual=actual, expected=2.0, units="m",
+    )  # fmt: skip
+    assert numbers_of(check) == [("measured", shown), ("expected", "2 m")]

@@ -31,8 +31,8 @@ _MODULE = re.compile(r"[a-z][a-z0-9_]*\.py")
 _COURSE_ID = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 #: A warm-up is done within one sitting with its lesson. In minutes.
 MOST_MINUTES = 15
-#: Names the exercise's own folder already uses.
-_TAKEN_MODULES = {"checks.py", "diagnosis.py"}
+#: Names that have a role in the exercise's folder.
+_TAKEN_MODULES = {"checks.py", "questions.py", "report.py"}
 
 
 def check_syllabus(document: Document[Syllabus]) -> None:

@@ -105,8 +105,9 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
 
 
 def _unit_of(value: Any, units: str) -> str:
-    """A unit to follow a value: numbers have one, alone or in a list; None, text and truth values have none."""
-    return unit(units) if isinstance(value, int | float | list | tuple) and not isinstance(value, bool) else ""
+    """A unit to follow a value: numbers have one, alone or in a list; None, text and truth have none."""
+    measured = isinstance(value, int | float | list | tuple) and not isinstance(value, bool)
+    return unit(units) if measured else ""
 
 
 def _is_said(check: CheckResult) -> bool:

@@ -60,7 +60,9 @@ def growth(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Catalog]:
     folder = root / "exercises" / "growth"
     shutil.copytree(root / "exercises" / "halving", folder)
     (folder / "checks.py").write_text(checks())
-    (folder / "diagnosis.py").write_text("from course.grading import kit\n\n" + blocks("diagnosis")[0])
+    (folder / "checking").mkdir()
+    diagnosis = "from course.grading import kit\n\n" + blocks("diagnosis")[0]
+    (folder / "checking" / "diagnosis.py").write_text(diagnosis)
     (folder / "report.py").write_text("from course.grading import kit\n\n" + blocks("report")[0])
     (folder / "exercise.toml").write_text(
         'format_version = 1\nid = "growth"\ntitle = "Growth"\nmodule = "growth.py"\norder = 9\n'

@@ -138,7 +138,7 @@ def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
 
 def public_numbers(exercise: Exercise) -> frozenset[str]:
     """Decimal numbers in the student's files: showing them reveals nothing."""
-    files = [path for path in exercise.stub_path.parent.iterdir() if path.suffix in {".py", ".md", ".toml"}]
+    files = [path for path in exercise.stub_path.parent.rglob("*") if path.suffix in {".py", ".md", ".toml"}]
     return frozenset(match[0] for path in files for match in DECIMAL.finditer(read_text(path)))
 
 

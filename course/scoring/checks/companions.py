@@ -19,18 +19,26 @@ from course.scoring.explain.words import Words, read_words
 if TYPE_CHECKING:
     from types import ModuleType
 
-__all__ = ["companion", "known_answers", "reference", "sibling", "words"]
+__all__ = ["companion", "companion_path", "known_answers", "reference", "sibling", "words"]
 
 
 def companion(exercise_id: str, module: str) -> ModuleType:
-    """A module that the public and hidden checks of an exercise share: ``exercises/<id>/<module>.py``.
+    """A module that public and hidden checks of an exercise share: ``exercises/<id>/checking/<module>.py``.
 
-    It is loaded by path from the course in use, once per process.
+    What the course itself asks for, ``questions`` and ``report``, lies beside the checks. It is loaded by
+    path from the course in use, once per process.
 
     Raises:
         FileNotFoundError: the exercise has no such file.
     """
-    return _load(content().exercise_folder(exercise_id) / f"{module}.py", f"{exercise_id}_{module}")
+    return _load(companion_path(exercise_id, module), f"{exercise_id}_{module}")
+
+
+def companion_path(exercise_id: str, module: str) -> Path:
+    """The file of a companion, whether or not it is there."""
+    folder = content().exercise_folder(exercise_id)
+    beside = folder / f"{module}.py"
+    return beside if beside.is_file() else folder / "checking" / beside.name
 
 
 def reference(exercise_id: str, module: str) -> ModuleType | None:

@@ -39,7 +39,7 @@ def load(path: Path, name: str, given: dict | None = None):
 
 reference = load(ROOT / "tests/graders/sim-to-real/reference.py", "reference")
 model = load(ROOT / "solutions/sim-to-real/sim_to_real.py", "model")
-judge = load(ROOT / "exercises/sim-to-real/judge.py", "judge")
+judge = load(ROOT / "exercises/sim-to-real/checking/judge.py", "judge")
 cart, bench = reference.cart, reference.bench
 SCORED = tuple(cart.SCORED)
 

@@ -116,9 +116,11 @@ def test_engines_that_show_the_same_numbers_differ_inside():
                    for one, other in known if other["linear_damping"])  # fmt: skip
 
 
-def test_a_depth_in_whole_millimetres_is_never_near_enough():
+# Before one engine's was drawn apart from them, 2 seeds of these 200 had none that is: 114 and 141.
+@pytest.mark.parametrize("seeds", [(114, 141), pytest.param(range(200), marks=pytest.mark.soak)])
+def test_a_depth_in_whole_millimetres_is_never_near_enough(seeds):
     rel, abs_, *_ = probing.TOLERANCES["rest_penetration"]
-    for seed in range(200):
+    for seed in seeds:
         depths = [truth["rest_penetration"] for truth in lab.truths(seed)]
         assert any(abs(round(depth, 3) - depth) > rel * depth + abs_ for depth in depths), seed
 

@@ -27,7 +27,7 @@ def _function(path, name):
 
 @pytest.mark.parametrize("name", ["rollout", "record"])
 def test_stub_and_solution_have_the_cart_that_the_checks_have(name):
-    own = _function("exercises/sim-to-real/cart.py", name)
+    own = _function("exercises/sim-to-real/checking/cart.py", name)
     assert own == _function("exercises/sim-to-real/sim_to_real.py", name)
     assert own == _function("solutions/sim-to-real/sim_to_real.py", name)
 

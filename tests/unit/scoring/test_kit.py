@@ -478,11 +478,12 @@ def test_a_problem_says_in_plain_values_what_reproduces_it():
 # -- modules beside the checks ------------------------------------------------------------------------
 
 
-def test_a_companion_comes_from_the_course_in_use(tmp_path, monkeypatch):
+@pytest.mark.parametrize("folder", ["exercises/e", "exercises/e/checking"])
+def test_a_companion_comes_from_the_course_in_use(tmp_path, monkeypatch, folder):
     for name, value in (("one", 1), ("two", 2)):
-        for part in ("exercises/e", "lessons", "quiz"):
+        for part in ("exercises/e/checking", "lessons", "quiz"):
             (tmp_path / name / part).mkdir(parents=True)
-        (tmp_path / name / "exercises/e/help.py").write_text(f"VALUE = {value}\n", encoding="utf-8")
+        (tmp_path / name / folder / "help.py").write_text(f"VALUE = {value}\n", encoding="utf-8")
         monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / name))
         assert value == kit.companion("e", "help").VALUE
     with pytest.raises(FileNotFoundError):

@@ -19,7 +19,7 @@ from course.authoring.exercises.mutants import mutant_path
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import accepted_files, compose, solution_path, solutions_folder
 from course.grading import kit
-from course.scoring.checks.companions import words
+from course.scoring.checks.companions import companion_path, words
 from course.scoring.explain.fingerprint import numbers_of
 from course.scoring.explain.table import FILE, Row, Table, is_right, write_table
 from course.scoring.explain.words import FILE as WORDS
@@ -37,7 +37,7 @@ __all__ = ["SOURCES", "build", "digest", "hypotheses_of", "sums_of", "table_of"]
 
 #: Files of an exercise, and of its solution, that the table follows from.
 SOURCES = (
-    ("questions.py", "paths.py"),
+    ("questions.py", "checking/paths.py"),
     ("hypotheses.py", "formulas.py", "motions.py", "draws.py", "mutants.toml"),
 )
 #: How many programs with two mistakes are kept for a task: students hardly write more, and the wheel would
@@ -61,7 +61,7 @@ def digest(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of everything that the table of an exercise is computed from."""
     solutions = solutions_folder(catalog, exercise)
     own, theirs = SOURCES
-    files = [exercise.readme_path.with_name(name) for name in own] + [solutions / name for name in theirs]
+    files = [exercise.readme_path.parent / name for name in own] + [solutions / name for name in theirs]
     files += [solution_path(catalog, exercise), *accepted_files(catalog, exercise)]
     files += sorted((solutions / "mutants").glob("*.py"))
     made_from = hashlib.sha256()
@@ -173,7 +173,7 @@ def _expected(exercise: Exercise) -> dict[str, Any]:
     """The answers that public checks expect for their fixed inputs, by check."""
     known: Callable[[], dict[str, Any]] | None = (
         getattr(kit.companion(exercise.id, "bundles"), "known", None)
-        if (exercise.readme_path.with_name("bundles.py").is_file())
+        if companion_path(exercise.id, "bundles").is_file()
         else None
     )
     return known() if known else {}

@@ -11,6 +11,7 @@ import itertools
 import json
 from collections import Counter
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -144,7 +145,11 @@ def made_from(catalog: Catalog, exercise: Exercise) -> str:
 def code_of(catalog: Catalog, exercise: Exercise, *patterns: str) -> bytes:
     """The files that decide about a program, in a row: the exercise's, its graders' and the references'."""
     folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
-    paths = [path for folder in folders for path in sorted(itertools.chain(*map(folder.glob, patterns)))]
+    paths = [
+        path
+        for folder in folders
+        for path in sorted(itertools.chain(*map(folder.rglob, patterns)), key=attrgetter("name"))
+    ]
     solution = solution_path(catalog, exercise)
     others = sorted(solution.parent.glob("*.py"))
     paths += [path for path in others if path not in (solution, solution.with_name("hypotheses.py"))]

@@ -71,7 +71,7 @@ def _literals(catalog: Catalog, exercise: Exercise) -> Iterator[str]:
     """Codes that stand as text in the checks of an exercise and their helpers."""
     folders: list[Path] = [exercise.readme_path.parent, exercise_graders(catalog, exercise)]
     for folder in folders:
-        for path in sorted(folder.glob("*.py")):
+        for path in sorted(folder.rglob("*.py")):
             for node in ast.walk(parse(path)):
                 if (
                     isinstance(node, ast.Constant)

@@ -74,7 +74,7 @@ def test_one_point_is_singular() -> None:
 
 @pytest.mark.parametrize(
     ("actual", "shown"),
-    [(0.5, "0.5 m"), (3, "3 m"), ([1.0, 2.0], "[1, 2] m"), (None, "None"), (False, "False"), ("word", "word")],
+    [(0.5, "0.5 m"), (3, "3 m"), ([1.0, 2.0], "[1, 2] m"), (None, "None"), (False, "False"), ("no", "no")],
 )
 def test_only_numbers_have_a_unit(actual, shown):
     check = CheckResult(

@@ -166,9 +166,13 @@ def _raise_in_words(path: Path, lines: LineMap, text: str, kind: type, reserved:
     if match := _MISSING.search(words):
         key = match["key"]
         place = f"{_named(steps)} lacks" if steps else "the file lacks"
-        raise ContentError(
-            path, lines.line(steps), f"{place} the key `{key}`.", help=f"Add a line `{key} = ...`."
+        table = ".".join((*map(str, steps), key))
+        fix = (
+            f"Add a table `[{table}.NAME]`."
+            if _holds_tables(kind, steps, key)
+            else f"Add a line `{key} = ...`."
         )
+        raise ContentError(path, lines.line(steps), f"{place} the key `{key}`.", help=fix)
     if match := _EXPECTED.search(words):
         wanted, given = (_in_words(match[side]) for side in ("wanted", "given"))
         raise ContentError(
@@ -193,15 +197,28 @@ def _unknown_key(
 
 def _keys_at(kind: type, steps: tuple[str | int, ...]) -> list[str]:
     """The keys that a table at this place may have."""
+    info = _type_at(kind, steps)
+    return (
+        [field.encode_name for field in info.fields] if isinstance(info, msgspec.inspect.StructType) else []
+    )
+
+
+def _holds_tables(kind: type, steps: tuple[str | int, ...], key: str) -> bool:
+    """Whether the value of a key is tables by name."""
+    info = _type_at(kind, (*steps, key))
+    return isinstance(info, msgspec.inspect.DictType) and isinstance(
+        info.value_type, msgspec.inspect.StructType
+    )
+
+
+def _type_at(kind: type, steps: tuple[str | int, ...]) -> Any:
     info: Any = msgspec.inspect.type_info(kind)
     for step in steps:
         if isinstance(info, msgspec.inspect.StructType):
             info = next((field.type for field in info.fields if field.encode_name == step), None)
         elif isinstance(step, int):
             info = getattr(info, "item_type", None)
-    return (
-        [field.encode_name for field in info.fields] if isinstance(info, msgspec.inspect.StructType) else []
-    )
+    return info
 
 
 def _named(steps: tuple[str | int, ...]) -> str:

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from course.authoring.exercises.diagnosis.build import build
 from course.catalog.load import Catalog
 from course.grading import kit
+from course.scoring.checks.companions import words as known_words
 from course.scoring.judging.reporting import report_of
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
@@ -34,9 +36,9 @@ WRONG = "\n".join(
 )
 
 
-def blocks(kind: str) -> list[str]:
-    """The blocks of Python of one kind, in order."""
-    return re.findall(rf"^```python {kind}\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+def blocks(kind: str, language: str = "python") -> list[str]:
+    """The blocks of one kind, in order."""
+    return re.findall(rf"^```{language} {kind}\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
 def checks() -> str:
@@ -91,6 +93,35 @@ def test_every_example_can_fail_and_the_diagnosis_is_found(growth: Catalog) -> N
     assert [name for name, check in found.items() if check.status is Status.PASS] == []
     assert [name for name, check in found.items() if check.status is Status.GRADER_ERROR] == []
     assert found["double_of_three"].diagnosis == "SQUARES_INSTEAD"
+
+
+@pytest.fixture
+def known(growth: Catalog) -> Iterator[Catalog]:
+    """The same exercise, with its words and wrong programs as data."""
+    student, instructor = (growth.content.root / part / "growth" for part in ("exercises", "solutions"))
+    instructor.mkdir()
+    (instructor / "growth.py").write_text(blocks("submission")[0])
+    (instructor / "mutants.toml").write_text("format_version = 1\nmutant = []\n")
+    written = {
+        student / "diagnoses.toml": blocks("diagnoses", "toml"),
+        student / "questions.py": blocks("questions"),
+        instructor / "hypotheses.py": blocks("hypotheses"),
+    }
+    for path, (text,) in written.items():
+        path.write_text(text)
+    yield growth
+    (student / "hypotheses.json").unlink(missing_ok=True)
+    for path in written:
+        path.unlink()
+
+
+def test_a_wrong_program_that_is_known_by_its_answers_is_told_the_words_of_its_code(known: Catalog) -> None:
+    """And not those of the function that looks for the mistake, which are others."""
+    assert build(known, known.exercise("growth"))
+    source = blocks("submission")[0] + "\ndef double(x):\n    return x * abs(x)\n"
+    found = graded(known, source)["double_of_three"]
+    assert found.diagnosis == "SQUARES_INSTEAD"
+    assert found.message.endswith(known_words("growth")("SQUARES_INSTEAD").looks_like)
 
 
 def test_the_report_shows_both_sections(growth: Catalog) -> None:

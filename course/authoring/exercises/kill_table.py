@@ -72,10 +72,11 @@ def _page(catalog: Catalog) -> Path:
 def _section(catalog: Catalog, exercise: Exercise) -> str:
     mutants = catalog.mutants(exercise)
     accepted = accepted_files(catalog, exercise)
+    tasks = f"{len(exercise.task)} task{'s' * (len(exercise.task) > 1)}"
     lines = [
         f"## {exercise.title} (`{exercise.id}`)",
         "",
-        f"{exercise.max_points:g} points in {len(exercise.task)} tasks, {exercise.hidden_points:g} of them "
+        f"{exercise.max_points:g} points in {tasks}, {exercise.hidden_points:g} of them "
         f"on {exercise.hidden_checks} hidden checks. {len(accepted)} unusual solutions are accepted, "
         f"{len(mutants)} wrong ones are caught.",
         "",

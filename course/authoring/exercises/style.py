@@ -42,8 +42,10 @@ def audit_style(catalog: Catalog, exercises: Sequence[Exercise], findings: Findi
 
     for one in json.loads(said("check", "--output-format", "json") or "[]"):
         message = f"{one['message']} ({one['code']})."
-        findings.add(one["filename"], one["location"]["row"], "style", message, "Try `ruff check --fix`.")
+        fix = "Try `ruff check --fix`." if one["fix"] else "Change the line."
+        findings.add(one["filename"], one["location"]["row"], "style", message, fix)
     for line in said("format", "--diff").splitlines():
         if line.startswith(start := "--- "):
-            path = root / line.removeprefix(start)
-            findings.add(path, None, "style", "it is not laid out as ruff lays it out.", "Run `ruff format`.")
+            name = line.removeprefix(start)
+            message, fix = "it is not laid out as ruff lays it out.", f"Run `ruff format {name}`."
+            findings.add(root / name, None, "style", message, fix)

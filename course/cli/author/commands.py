@@ -32,6 +32,7 @@ from course.cli.frame.terminal.meter import meter
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
+from course.scoring.numbers import in_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -212,10 +213,11 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, at the place where it is read.")
-    if kind == "warm-up":
-        console.note(f"What wrong solutions answer is computed by: course author build {name}")
-    then = "sandbox play" if kind == "scene" else "author check"
-    console.note(f"Fill in the marked blanks, then run: course {then} {name}")
+    then = ("author build", "author check") if kind in ("exercise", "warm-up") else ("author check",)
+    if kind == "scene":
+        then = ("sandbox play",)
+    commands = ", then ".join(f"course {command} {name}" for command in then)
+    console.note(f"Fill in the marked blanks, then run: {commands}")
     console.emit(AuthorNew(kind=kind, id=name, files=written))
     return 0
 
@@ -263,7 +265,7 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     among = f" ({counted(warm_ups, 'warm-up')} among them)" if warm_ups else ""
     looked = (
         f"{counted(len(report.lessons), 'lesson')}, {counted(len(report.exercises), 'exercise')}{among}, "
-        f"{counted(len(report.questions), 'question')}, {counted(len(report.scenes), 'scene')}, "
+        f"{counted(len(report.questions), 'quiz question')}, {counted(len(report.scenes), 'scene')}, "
         f"{counted(report.checks, 'check')}, "
         f"{counted(report.graded, 'submission')} graded"
     )
@@ -328,18 +330,19 @@ def build(
     from course.authoring.exercises.points import write_points
     from course.authoring.exercises.slow import write_slow
     from course.cli.author.replies import AuthorBuild
+    from course.scoring.explain.table import read_table
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
     every = (*catalog.exercises(), *catalog.warm_ups())
     chosen = every if name is None else (catalog.exercise(name),)
-    made = [step(catalog, exercise) for exercise in chosen for step in (write_points, write_slow, desk.build)]
+    made = [step(catalog, exercise) for exercise in chosen for step in (write_points, desk.build)]
+    read_table.cache_clear()  # it was just written, and what is slow is told with it
+    made += [write_slow(catalog, exercise) for exercise in chosen]
     written = [shown(path, catalog) for path in made if path]
     if confusion:
         from course.authoring.exercises.diagnosis.confusion import confusion_of, write_confusion
-        from course.scoring.explain.table import read_table
 
-        read_table.cache_clear()  # it was just written
         for exercise in chosen:
             if exercise.readme_path.with_name("diagnoses.toml").is_file() and not exercise.is_warm_up:
                 with meter(console) as on_progress:
@@ -407,7 +410,7 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
     for outcome in outcomes:
         mutant = outcome.mutant
         console.heading(
-            f"{exercise.id}: {mutant.file}", f"breaks {mutant.task}, loses {outcome.lost:g} points"
+            f"{exercise.id}: {mutant.file}", f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
         )
         console.item("believes", mutant.misconception)
         console.item("caught by", f"{mutant.check} with {outcome.diagnosis}")

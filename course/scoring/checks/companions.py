@@ -37,8 +37,8 @@ def companion(exercise_id: str, module: str) -> ModuleType:
 def companion_path(exercise_id: str, module: str) -> Path:
     """The file of a companion, whether or not it is there."""
     folder = content().exercise_folder(exercise_id)
-    beside = folder / f"{module}.py"
-    return beside if beside.is_file() else folder / "checking" / beside.name
+    inside = folder / "checking" / f"{module}.py"
+    return inside if inside.is_file() else folder / inside.name
 
 
 def reference(exercise_id: str, module: str) -> ModuleType | None:

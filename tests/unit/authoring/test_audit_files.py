@@ -280,7 +280,7 @@ def test_what_ruff_says_is_said_by_the_rules_of_the_course(
     found = {(p.where, p.code, p.fix) for p in run("doubling").problems}
     assert found == {
         (f"{CHECKS}:{line_of(path, 'import os')}", "style", "Try `ruff check --fix`."),
-        (CHECKS, "style", "Run `ruff format`."),
+        (CHECKS, "style", f"Run `ruff format {CHECKS}`."),
     }
     other = "exercises/halving/checks.py"
     edit(mini / other, "import pytest\n", "import os\nimport pytest\n")

@@ -22,7 +22,7 @@ def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[st
 
 def test_a_right_course_exits_with_zero(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["author", "check"]) == 0
-    counts = "2 lessons, 2 exercises, 0 questions, 13 scenes, 6 checks, 22 submissions graded"
+    counts = "2 lessons, 2 exercises, 0 quiz questions, 13 scenes, 6 checks, 22 submissions graded"
     assert f"All is well: {counts}" in capsys.readouterr().out
 
 
@@ -80,7 +80,7 @@ def test_mutants_are_listed_with_what_their_authors_read(
 ) -> None:
     assert run(["author", "mutants", "halving"]) == 0
     out = capsys.readouterr().out
-    assert "halving: rounds_down.py: breaks halve, loses 1 points" in out
+    assert "halving: rounds_down.py: breaks halve, loses 1 point" in out
     assert "reads: Half of an odd number has lost its fraction." in out
     code, body = answer(capsys, "author", "mutants")
     assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 12)

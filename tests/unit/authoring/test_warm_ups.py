@@ -11,6 +11,7 @@ from course.authoring.audit import audit
 from course.authoring.exercises.diagnosis.build import build
 from course.authoring.scaffold import Function, new_warm_up
 from course.catalog.load import Catalog
+from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
 from course.scoring.explain.table import read_table
 from course.scoring.explain.words import read_words
@@ -136,6 +137,32 @@ def test_a_stale_table_is_refused(tripling: Path) -> None:
     path = tripling / "questions.py"
     path.write_text(path.read_text() + "\n#: Another thought.\n")
     assert any("made from other questions" in message for message in problems())
+
+
+def test_a_table_that_is_missing_is_named_and_made(
+    tripling: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tripling / "hypotheses.json"
+    before = table.read_bytes()
+    table.unlink()
+    read_table.cache_clear()
+    assert problems() == ["it is missing."]
+    assert run(["author", "build", "tripling"]) == 0
+    assert "Wrote exercises/warm-ups/tripling/hypotheses.json" in capsys.readouterr().out
+    assert table.read_bytes() == before
+    assert problems() == []
+
+
+def test_questions_that_are_missing_are_named(tripling: Path) -> None:
+    (tripling / "questions.py").unlink()
+    assert ["what would tell wrong programs apart?" in message for message in problems()] == [True]
+
+
+def test_what_is_true_of_one_run_is_no_cause(tripling: Path) -> None:
+    words = tripling / "diagnoses.toml"
+    words.write_text(words.read_text().replace("It is 2 * x.", "Here it is 2 * x."))
+    read_words.cache_clear()
+    assert problems() == ["DOUBLES is about one run, but as a cause it is said by every check of its task."]
 
 
 def test_a_table_is_the_same_whenever_it_is_built(tripling: Path, mini: Path) -> None:

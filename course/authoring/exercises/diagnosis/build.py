@@ -46,11 +46,12 @@ _MOST_PAIRS = 260
 
 
 def build(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write the table of an exercise; None if it has no questions.
+    """Write the table of an exercise; None if its diagnoses have no words or there are no questions.
 
     Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``; a warm-up has none.
     """
-    if not exercise.readme_path.with_name(WORDS).is_file():
+    needed = exercise.readme_path.with_name(WORDS), companion_path(exercise.id, "questions")
+    if not all(path.is_file() for path in needed):
         return None
     path = exercise.readme_path.with_name(FILE)
     write_table(path, table_of(catalog, exercise))

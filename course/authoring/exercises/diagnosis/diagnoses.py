@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from course.authoring.exercises.diagnosis.build import digest
 from course.authoring.exercises.diagnosis.confusion import FILE as CONFUSION
-from course.authoring.exercises.diagnosis.confusion import made_from, read_confusion
+from course.authoring.exercises.diagnosis.confusion import fate_of, made_from, read_confusion
 from course.authoring.exercises.source import parse
 from course.authoring.exercises.variants import exercise_graders, solutions_folder
 from course.catalog.reading import read_text
+from course.scoring.checks.companions import companion_path
 from course.scoring.explain.table import FILE, read_table
 from course.scoring.explain.words import FILE as WORDS
 from course.scoring.explain.words import read_words
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from course.authoring.report import Findings
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise
+    from course.scoring.explain.table import Table
 
 __all__ = ["audit_diagnoses"]
 
@@ -30,39 +32,68 @@ _CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    """Report a stale table, codes without words, and entries whose code is never given."""
+    """Report missing files, stale tables, codes without words, and words that are given where untrue."""
     words_path = exercise.readme_path.with_name(WORDS)
     table_path = exercise.readme_path.with_name(FILE)
     if not words_path.is_file():
         if (solutions_folder(catalog, exercise) / "hypotheses.py").is_file():
             findings.add(words_path, None, "words", "there are hypotheses and no words.", "Write it.")
         return
-    table, words = read_table(table_path), read_words(words_path)
-    if table.made_from != digest(catalog, exercise):
-        findings.add(
-            table_path,
-            None,
-            "stale",
-            "it was made from other questions, hypotheses, mutants or solutions than there are now.",
-            f"Run `course author build {exercise.id}`.",
-        )
+    words = read_words(words_path)
+    for code, entry in words.entries.items():
+        if entry.kind == "cause" and entry.looks_like.startswith("Here "):
+            message = f"{code} is about one run, but as a cause it is said by every check of its task."
+            findings.add(words_path, None, "words", message, 'Give it `kind = "consequence"`.')
+    questions = companion_path(exercise.id, "questions")
+    if not questions.is_file():
+        message = f"it is missing, and {WORDS} is there: what would tell wrong programs apart?"
+        findings.add(questions, None, "words", message, "Write it.")
+    elif not table_path.is_file():
+        findings.add(table_path, None, "words", "it is missing.", f"Run `course author build {exercise.id}`.")
+    else:
+        table = read_table(table_path)
+        if table.made_from != digest(catalog, exercise):
+            findings.add(
+                table_path,
+                None,
+                "stale",
+                "it was made from other questions, hypotheses, mutants or solutions than there are now.",
+                f"Run `course author build {exercise.id}`.",
+            )
+        # A warm-up's wrong programs are its mutants, each of which is graded.
+        if not exercise.is_warm_up:
+            _audit_confusion(catalog, exercise, findings)
+        _audit_codes(catalog, exercise, table, findings)
+
+
+def _audit_confusion(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
+    path = solutions_folder(catalog, exercise) / CONFUSION
     kept = read_confusion(catalog, exercise)
-    fresh = kept is not None and kept.made_from == made_from(catalog, exercise)
-    # A warm-up's wrong programs are its mutants, each of which is graded.
-    if not fresh and not exercise.is_warm_up:
+    if kept is None or kept.made_from != made_from(catalog, exercise):
         findings.add(
-            solutions_folder(catalog, exercise) / CONFUSION,
+            path,
             None,
             "stale",
             "the kept diagnoses of known wrong programs are out of date.",
             f"Run `course author build {exercise.id} --confusion`.",
         )
+        return
+    fate = fate_of(exercise)
+    for row in (row for rows in kept.rows.values() for row in rows if fate(row) == "otherwise"):
+        message = f"{row.task}: programs with {', '.join(row.codes)} are told {row.said}, which is untrue."
+        findings.add(path, None, "words", message, "Narrow the probe that says it.")
+
+
+def _audit_codes(catalog: Catalog, exercise: Exercise, table: Table, findings: Findings) -> None:
+    words_path = exercise.readme_path.with_name(WORDS)
+    entries = read_words(words_path).entries
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}
     given = set(_literals(catalog, exercise))
-    for code in sorted(known - words.entries.keys()):
-        findings.add(table_path, None, "words", f"{WORDS} has no words for {code}.", "Write them.")
+    for code in sorted(known - entries.keys()):
+        path = exercise.readme_path.with_name(FILE)
+        findings.add(path, None, "words", f"{WORDS} has no words for {code}.", "Write them.")
     lines = read_text(words_path).split("\n")
-    for code in sorted(words.entries.keys() - known - given):
+    for code in sorted(entries.keys() - known - given):
         line = next((at for at, text in enumerate(lines, 1) if text == f"[diagnosis.{code}]"), None)
         findings.add(words_path, line, "words", f"nothing gives the diagnosis {code}.", "Take it out.")
 

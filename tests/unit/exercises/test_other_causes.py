@@ -6,6 +6,7 @@ condition of one that did not hold of them.
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,12 @@ import pytest
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import compose, solution_path
 from course.catalog.load import Catalog
+from course.scoring.explain.calls import reached_from
 from course.scoring.judging.session import GradingSession, Submission
 
 AFRESH = Path(__file__).resolve().parents[2] / "benchmarks" / "mended" / "afresh"
+
+DEFINED = ast.FunctionDef | ast.ClassDef
 
 #: What is said of the checks that fail: codes, None for no diagnosis.
 TOLD = {
@@ -91,7 +95,12 @@ def test_a_cause_is_named_only_where_it_is_known(exercise_id):
     exercise, told = catalog.exercise(exercise_id), {}
     with Unprotected(exercise, catalog, scope="public") as session:
         for name in TOLD[exercise_id]:
-            source = compose(solution_path(catalog, exercise), AFRESH / exercise_id / f"{name}.py")
-            verdict = session.grade(Submission({exercise.module: source}))
+            path = AFRESH / exercise_id / f"{name}.py"
+            source = compose(solution_path(catalog, exercise), path)
+            changed = {node.name for node in ast.parse(path.read_text()).body if isinstance(node, DEFINED)}
+            reach = reached_from(source, frozenset(task.id for task in exercise.task))
+            only = [check.id for check in session.checks if changed & {check.task, *reach[check.task]}]
+            assert only, name
+            verdict = session.grade(Submission({exercise.module: source}), only=only)
             told[name] = {check.diagnosis for check in verdict.checks if check.status == "fail"}
     assert told == TOLD[exercise_id]

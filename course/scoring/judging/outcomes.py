@@ -136,13 +136,12 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         # A MemoryError, which is what deep nesting ends in, says nothing.
         reason = failure.message or "it is nested more deeply than Python can read"
         message = f"{where} is not Python source: {reason}."
-        # Python gives the same message for a non-ASCII letter in another encoding and for a file that is not
-        # text.
-        letters = "Save it as UTF-8, or declare its encoding in the first line. "
-        other = (
-            "Was something else saved under its name? `course reset` puts the stub back, and keeps a copy."
-        )
-        return message, letters + other if "encoding" in reason else other
+        stub = "`course reset` puts the stub back, and keeps a copy."
+        if "encoding" not in reason:
+            return message, f"Was something else saved under its name? {stub}"
+        # Python says the same of a letter in another encoding, which is likelier, and of what is no text.
+        letters = "Save it as UTF-8, or declare its encoding in the first line."
+        return message, f"{letters} If it is no text at all: {stub}"
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
     message = f"{where}: Python cannot read this file: {failure.message}{shown}."
     if (

@@ -53,3 +53,9 @@ def test_what_misled_once_is_there_and_its_answer_is_kept(mended):
         for program in row["programs"]:
             assert (mended.ROOT / program.split(": ")[1]).is_file(), program
             assert f"`{program.rpartition('/')[2].removesuffix('.py')}`" in kept
+
+
+@pytest.mark.soak
+def test_what_once_misled_is_told_what_the_page_says(mended, capsys):
+    mended.rows()
+    assert capsys.readouterr().out == (FOLDER / "misleading" / "told.md").read_text(encoding="utf-8")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from typing import TYPE_CHECKING, Any
 
 from course.catalog.models import fields_of
@@ -106,6 +107,12 @@ def check_exercise(document: Document[Exercise]) -> None:
                 ("imports", index),
                 f"{name!r} is not a top-level package.",
                 fix='Name packages alone: "numpy".',
+            )
+        if name in sys.stdlib_module_names:
+            document.fail(
+                ("imports", index),
+                f"{name!r} is part of Python, all of which may be imported anyway.",
+                fix="Take it out.",
             )
     _check_tasks(document)
 

@@ -105,9 +105,9 @@ def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
         return []
     lines = [
         "",
-        "The diagnoses of known wrong programs, by `course author build --confusion`. Each program is the",
-        "right formula with one or two of its terms changed: all that are known with one, and as many with",
-        "two as make 200 a task. *Named*: a mistake that the program has.",
+        "The diagnoses of known wrong programs, by `course author build --confusion`: of those above and",
+        "those in `hypotheses.py`, all that have one mistake, and as many with two as make 200 a task.",
+        "*Named*: a mistake that the program has.",
         "*General*: what is broken, but not why. *Otherwise*: a mistake that it does not have.",
         "",
         "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",

@@ -87,6 +87,8 @@ class Words:
         """
         if code == KEPT.code and code not in self.entries:
             return KEPT
+        if code not in self.entries:
+            raise KeyError(f"diagnoses.toml has no words for {code}")
         entry = self.entries[code]
         return Diagnosis(code, entry.looks_like, entry.advice, divergence)
 

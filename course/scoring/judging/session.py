@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal, Self, TypeVar
 
 import msgspec
 
-from course.errors import InternalError, MissingCapabilityError, UngradableError
+from course.errors import ContentError, InternalError, MissingCapabilityError, UngradableError
 from course.figures.drawing.curves import compared, marched
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.keeping import open_sandbox
@@ -23,7 +23,7 @@ from course.isolation.launch import keep_private
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
-from course.scoring.checks.companions import companion
+from course.scoring.checks.companions import companion, companion_path
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.judging.explaining import Explainer
 from course.scoring.judging.outcomes import found, load_problem, no_functions, result, skipped, unjudged
@@ -359,9 +359,16 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
 
 
 def _explainer(exercise: Exercise) -> Explainer | None:
-    """The explainer of failed checks, for an exercise whose words are data."""
+    """The explainer of failed checks, for an exercise whose words are data.
+
+    Raises:
+        ContentError: it has words, and no questions or no table of answers.
+    """
     if not (Path(exercise.folder) / "diagnoses.toml").is_file():
         return None
+    questions = companion_path(exercise.id, "questions")
+    if not questions.is_file():
+        raise ContentError(questions, None, "it is missing, and diagnoses.toml is there.", help="Write it.")
     return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))
 
 

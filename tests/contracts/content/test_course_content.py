@@ -6,9 +6,19 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from course.authoring.exercises.diagnosis import diagnoses
 from course.authoring.exercises.diagnosis.build import hypotheses_of
-from course.authoring.exercises.diagnosis.confusion import as_one, code_of, fate_of, read_confusion
+from course.authoring.exercises.diagnosis.confusion import (
+    Confusion,
+    Reported,
+    as_one,
+    code_of,
+    fate_of,
+    made_from,
+    read_confusion,
+)
 from course.authoring.exercises.variants import solution_path
+from course.authoring.report import Findings
 from course.grading import kit
 from course.ids import WARM_UPS
 from course.isolation.keeping import kept_sandboxes
@@ -119,6 +129,21 @@ def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog:
         assert set(table.rows) == {"public", "full"}
         rows = [row for scope in table.rows.values() for row in scope]
         assert [row for row in rows if fate(row) == "otherwise"] == []
+
+
+def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
+    catalog: Catalog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    exercise = catalog.exercise("integrators")
+    rows = [Reported("rk4_step", ("EQUAL_WEIGHTS",), said, 1) for said in ("STAGES_NOT_CHAINED", "survives")]
+    table = Confusion(made_from=made_from(catalog, exercise), rows={"public": (), "full": tuple(rows)})
+    monkeypatch.setattr(diagnoses, "read_confusion", lambda *_: table)
+    findings = Findings(catalog.content.root)
+    diagnoses.audit_diagnoses(catalog, exercise, findings)
+    assert [problem.message for problem in findings.sorted()] == [
+        "rk4_step: no check fails for a program that is said to have EQUAL_WEIGHTS.",
+        "rk4_step: programs with EQUAL_WEIGHTS are told STAGES_NOT_CHAINED, which is untrue.",
+    ]
 
 
 def test_what_decides_about_a_program_includes_what_answers_for_it(catalog: Catalog) -> None:

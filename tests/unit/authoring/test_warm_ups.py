@@ -13,6 +13,7 @@ from course.authoring.scaffold import Function, new_warm_up
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
+from course.scoring.checks import companions
 from course.scoring.explain.table import read_table
 from course.scoring.explain.words import read_words
 
@@ -73,6 +74,7 @@ def fill(path: Path, words: list[str]) -> None:
 
 def rebuilt() -> None:
     catalog = Catalog()
+    companions._load.cache_clear()
     build(catalog, catalog.exercise("tripling"))
     read_table.cache_clear()
     read_words.cache_clear()
@@ -156,6 +158,42 @@ def test_a_table_that_is_missing_is_named_and_made(
 def test_questions_that_are_missing_are_named(tripling: Path) -> None:
     (tripling / "questions.py").unlink()
     assert ["what would tell wrong programs apart?" in message for message in problems()] == [True]
+
+
+def test_a_build_without_questions_says_that_they_are_missing(
+    tripling: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tripling / "questions.py").unlink()
+    assert run(["author", "build", "tripling"]) == ContentError.exit_code
+    assert "questions.py: it is missing" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("program", "said"),
+    [
+        ('"tripel", ("CUBES",)', "'tripel' is no function of the exercise"),
+        ('"triple", ("CUBED",)', "no words for CUBED"),
+    ],
+)
+def test_a_hypothesis_that_fits_nothing_is_named(tripling: Path, mini: Path, program: str, said: str) -> None:
+    path = mini / "solutions/warm-ups/tripling/hypotheses.py"
+    path.write_text(f"def hypotheses():\n    yield {program}, lambda x: x**3\n")
+    with pytest.raises(ContentError, match=said):
+        rebuilt()
+
+
+def test_a_question_about_no_function_is_named(tripling: Path) -> None:
+    path = tripling / "questions.py"
+    path.write_text(path.read_text().replace('"triple"', '"tripel"'))
+    with pytest.raises(ContentError, match=r"questions\.py: 'tripel' is no function of the exercise"):
+        rebuilt()
+
+
+def test_a_code_that_only_a_mutant_names_wants_another_question(tripling: Path) -> None:
+    path = tripling / "questions.py"
+    path.write_text(re.sub(r"(?s)QUESTIONS = .*", 'QUESTIONS = {"triple": [(0.0,)]}\n', path.read_text()))
+    rebuilt()
+    assert any("nothing gives the diagnosis CUBES" in message for message in problems()), problems()
 
 
 def test_what_is_true_of_one_run_is_no_cause(tripling: Path) -> None:

@@ -147,6 +147,7 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (EXERCISE, 'title = "Doubling"', 'title = " "', 3, "`title` is empty", "Fill it in."),
         (EXERCISE, '"twice-as-much"', '"Twice"', 5, "not a valid lesson id", "hyphens"),
         (EXERCISE, "order = 1", 'order = 1\nimports = ["numpy.fft"]', 7, "not a top-level package", "alone"),
+        (EXERCISE, "order = 1", 'order = 1\nimports = ["math"]', 7, "is part of Python", "Take it out."),
         (EXERCISE, "hidden_points = 5", "hidden_points = 11", 9, "between 0 and the sum", "Add up"),
         (EXERCISE, "hidden_checks = 2", "hidden_checks = -1", 8, "negative", "Count"),
         (EXERCISE, "format_version = 1", "format_version = 2", 1, "knows formats up to 1", "newer version"),

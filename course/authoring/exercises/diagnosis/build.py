@@ -18,6 +18,7 @@ import numpy as np
 from course.authoring.exercises.mutants import mutant_path
 from course.authoring.exercises.unprotected import LocalSubmission
 from course.authoring.exercises.variants import accepted_files, compose, solution_path, solutions_folder
+from course.errors import ContentError
 from course.grading import kit
 from course.scoring.checks.companions import companion_path, words
 from course.scoring.explain.fingerprint import numbers_of
@@ -77,6 +78,10 @@ def table_of(catalog: Catalog, exercise: Exercise) -> Table:
     questions = kit.companion(exercise.id, "questions")
     within: dict[str, float] = getattr(questions, "WITHIN", {})
     tasks = sorted(tasks_asked(questions))
+    for task in tasks:
+        if task not in {task.id for task in exercise.task}:
+            path = companion_path(exercise.id, "questions")
+            raise ContentError(path, None, f"{task!r} is no function of the exercise.", help="Correct it.")
     right: dict[str, set[tuple[float, ...]]] = {}
     for task in tasks:
         for function in _right(catalog, exercise, task):
@@ -144,6 +149,9 @@ def hypotheses_of(
 
     Mutants whose diagnosis is not in the exercise's own words are left out: they are found while reading a
     value.
+
+    Raises:
+        ContentError: ``hypotheses.py`` has a program of no task of this exercise, or a code without words.
     """
     solution = solution_path(catalog, exercise)
     told = words(exercise.id).entries
@@ -154,7 +162,19 @@ def hypotheses_of(
     if (solutions_folder(catalog, exercise) / "hypotheses.py").is_file():
         reference = kit.reference(exercise.id, "hypotheses")
     if reference is not None:
-        yield from reference.hypotheses()
+        path, tasks = (
+            solutions_folder(catalog, exercise) / "hypotheses.py",
+            {task.id for task in exercise.task},
+        )
+        for task, codes, function in reference.hypotheses():
+            if task not in tasks:
+                raise ContentError(
+                    path, None, f"{task!r} is no function of the exercise.", help="Correct it."
+                )
+            for code in codes:
+                if code not in told:
+                    raise ContentError(path, None, f"{WORDS} has no words for {code}.", help="Write them.")
+            yield task, codes, function
 
 
 def _right(catalog: Catalog, exercise: Exercise, task: str) -> Iterator[Callable[..., Any]]:

@@ -48,40 +48,44 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
     if not questions.is_file():
         message = f"it is missing, and {WORDS} is there: what would tell wrong programs apart?"
         findings.add(questions, None, "words", message, "Write it.")
-    elif not table_path.is_file():
-        findings.add(table_path, None, "words", "it is missing.", f"Run `course author build {exercise.id}`.")
-    else:
-        table = read_table(table_path)
-        if table.made_from != digest(catalog, exercise):
-            findings.add(
-                table_path,
-                None,
-                "stale",
-                "it was made from other questions, hypotheses, mutants or solutions than there are now.",
-                f"Run `course author build {exercise.id}`.",
-            )
-        # A warm-up's wrong programs are its mutants, each of which is graded.
-        if not exercise.is_warm_up:
-            _audit_confusion(catalog, exercise, findings)
-        _audit_codes(catalog, exercise, table, findings)
-
-
-def _audit_confusion(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    path = solutions_folder(catalog, exercise) / CONFUSION
-    kept = read_confusion(catalog, exercise)
-    if kept is None or kept.made_from != made_from(catalog, exercise):
+        return
+    # A warm-up's wrong programs are its mutants, each of which is graded.
+    again = f"Run `course author build {exercise.id}{'' if exercise.is_warm_up else ' --confusion'}`."
+    if not table_path.is_file():
+        findings.add(table_path, None, "words", "it is missing.", again)
+        return
+    table = read_table(table_path)
+    if table.made_from != digest(catalog, exercise):
         findings.add(
-            path,
+            table_path,
             None,
             "stale",
-            "the kept diagnoses of known wrong programs are out of date.",
-            f"Run `course author build {exercise.id} --confusion`.",
+            "it was made from other questions, hypotheses, mutants or solutions than there are now.",
+            again,
         )
+    elif not exercise.is_warm_up:
+        _audit_confusion(catalog, exercise, findings, again)
+    _audit_codes(catalog, exercise, table, findings)
+
+
+def _audit_confusion(catalog: Catalog, exercise: Exercise, findings: Findings, again: str) -> None:
+    path = solutions_folder(catalog, exercise) / CONFUSION
+    kept = read_confusion(catalog, exercise)
+    if kept is None:
+        findings.add(path, None, "stale", "it is missing.", again)
+        return
+    if kept.made_from != made_from(catalog, exercise):
+        message = "the kept diagnoses of known wrong programs are out of date."
+        findings.add(path, None, "stale", message, again)
         return
     fate = fate_of(exercise)
     for row in (row for rows in kept.rows.values() for row in rows if fate(row) == "otherwise"):
         message = f"{row.task}: programs with {', '.join(row.codes)} are told {row.said}, which is untrue."
         findings.add(path, None, "words", message, "Narrow the probe that says it.")
+    for row in kept.rows["full"]:
+        if len(row.codes) == 1 and row.said == "survives":
+            message = f"{row.task}: no check fails for a program that is said to have {row.codes[0]}."
+            findings.add(path, None, "words", message, "Add a check, or correct `hypotheses.py`.")
 
 
 def _audit_codes(catalog: Catalog, exercise: Exercise, table: Table, findings: Findings) -> None:
@@ -95,7 +99,9 @@ def _audit_codes(catalog: Catalog, exercise: Exercise, table: Table, findings: F
     lines = read_text(words_path).split("\n")
     for code in sorted(entries.keys() - known - given):
         line = next((at for at, text in enumerate(lines, 1) if text == f"[diagnosis.{code}]"), None)
-        findings.add(words_path, line, "words", f"nothing gives the diagnosis {code}.", "Take it out.")
+        named = any(code in (mutant.diagnosis, *mutant.also) for mutant in catalog.mutants(exercise))
+        fix = "Add a question that its mutant answers in its own way." if named else "Take it out."
+        findings.add(words_path, line, "words", f"nothing gives the diagnosis {code}.", fix)
 
 
 def _literals(catalog: Catalog, exercise: Exercise) -> Iterator[str]:

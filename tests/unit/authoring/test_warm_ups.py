@@ -184,8 +184,8 @@ def test_a_hypothesis_that_fits_nothing_is_named(tripling: Path, mini: Path, pro
 
 def test_a_question_about_no_function_is_named(tripling: Path) -> None:
     path = tripling / "questions.py"
-    path.write_text(path.read_text().replace('"triple"', '"tripel"'))
-    with pytest.raises(ContentError, match=r"questions\.py: 'tripel' is no function of the exercise"):
+    path.write_text(path.read_text().replace('"triple"', '"threefold"'))
+    with pytest.raises(ContentError, match=r"questions\.py: 'threefold' is no function of the exercise"):
         rebuilt()
 
 

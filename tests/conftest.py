@@ -48,8 +48,9 @@ def pytest_configure(config: pytest.Config) -> None:
     """Each worker begins to collect at another file, so that most of what it imports is compiled already."""
     worker = getattr(config, "workerinput", None)
     if worker and config.args_source is pytest.Config.ArgsSource.TESTPATHS:
-        files = sorted(config.rootpath.joinpath("tests").rglob("test_*.py"))
-        files = [path for path in files if not {"graders", "fixtures", "benchmarks"} & set(path.parts)]
+        tests, skipped = config.rootpath / "tests", set(config.getini("norecursedirs"))
+        files = [path.relative_to(tests) for path in sorted(tests.rglob("test_*.py"))]
+        files = [tests / path for path in files if not skipped & set(path.parts)]
         number = int(worker["workerid"].removeprefix("gw"))
         first = number * len(files) // worker["workercount"]
         config.args = [str(path) for path in files[first:] + files[:first]]

@@ -213,9 +213,8 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, at the place where it is read.")
-    then = ("author build", "author check") if kind in ("exercise", "warm-up") else ("author check",)
-    if kind == "scene":
-        then = ("sandbox play",)
+    proved = ("author build", "author check")  # what the first writes, the second wants
+    then = {"exercise": proved, "warm-up": proved, "scene": ("sandbox play",)}.get(kind, ("author check",))
     commands = ", then ".join(f"course {command} {name}" for command in then)
     console.note(f"Fill in the marked blanks, then run: {commands}")
     console.emit(AuthorNew(kind=kind, id=name, files=written))

@@ -196,6 +196,13 @@ def test_a_code_that_only_a_mutant_names_wants_another_question(tripling: Path) 
     assert any("nothing gives the diagnosis CUBES" in message for message in problems()), problems()
 
 
+def test_words_without_an_entry_are_told_to_have_a_table(tripling: Path) -> None:
+    (tripling / "diagnoses.toml").write_text("format_version = 1\n")
+    read_words.cache_clear()
+    fixes = [problem.fix for problem in audit(Catalog(), "tripling").problems]
+    assert fixes == ["Add a table `[diagnosis.NAME]`."]
+
+
 def test_what_is_true_of_one_run_is_no_cause(tripling: Path) -> None:
     words = tripling / "diagnoses.toml"
     words.write_text(words.read_text().replace("It is 2 * x.", "Here it is 2 * x."))

@@ -25,6 +25,9 @@ sys.modules.setdefault("rfc3987_syntax", None)
 settings.register_profile("course", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("course")
 
+# The matrices here are small: a second thread for their products, in each of several workers, only waits.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.append(str(Path(__file__).resolve().parents[1]))
@@ -40,8 +43,8 @@ def sandboxes() -> Iterator[None]:
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Two more than processors: for a third of its time a worker waits for a process that it started."""
-    return (os.cpu_count() or 1) + 2
+    """Three more than processors: for a third of its time a worker waits for a process that it started."""
+    return (os.cpu_count() or 1) + 3
 
 
 def pytest_configure(config: pytest.Config) -> None:

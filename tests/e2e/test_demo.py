@@ -15,6 +15,8 @@ from course.cli.setup.demo import TRIES
 from tests.command_line import as_process, in_process
 from tests.terminals import Terminal, needs_tmux
 
+pytestmark = pytest.mark.usefixtures("sandboxes")
+
 ASKS = "This line is wrong: x = x + h * v_next"
 
 

@@ -38,7 +38,7 @@ def grade_sources(
     sources: Sequence[tuple[Exercise, bytes]],
     *,
     graders: int | None = None,
-    spare: Callable[[Exercise, bytes], Collection[str]] = lambda exercise, source: (),
+    spare: Callable[[Exercise, bytes], Collection[str]] | None = None,
 ) -> Iterator[tuple[int, Verdict]]:
     """Grade sources as a grading run would: a few in this process, more on every processor.
 
@@ -71,7 +71,7 @@ def grade_sources(
                 if model.verdict and source.decode("utf-8", "replace").rstrip() == model.source:
                     same.append((index, model.verdict))
                 else:
-                    only = model.concerned(source, spare(exercise, source))
+                    only = model.concerned(source, spare(exercise, source) if spare else ())
                     yield Entry(str(index), exercise, submission, only=only)
 
         judged = sessions.grade(entries()) if graders == 1 else grade_all(entries(), Terms(), graders=graders)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from course.errors import MissingCapabilityError
 from course.sandbox.runs.running import run
 from course.sandbox.scene.loading import choose
+from course.sandbox.scene.settings import SETTINGS
 from course.sandbox.views.web.session import Page, Session
 from course.sandbox.world.world import World
 
@@ -384,8 +385,9 @@ def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> Non
     assert not page.lost
     assert np.isfinite(made.world.state()).all()
     send(made, page, "reset")
+    send(made, page, "speed", value=1.0)
     send(made, page, "pause", on=False)
-    made.tick(1 / 60)
+    made.tick(2 * SETTINGS["step"].high)  # whatever step it was told to take
     assert made.world.ticks > 0
 
 

@@ -62,7 +62,8 @@ def audit(
         only: id of a lesson, an exercise, a question or a scene; None for everything.
         without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.
-        grade: gives the verdicts on submissions.
+        grade: gives the verdicts on submissions. It may leave some out: they are not counted, and fields
+            that hints name are not looked for.
 
     Raises:
         MissingCapabilityError: this installation has no solutions or no hidden graders.
@@ -207,7 +208,7 @@ def _grade(
     on_progress: Progress | None,
     grade: GradeSources,
 ) -> tuple[int, str]:
-    """Grade everything that was planned; how many submissions that were, and at which protection level."""
+    """Grade what was planned; how many submissions got a verdict, and at which protection level."""
     work: list[tuple[Prover, Proof]] = []
     for candidate in candidates:
         entries = solutions_folder(catalog, candidate.exercise) / "mutants.toml"
@@ -215,14 +216,15 @@ def _grade(
         work += [(prover, proof) for proof in candidate.proofs]
     if on_progress:
         on_progress(0, len(work), "")
-    isolation = ""
-    verdicts = grade([(prover.exercise, proof.source) for prover, proof in work])
-    for done, (index, verdict) in enumerate(verdicts, start=1):
+    done, isolation = 0, ""
+    for index, verdict in grade([(prover.exercise, proof.source) for prover, proof in work]):
+        done += 1
         prover, proof = work[index]
         prover.judge(proof, verdict)
         isolation = verdict.isolation or isolation
         if on_progress:
             on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.path.name}")
-    for prover in dict.fromkeys(prover for prover, _ in work):
-        prover.judge_hints(catalog.hints_document(prover.exercise))
-    return len(work), isolation
+    if done == len(work):  # a field that no check has had may be one of a program that was left out
+        for prover in dict.fromkeys(prover for prover, _ in work):
+            prover.judge_hints(catalog.hints_document(prover.exercise))
+    return done, isolation

@@ -20,7 +20,7 @@ from course.scoring.judging.session import GradingSession, Submission, check_fil
 from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from course.catalog.models import Exercise
     from course.scoring.checks.collected import Check
@@ -35,10 +35,7 @@ GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator
 
 
 def grade_sources(
-    sources: Sequence[tuple[Exercise, bytes]],
-    *,
-    graders: int | None = None,
-    spare: Callable[[Exercise, bytes], Collection[str]] | None = None,
+    sources: Sequence[tuple[Exercise, bytes]], *, graders: int | None = None
 ) -> Iterator[tuple[int, Verdict]]:
     """Grade sources as a grading run would: a few in this process, more on every processor.
 
@@ -49,7 +46,6 @@ def grade_sources(
     Args:
         sources: exercise and submission of each.
         graders: processes; 1 is this one, None as many as are worth it.
-        spare: ids of checks that need not be run on a source; they count as for the model, too.
 
     Yields:
         Index and verdict, in the order in which they are reached.
@@ -71,8 +67,7 @@ def grade_sources(
                 if model.verdict and source.decode("utf-8", "replace").rstrip() == model.source:
                     same.append((index, model.verdict))
                 else:
-                    only = model.concerned(source, spare(exercise, source) if spare else ())
-                    yield Entry(str(index), exercise, submission, only=only)
+                    yield Entry(str(index), exercise, submission, only=model.concerned(source))
 
         judged = sessions.grade(entries()) if graders == 1 else grade_all(entries(), Terms(), graders=graders)
         for graded in judged:
@@ -152,8 +147,8 @@ class _Model:
                 asked |= dict.fromkeys(silent, frozenset().union(*session.asked.values()))
         return cls(source.rstrip(), verdict, asked)
 
-    def concerned(self, source: bytes, spared: Collection[str] = ()) -> tuple[str, ...]:
-        """Ids of the checks that a source's changes can affect, but for some; empty means all."""
+    def concerned(self, source: bytes) -> tuple[str, ...]:
+        """Ids of the checks that a source's changes can affect; empty means all."""
         changed = _changed(source.decode("utf-8", "replace"), self.source) if self.verdict else ()
         if not changed or self.verdict is None:
             return ()
@@ -161,8 +156,7 @@ class _Model:
         return tuple(
             check.id
             for check in self.verdict.checks
-            if check.id not in spared
-            and any(changed & {name, *reach.get(name, ())} for name in self.asked[check.id] or changed)
+            if any(changed & {name, *reach.get(name, ())} for name in self.asked[check.id] or changed)
         )
 
     def completed(self, verdict: Verdict, exercise: Exercise) -> Verdict:

@@ -13,8 +13,8 @@ else would come out as with the first seed, or is the model solution's, which ha
 its worker (an endless loop, too much memory) stays in workers, with ten seeds, and so does, with all of them,
 what keeps something between two calls, since a second worker is asked about that. What is done is noted in
 a file, seeds.jsonl beside this one, and is not done again as long as it holds: full marks are decided by the
-checks, what a mutant is told by the known mistakes and the kinds of diagnoses as well, and neither by how it
-is worded. --kept says how much of what is asked for stands there.
+checks, what a mutant is told by the known mistakes, the kinds of diagnoses and its entry as well, and neither
+by how it is worded. --kept says how much of what is asked for stands there.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT)]
+if __name__ == "__main__":
+    sys.path[:0] = [str(ROOT)]
 
 from course.authoring.exercises.diagnosis.confusion import code_of, made_from  # noqa: E402
 from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
@@ -60,13 +61,18 @@ _ENDING = 10
 
 
 class Program(NamedTuple):
-    """What is graded: the tasks it does in its own way, its seeds, and what is wrong with a verdict."""
+    """What is graded: the tasks it does in its own way, its seeds, and what is wrong with a verdict.
+
+    Attributes:
+        declared: what a mutant's entry says must happen to it.
+    """
 
     name: str
     source: bytes
     tasks: frozenset[str]
     seeds: int
     faults: Callable[[Verdict], list[str]]
+    declared: bytes = b""
 
 
 class Seeded(GradingSession):
@@ -110,21 +116,24 @@ class Log:
             file.write(json.dumps([*key, wrong]) + "\n")
 
 
+def proven(exercise: Exercise, catalog: Catalog) -> frozenset[bytes]:
+    """The variants that, as they and the checks are now, were graded under all seeds without a fault."""
+    options = asked([exercise.id])
+    log, keys = Log(options.log), _keys(exercise, catalog, options)
+    return frozenset(program.source for program, key in keys if "/" in program.name and log.done(*key) == 0)
+
+
 def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) -> int:
     """Grade under many seeds; how many gradings were not as they should be."""
     log, wrong = Log(options.log), 0
-    told = made_from(catalog, exercise)
-    decided = hashlib.sha256(code_of(catalog, exercise, "*.py")).hexdigest()[:16]
     # What is asked is whether the answer is right: a machine that does other work too must not cost a mark.
     counts: Counter[tuple[str, bool]] = Counter()
     with Seeded(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
-        for program in programs(exercise, catalog, options):
-            digest = hashlib.sha256(program.source).hexdigest()[:16]
-            state = told if program.name.startswith("mutants/") else decided
-            key = exercise.id, state, program.name, digest, options.first, program.seeds
+        for program, key in _keys(exercise, catalog, options):
             short = log.done(*key)
             if options.kept:
-                counts["mutants" if state is told else "right programs", short is not None] += 1
+                kind = "mutants" if program.name.startswith("mutants/") else "right programs"
+                counts[kind, short is not None] += 1
             elif short is None:
                 start = time.perf_counter()
                 short, graded = _grade(session, program, options.first)
@@ -142,6 +151,18 @@ def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace)
     return wrong
 
 
+def _keys(
+    exercise: Exercise, catalog: Catalog, options: argparse.Namespace
+) -> Iterator[tuple[Program, tuple[Any, ...]]]:
+    """Each program that is asked for, and what its line in the log begins with."""
+    told = made_from(catalog, exercise)
+    decided = hashlib.sha256(code_of(catalog, exercise, "*.py")).hexdigest()[:16]
+    for program in programs(exercise, catalog, options):
+        digest = hashlib.sha256(program.source + program.declared).hexdigest()[:16]
+        state = told if program.name.startswith("mutants/") else decided
+        yield program, (exercise.id, state, program.name, digest, options.first, program.seeds)
+
+
 def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) -> Iterator[Program]:
     """The model solution, the accepted variants and the mutants that are asked for."""
     solution, tasks = solution_path(catalog, exercise), frozenset(task.id for task in exercise.task)
@@ -157,7 +178,8 @@ def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) 
             told = lambda verdict, mutant=mutant: [fault.message for fault in judge(mutant, verdict)]  # noqa: E731
             source = compose(solution, mutant_path(catalog, exercise, mutant))
             name = f"mutants/{mutant.file}"
-            yield Program(name, source, frozenset({mutant.task}), options.mutants, told)
+            declared = msgspec.json.encode((mutant.task, mutant.check, mutant.diagnosis, mutant.also))
+            yield Program(name, source, frozenset({mutant.task}), options.mutants, told, declared)
 
 
 def _grade(session: Seeded, program: Program, first: int) -> tuple[int, int]:
@@ -203,7 +225,8 @@ def _own_tasks(solution: Path, variant: Path, tasks: frozenset[str]) -> frozense
     return tasks if names & others else frozenset(names & tasks)
 
 
-def main() -> int:
+def asked(arguments: list[str] | None = None) -> argparse.Namespace:
+    """What the command line asks for."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -217,8 +240,11 @@ def main() -> int:
         "--log", type=Path, default=LOG, help="what is done is noted here, and not done again"
     )
     parser.add_argument("--kept", action="store_true", help="grade nothing; say how much is noted")
-    options = parser.parse_args()
-    catalog = Catalog()
+    return parser.parse_args(arguments)
+
+
+def main() -> int:
+    options, catalog = asked(), Catalog()
     wrong = [grade_all(catalog.exercise(name), catalog, options) for name in options.exercise]
     return int(any(wrong))
 

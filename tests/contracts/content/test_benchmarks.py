@@ -1,35 +1,24 @@
-"""The benchmarks are run by hand, so what they rely on is tested here."""
+"""The benchmarks are run by hand, so what they rely on, and what relies on them, is tested here."""
 
 from __future__ import annotations
 
-import importlib.util
-from pathlib import Path
+import json
 from typing import TYPE_CHECKING
 
+import msgspec
 import pytest
 
 from course.catalog.load import Catalog
 from course.scoring.judging.session import Submission
 from course.scoring.judging.terms import Terms
+from tests.benchmarks.calibration import seeds
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
-_BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-
-
-@pytest.fixture(scope="module")
-def seeds() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("seeds", _BENCHMARKS / "calibration/seeds.py")
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    from pathlib import Path
 
 
 @pytest.mark.parametrize("here", [True, False])
-def test_a_submission_is_graded_with_the_seed_that_was_sown(seeds: ModuleType, here: bool) -> None:
+def test_a_submission_is_graded_with_the_seed_that_was_sown(here: bool) -> None:
     catalog = Catalog()
     exercise = catalog.exercise("fall-time")
     submission = Submission({exercise.module: exercise.stub_path.read_bytes()})
@@ -40,3 +29,39 @@ def test_a_submission_is_graded_with_the_seed_that_was_sown(seeds: ModuleType, h
             loaded = session._load(submission)
             assert loaded.seed == seed
             loaded.close()
+
+
+def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a program, its entry, a check or a known mistake changes, its line no longer holds."""
+    catalog = Catalog()
+    exercise = catalog.exercise("collisions")
+    names = {
+        program.source: program.name for program in seeds.programs(exercise, catalog, seeds.asked(["x"]))
+    }
+    proven = seeds.proven(exercise, catalog)
+    kinds = [names[source].partition("/")[0] for source in proven]
+    assert kinds.count("mutants") == len(catalog.mutants(exercise))
+    assert kinds.count("accepted") == len(names) - kinds.count("mutants") - 1  # but for the solution
+
+    source = next(source for source in proven if names[source].startswith("mutants/"))
+    lines = [json.loads(line) for line in seeds.LOG.read_text(encoding="utf-8").splitlines()]
+    for line in lines:
+        line[-1] += line[0] == exercise.id and line[2] == names[source]
+    with monkeypatch.context() as patch:
+        (tmp_path / "log.jsonl").write_text("\n".join(map(json.dumps, lines)), encoding="utf-8")
+        patch.setattr(seeds, "LOG", tmp_path / "log.jsonl")
+        assert seeds.proven(exercise, catalog) == proven - {source}
+    with monkeypatch.context() as patch:
+        patch.setattr(seeds, "compose", lambda solution, path: path.read_bytes() + b"\n")
+        assert not seeds.proven(exercise, catalog)
+    with monkeypatch.context() as patch:
+        entries = [msgspec.structs.replace(mutant, diagnosis="OTHER") for mutant in catalog.mutants(exercise)]
+        patch.setattr(Catalog, "mutants", lambda *_: tuple(entries))
+        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
+    with monkeypatch.context() as patch:
+        patch.setattr(seeds, "made_from", lambda *_: "other known mistakes")
+        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
+        patch.setattr(seeds, "code_of", lambda *_: b"other checks")
+        assert not seeds.proven(exercise, catalog)

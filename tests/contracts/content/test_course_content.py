@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from course.authoring.audit import audit
 from course.authoring.exercises.diagnosis import diagnoses
 from course.authoring.exercises.diagnosis.build import hypotheses_of
 from course.authoring.exercises.diagnosis.confusion import (
@@ -26,7 +25,7 @@ from course.isolation.keeping import kept_sandboxes
 from course.progress.mistakes import NO_MISTAKE
 from course.scoring.checks.companions import words
 from course.scoring.judging.session import GradingSession, Submission
-from tests.contracts.content.audited import CATALOG, EXERCISES, IN_FULL, programs
+from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs
 
 if TYPE_CHECKING:
     from course.authoring.report import AuditReport
@@ -40,7 +39,7 @@ def catalog() -> Catalog:
 
 @pytest.fixture(scope="module")
 def report() -> AuditReport:
-    return audit(CATALOG, without=EXERCISES, grade=IN_FULL)
+    return IN_PART(without=EXERCISES)
 
 
 def test_the_audit_finds_nothing_wrong(report: AuditReport) -> None:

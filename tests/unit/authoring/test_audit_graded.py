@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from course.authoring.audit import audit
+from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.mutants import run_mutants
 from course.catalog.load import Catalog
 
@@ -102,6 +103,9 @@ def test_a_field_that_no_failed_check_has_is_a_problem(mini: Path) -> None:
     (problem,) = audit(Catalog(), "doubling").problems
     assert problem.where == "exercises/doubling/hints.toml:12"
     assert "no check of double that a mutant fails has the field {y}" in problem.message
+    # A program that got no verdict may have it; it does not count as graded.
+    some = audit(Catalog(), "doubling", grade=lambda sources: grade_sources(sources[:-1]))
+    assert (some.problems, some.graded) == ((), 13)
 
 
 def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini: Path) -> None:

@@ -89,7 +89,11 @@ class Unprotected(GradingSession):
         return LocalSubmission(submission.files[self.exercise.module].decode())
 
 
-@pytest.mark.parametrize("exercise_id", TOLD)
+#: Three quarters of the time: a wrong tuning is asked for many a fleet.
+LONGEST = pytest.param("sim-to-real", marks=pytest.mark.soak)
+
+
+@pytest.mark.parametrize("exercise_id", [LONGEST, *sorted(TOLD.keys() - {"sim-to-real"})])
 def test_a_cause_is_named_only_where_it_is_known(exercise_id):
     catalog = Catalog()
     exercise, told = catalog.exercise(exercise_id), {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -13,8 +13,7 @@ from course.scoring.judging.session import Submission
 from course.scoring.judging.terms import Terms
 from tests.benchmarks.calibration import seeds
 
-if TYPE_CHECKING:
-    from pathlib import Path
+MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
 
 
 @pytest.mark.parametrize("here", [True, False])
@@ -65,3 +64,12 @@ def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
         assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
         patch.setattr(seeds, "code_of", lambda *_: b"other checks")
         assert not seeds.proven(exercise, catalog)
+
+
+def test_an_exercise_that_was_never_graded_under_all_seeds_has_nothing_on_record(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """And need not have its diagnoses in a file, as those have."""
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+    catalog = Catalog()
+    assert [seeds.proven(exercise, catalog) for exercise in catalog.exercises()] == [frozenset()] * 2

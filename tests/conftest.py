@@ -43,8 +43,8 @@ def sandboxes() -> Iterator[None]:
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Three more than processors: for a third of its time a worker waits for a process that it started."""
-    return (os.cpu_count() or 1) + 3
+    """Two more than processors: for a third of its time a worker waits for a process that it started."""
+    return (os.cpu_count() or 1) + 2
 
 
 def pytest_configure(config: pytest.Config) -> None:

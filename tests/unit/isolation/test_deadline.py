@@ -106,14 +106,18 @@ def test_the_clock_of_another_process_is_that_process_s_own() -> None:
 @contextlib.contextmanager
 def _crowd(processor: int, size: int) -> Iterator[None]:
     """So many processes that want nothing but this processor."""
-    program = f"import os\nos.sched_setaffinity(0, {{{processor}}})\nwhile True: pass"
-    busy = [subprocess.Popen([sys.executable, "-c", program]) for _ in range(size)]
-    try:
+    program = f"import os\nos.sched_setaffinity(0, {{{processor}}})\nos.write(1, b'.')\nwhile True: pass"
+    with contextlib.ExitStack() as stack:
+        busy = []
+        for _ in range(size):
+            one = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
+            stack.enter_context(one)
+            stack.callback(one.kill)
+            busy.append(one)
+        for one in busy:  # none of them is still starting
+            assert one.stdout is not None
+            assert one.stdout.read(1) == b"."
         yield
-    finally:
-        for one in busy:
-            one.kill()
-            one.wait()
 
 
 _WORK = """

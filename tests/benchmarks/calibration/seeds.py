@@ -120,7 +120,7 @@ class Log:
 
 
 def proven(exercise: Exercise, catalog: Catalog) -> frozenset[bytes]:
-    """The variants that, as they and the checks are now, were graded under all seeds without a fault."""
+    """The variants that, as they and the checks are now, stand in the log without a fault."""
     options = asked([exercise.id])
     log = Log(options.log)
     # An exercise that is on no record need not have all the files that decide about one.

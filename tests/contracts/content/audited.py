@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
-from functools import partial
 from typing import TYPE_CHECKING
 
 from course.authoring.audit import audit
@@ -19,25 +19,32 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.scoring.verdict import Verdict
 
-__all__ = ["CATALOG", "EACH", "EXERCISES", "IN_PART", "changed", "programs", "wrong"]
+__all__ = ["CATALOG", "EACH", "EXERCISES", "IN_PART", "changed", "on_record", "programs", "wrong"]
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercise_ids()
 #: As `course author check` does it; all processors are at work on other tests already.
-IN_PART = partial(audit, CATALOG, grade=partial(grade_sources, graders=1))
+IN_PART = functools.partial(audit, CATALOG, grade=functools.partial(grade_sources, graders=1))
 #: One in so many of the programs on record is graded once more: that grading works is seen from fewer.
 EACH = 8
+
+
+@functools.cache
+def on_record(exercise: str) -> frozenset[bytes]:
+    """The variants of an exercise whose proof is on record and holds."""
+    return proven(CATALOG.exercise(exercise), CATALOG)
 
 
 def changed(exercise: str) -> AuditReport:
     """The audit of an exercise, where only some programs are graded whose proof is on record and holds.
 
-    The record (tests/benchmarks/calibration/seeds.jsonl) says for each variant that it was graded as declared
-    under hundreds of seeds, and by which checks: once a check or the program changes, it is graded here.
+    The record (tests/benchmarks/calibration/seeds.jsonl) says of each variant that it was graded as declared,
+    under hundreds of seeds where its checks draw, and by which checks: once a check or the program changes,
+    it is graded here. A change in how the course grades is seen from those that are graded again, and in CI.
     """
 
     def grade(sources: Sequence[tuple[Exercise, bytes]]) -> Iterator[tuple[int, Verdict]]:
-        kept = proven(CATALOG.exercise(exercise), CATALOG)
+        kept = on_record(exercise)
         again = itertools.cycle([True] + (EACH - 1) * [False])
         left = [n for n, (_, source) in enumerate(sources) if source not in kept or next(again)]
         for index, verdict in grade_sources([sources[n] for n in left], graders=1):

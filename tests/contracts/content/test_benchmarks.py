@@ -36,9 +36,8 @@ def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
     """As a program, its entry, a check or a known mistake changes, its line no longer holds."""
     catalog = Catalog()
     exercise = catalog.exercise("collisions")
-    names = {
-        program.source: program.name for program in seeds.programs(exercise, catalog, seeds.asked(["x"]))
-    }
+    options = seeds.asked([exercise.id])
+    names = {program.source: program.name for program in seeds.programs(exercise, catalog, options)}
     proven = seeds.proven(exercise, catalog)
     kinds = [names[source].partition("/")[0] for source in proven]
     assert kinds.count("mutants") == len(catalog.mutants(exercise))

@@ -70,7 +70,7 @@ PARTS: dict[str, Part] = {
 CONTAINER = Part(
     "Grading in Gradescope's container",
     ("msgspec", "numpy", "pymunk", "pytest"),
-    "course.grading.exports.container",
+    "course.grading.container.inside",
 )
 
 

@@ -42,6 +42,24 @@ def sandboxes() -> Iterator[None]:
         yield
 
 
+def _settings() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name.startswith("COURSE_")}
+
+
+_AT_THE_START = _settings()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """No test meets the settings of another: a course that is left chosen makes "every exercise" two."""
+    left = _settings()
+    if left != _AT_THE_START:
+        for name in left.keys() | _AT_THE_START.keys():
+            os.environ.pop(name, None)
+        os.environ.update(_AT_THE_START)
+        pytest.fail(f"A fixture leaves {left} behind after its test.")
+
+
 def pytest_xdist_auto_num_workers() -> int:
     """Two more than processors: for a third of its time a worker waits for a process that it started."""
     return (os.cpu_count() or 1) + 2

@@ -8,6 +8,7 @@ None for them. ``COURSE_CONTENT=DIR`` selects another course altogether, laid ou
 from __future__ import annotations
 
 import functools
+import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,9 +16,13 @@ from pathlib import Path
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.ids import WARM_UPS
 
-__all__ = ["ENVIRONMENT_VARIABLE", "Content", "chosen", "content"]
+__all__ = ["ENVIRONMENT_VARIABLE", "NAMES", "PLACES", "Content", "chosen", "content"]
 
 ENVIRONMENT_VARIABLE = "COURSE_CONTENT"
+#: The folders of a course in which each exercise has one of its own.
+PLACES = ("exercises", "solutions", "graders")
+#: A copy of a course says in this file where its folders were.
+NAMES = "names.json"
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 
@@ -28,6 +33,7 @@ class Content:
     Attributes:
         root: the folder that paths in messages are best shown relative to.
         solutions, graders: None where this installation has none.
+        names: of the folders where the files were written, if this is a copy: (folder, name) each.
     """
 
     root: Path
@@ -36,6 +42,20 @@ class Content:
     quiz: Path
     solutions: Path | None = None
     graders: Path | None = None
+    names: tuple[tuple[str, str], ...] = ()
+
+    def shown(self, path: Path) -> str:
+        """A path as its author knows it."""
+        for place, name in self.names:
+            folder = self.root / place
+            if path.is_relative_to(folder):
+                return f"{name}/{path.relative_to(folder).as_posix()}"
+        return path.relative_to(self.root).as_posix() if path.is_relative_to(self.root) else str(path)
+
+    def place(self, name: str) -> Path | None:
+        """One of ``PLACES``."""
+        folder: Path | None = getattr(self, name)
+        return folder
 
     @property
     def is_checkout(self) -> bool:
@@ -113,7 +133,12 @@ def chosen(folder: Path) -> Content:
         quiz=folder / "quiz",
         solutions=_if_there(folder / "solutions"),
         graders=_if_there(folder / "graders"),
+        names=_names(folder / NAMES),
     )
+
+
+def _names(file: Path) -> tuple[tuple[str, str], ...]:
+    return tuple(json.loads(file.read_text("utf-8")).items()) if file.is_file() else ()
 
 
 @functools.cache

@@ -5,6 +5,7 @@ running     a run over a class, a second one, and the grader processes of both
 gradebook   the record of a run
 results     what counts: rosters, times, lateness, overrides
 exports     files for other programs, and pages for people
+container   the same graders in Gradescope
 similar     submissions that are alike
 quiz        the quiz records of a submission, scored again
 cluster     the same run on many machines (optional)

@@ -1,13 +1,20 @@
 """Frames on the pipes between our own processes: a 4-byte little-endian length, then msgpack.
 
-Also the limits of such a process where it reads untrusted files.
+Also the life of such a process, which ends with the one that started it, and its limits where it reads
+untrusted files.
 """
 
 from __future__ import annotations
 
+import _thread
+import os
+import queue
+import signal
 import struct
+import threading
+import time
 from time import process_time
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import msgspec
 
@@ -16,9 +23,14 @@ try:
 except ImportError:  # Windows has none of these limits
     resource = None  # type: ignore[assignment]
 
-__all__ = ["limit_cpu", "limit_memory", "read_frame", "write_frame"]
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["limit_cpu", "limit_memory", "read_frame", "served", "write_frame"]
 
 _LENGTH = struct.Struct("<I")
+#: Wall seconds that a process has to clean up after the one it worked for is gone.
+_LAST_S = 3.0
 
 
 def read_frame(source: IO[bytes], most: int | None = None) -> bytes | None:
@@ -38,6 +50,33 @@ def write_frame(sink: IO[bytes], message: Any) -> None:
     body = msgspec.msgpack.encode(message)
     sink.write(_LENGTH.pack(len(body)) + body)
     sink.flush()
+
+
+def served(source: IO[bytes]) -> Iterator[bytes]:
+    """The frames of a pipe, one after the other, as long as the process at its other end lives.
+
+    A thread reads them. Whoever started this process may be killed while a frame is worked on, which can take
+    minutes: then the work is interrupted (``KeyboardInterrupt`` in the main thread), and a little later this
+    process ends in any case.
+    """
+    waiting: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+    at_work = threading.Event()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # also where it was started with that ignored
+
+    def read() -> None:
+        while (frame := read_frame(source)) is not None:
+            at_work.set()
+            waiting.put(frame)
+        waiting.put(None)
+        if at_work.is_set():
+            _thread.interrupt_main()
+            time.sleep(_LAST_S)
+            os._exit(1)
+
+    threading.Thread(target=read, daemon=True).start()
+    while (frame := waiting.get()) is not None:
+        yield frame
+        at_work.clear()
 
 
 def limit_memory(size: int) -> None:

@@ -25,6 +25,7 @@ __all__ = [
     "bounded",
     "finite",
     "for_student",
+    "not_graded",
 ]
 
 
@@ -135,6 +136,18 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     def all_pass(self) -> bool:
         """True if it was graded and every check passed."""
         return self.state == "graded" and all(check.status is Status.PASS for check in self.checks)
+
+
+def not_graded(exercise: str, most: float, state: str, error: Problem) -> Verdict:
+    """The verdict on work that no check judged.
+
+    Args:
+        most: points of the exercise.
+    """
+    return Verdict(
+        exercise=exercise, scope="full", state=state, score=0.0, max_score=most, passed=False, checks=(),
+        isolation="", error=error,
+    )  # fmt: skip
 
 
 def for_student(result: CheckResult) -> CheckResult:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 import math
-from pathlib import Path
 from statistics import NormalDist
 
 import numpy as np
@@ -170,12 +169,31 @@ def _wilson_hilferty(n, alpha, root=math.sqrt, power=3, middle=lambda n: 1 - 2 /
     return [n * (middle(n) + sign * z * width) ** power for sign in (-1, 1)]
 
 
-def _exact():
-    """Quantiles by bisection, which an accepted solution has."""
-    held = {"math": math}
-    path = Path(__file__).with_name("accepted") / "gamma_by_bisection.py"
-    exec(compile(path.read_text(encoding="utf-8"), path.name, "exec"), held)
-    return functools.cache(lambda n, alpha: held["consistency_band"](n, 1, alpha))
+def _below(a, x):
+    """The regularised incomplete gamma function P(a, x), by its power series."""
+    if x <= 0:
+        return 0.0
+    term = total = 1 / a
+    n = 0
+    while term > 1e-13 * total:
+        n += 1
+        term *= x / (a + n)
+        total += term
+    return total * math.exp(a * math.log(x) - x - math.lgamma(a))
+
+
+@functools.cache
+def _exact(n, alpha):
+    """Both quantiles of the chi-square distribution with n degrees of freedom, by bisection."""
+
+    def quantile(p):
+        low, high = 0.0, 2 * n + 40
+        while high - low > 1e-10 * high:
+            middle = (low + high) / 2
+            low, high = (middle, high) if _below(n / 2, middle) < p else (low, middle)
+        return 2 * low
+
+    return [quantile(alpha / 2), quantile(1 - alpha / 2)]
 
 
 def _symmetric(n, alpha, variance=None):
@@ -371,7 +389,7 @@ _FORCES = {
 }
 
 #: The band by quantiles that are no approximation.
-exactly = functools.partial(_band, quantiles=_exact())
+exactly = functools.partial(_band, quantiles=_exact)
 #: Task: (family, terms) of each family.
 TERMS = {
     "rmse": [(_rmse, _RMSE)],

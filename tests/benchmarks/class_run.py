@@ -163,7 +163,7 @@ def cluster_ratio(folder: Path, catalog: Catalog, exercise: str, students: int, 
         run(folder, catalog, exercise, workers, seen)
 
     def dask(seen: Callable[[int], None]) -> None:
-        with local_cluster(workers, catalog) as grade:
+        with local_cluster(workers) as grade:
             run(folder, catalog, exercise, 1, seen, grade)
 
     costs: dict[str, list[Cost]] = {"-j": [], "cluster": []}

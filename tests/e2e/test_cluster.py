@@ -23,8 +23,9 @@ from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.gradebook.book import Gradebook
 from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.snapshot import Snapshot, frozen
+from course.scoring.graders import grader_version
 from course.scoring.judging.terms import Terms
-from course.scoring.version import grader_version
 from tests.e2e.processes import below, left_running
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot
@@ -99,7 +100,7 @@ def on_cluster(
         if len(reported) == kill_at:
             os.kill(dask_workers(os.getpid())[0], signal.SIGKILL)
 
-    with local_cluster(2, catalog) as grade:
+    with local_cluster(2) as grade:
         grade_class(folder, out, catalog, options, report, grade=grade)
     assert not dask_workers(os.getpid()), "nothing is left running"
     return reported
@@ -138,14 +139,13 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Pat
         file.write(POISON)
     doubling = catalog.exercise("doubling")
     entries = read_class(tmp_path / "class", [doubling], required=True)
+    snapshot = Snapshot.take(catalog.content)
+    terms = Terms(at_least="L1", graders=snapshot.sha256)
     with contextlib.ExitStack() as stack:
+        graders = stack.enter_context(frozen(snapshot))
         workers = DaskWorkers(start_cluster(stack, 2), deadly)
-        found = {
-            graded.entry.student: graded.verdict
-            for graded in grade_on(
-                workers, entries, Terms(at_least="L1"), lambda it: grader_version(it, catalog)
-            )
-        }
+        graded = grade_on(workers, entries, terms, graders.version, graders=snapshot.packed)
+        found = {one.entry.student: one.verdict for one in graded}
     assert len(found) == 12
     poisoned = found.pop("student-004")
     assert (poisoned.state, poisoned.error and poisoned.error.code) == ("grader_error", "worker_died")
@@ -221,7 +221,7 @@ def test_a_check_edited_during_a_run_on_a_cluster_changes_nothing(
 
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
     out = tmp_path / "out"
-    with local_cluster(2, course) as grade:
+    with local_cluster(2) as grade:
         summary = grade_class(tmp_path / "class", out, course, options, report, grade=grade)
     assert summary.states["graded"] == 60
     judged_by_the_snapshot(out, course, version, summary.graders)
@@ -280,12 +280,12 @@ def test_a_cluster_somewhere_else_grades_and_its_end_is_said(tmp_path: Path, cat
 
         with (
             pytest.raises(MissingCapabilityError, match="scheduler is gone"),
-            remote_cluster(address, catalog) as grade,
+            remote_cluster(address) as grade,
         ):
             grade_class(tmp_path / "class", tmp_path / "out", catalog, options, report, grade=grade)
     done = len(scores(tmp_path / "out"))
     assert 0 < done < 300
-    with scheduler_and_worker(environment) as (address, _), remote_cluster(address, catalog) as grade:
+    with scheduler_and_worker(environment) as (address, _), remote_cluster(address) as grade:
         again = RunOptions(exercises=("doubling",), resume=True)
         summary = grade_class(
             tmp_path / "class", tmp_path / "out", catalog, again, lambda *_: None, grade=grade

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Self, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
@@ -12,11 +12,11 @@ from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
 from course.catalog.reading import read_text
 from course.grading.intake.students import Entry
-from course.grading.running.batch import Graded, grade_all
-from course.isolation.keeping import kept_sandboxes
+from course.grading.running.batch import Graders
+from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.checks.collected import CollectedChecks
 from course.scoring.explain.calls import reached_from
-from course.scoring.judging.session import GradingSession, Submission, check_files
+from course.scoring.judging.session import Submission, check_files
 from course.scoring.judging.terms import Terms
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ GradeSources: TypeAlias = "Callable[[Sequence[tuple[Exercise, bytes]]], Iterator
 def grade_sources(
     sources: Sequence[tuple[Exercise, bytes]], *, graders: int | None = None
 ) -> Iterator[tuple[int, Verdict]]:
-    """Grade sources as a grading run would: a few in this process, more on every processor.
+    """Grade sources as a grading run does: by grader processes, from a snapshot of the course as it is now.
 
     The seed is fixed: the same files get the same verdicts, in any order. Most sources
     are the model solution with a few definitions after it. A check that uses none of the changed functions,
@@ -45,7 +45,7 @@ def grade_sources(
 
     Args:
         sources: exercise and submission of each.
-        graders: processes; 1 is this one, None as many as are worth it.
+        graders: processes, at most; None for as many as are worth it.
 
     Yields:
         Index and verdict, in the order in which they are reached.
@@ -55,72 +55,64 @@ def grade_sources(
     """
     from course.engines.machine import this_machine
 
+    if not sources:
+        return
     if graders is None:
         graders = min(this_machine().cores, 1 + len(sources) // _WORTH_A_GRADER)
-    with kept_sandboxes(), _Sessions() as sessions:
-        models = _Models(sessions)
+    catalog = Catalog()
+    with (
+        frozen(Snapshot.take(catalog.content)) as frozen_graders,
+        Graders(Terms(graders=frozen_graders.snapshot.sha256), graders) as those,
+    ):
+        models = _models(catalog, dict.fromkeys(exercise for exercise, _ in sources), those)
         same: list[tuple[int, Verdict]] = []  # as the model solution, which is graded already
 
         def entries() -> Iterator[Entry]:
             for index, (exercise, source) in enumerate(sources):
-                model, submission = models.of(exercise), Submission({exercise.module: source})
+                model, submission = models[exercise], Submission({exercise.module: source})
                 if model.verdict and source.decode("utf-8", "replace").rstrip() == model.source:
                     same.append((index, model.verdict))
                 else:
                     yield Entry(str(index), exercise, submission, only=model.concerned(source))
 
-        judged = sessions.grade(entries()) if graders == 1 else grade_all(entries(), Terms(), graders=graders)
-        for graded in judged:
+        for graded in those.grade(entries()):
             exercise, verdict = graded.entry.exercise, graded.verdict
             if graded.entry.only and verdict.state == "graded":
-                verdict = models.of(exercise).completed(verdict, exercise)
+                verdict = models[exercise].completed(verdict, exercise)
             yield int(graded.entry.student), verdict
         yield from same
 
 
-class _Sessions:
-    """A session in this process, of the exercise that was last asked for."""
-
-    def __init__(self) -> None:
-        self.catalog = Catalog()
-        self._open: GradingSession | None = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._close()
-
-    def of(self, exercise: Exercise) -> GradingSession:
-        if self._open is None or self._open.exercise.id != exercise.id:
-            self._close()
-            self._open = GradingSession(exercise, self.catalog, scope="full")
-        return self._open
-
-    def grade(self, entries: Iterable[Entry]) -> Iterator[Graded]:
-        for entry in entries:
-            assert entry.submission is not None
-            yield Graded(entry, self.of(entry.exercise).grade(entry.submission, only=entry.only))
-
-    def _close(self) -> None:
-        if self._open is not None:
-            self._open.close()
-        self._open = None
+def _models(catalog: Catalog, exercises: Iterable[Exercise], graders: Graders) -> dict[Exercise, _Model]:
+    """The model solution of each exercise, graded where that can save something."""
+    models = dict.fromkeys(exercises, _Model())
+    sources = {
+        exercise: read_text(solution_path(catalog, exercise))
+        for exercise in models
+        if len(exercise.task) > 1  # where there is one function, every check asks for it
+    }
+    whole = [_model_entry(exercise, source) for exercise, source in sources.items()]
+    for graded in graders.grade(whole):
+        exercise, verdict = graded.entry.exercise, graded.verdict
+        if verdict.state == "graded" and verdict.passed:
+            asked = {check: frozenset(used) for check, used in graded.asked.items()}
+            models[exercise] = _Model(sources[exercise].rstrip(), verdict, asked)
+    # What an earlier check asked for and kept is asked for again where that check is not run.
+    silent = [
+        _model_entry(exercise, sources[exercise], checks)
+        for exercise, model in models.items()
+        if model.verdict is not None
+        for task in exercise.task
+        if (checks := model.silent(task.id))
+    ]
+    for graded in graders.grade(silent):
+        used = frozenset(name for names in graded.asked.values() for name in names)
+        models[graded.entry.exercise].asked.update(dict.fromkeys(graded.entry.only, used))
+    return models
 
 
-class _Models:
-    """The model solution of each exercise, graded when it is first asked for."""
-
-    def __init__(self, sessions: _Sessions) -> None:
-        self._sessions = sessions
-        self._known: dict[str, _Model] = {}
-
-    def of(self, exercise: Exercise) -> _Model:
-        if exercise.id not in self._known:
-            # Where there is one function, every check asks for it.
-            several = len(exercise.task) > 1
-            self._known[exercise.id] = _Model.graded(self._sessions, exercise) if several else _Model()
-        return self._known[exercise.id]
+def _model_entry(exercise: Exercise, source: str, only: tuple[str, ...] = ()) -> Entry:
+    return Entry("", exercise, Submission({exercise.module: source.encode()}), only=only, asks=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,21 +123,10 @@ class _Model:
     verdict: Verdict | None = None
     asked: dict[str, frozenset[str]] = field(default_factory=dict)
 
-    @classmethod
-    def graded(cls, sessions: _Sessions, exercise: Exercise) -> _Model:
-        source = read_text(solution_path(sessions.catalog, exercise))
-        session, submission = sessions.of(exercise), Submission({exercise.module: source.encode()})
-        verdict = session.grade(submission)
-        if verdict.state != "graded" or not verdict.passed:
-            return cls()
-        asked = dict(session.asked)
-        for task in exercise.task:
-            # What an earlier check asked for and kept is asked for again where that check is not run.
-            silent = [check.id for check in verdict.checks if check.task == task.id and not asked[check.id]]
-            if silent:
-                session.grade(submission, only=silent)
-                asked |= dict.fromkeys(silent, frozenset().union(*session.asked.values()))
-        return cls(source.rstrip(), verdict, asked)
+    def silent(self, task: str) -> tuple[str, ...]:
+        """Ids of a task's checks that used no function."""
+        checks = self.verdict.checks if self.verdict else ()
+        return tuple(check.id for check in checks if check.task == task and not self.asked[check.id])
 
     def concerned(self, source: bytes) -> tuple[str, ...]:
         """Ids of the checks that a source's changes can affect; empty means all."""

@@ -18,6 +18,7 @@ from course.catalog.models import fields_of
 from course.catalog.reading import read_text
 from course.errors import ContentError
 from course.progress.evidence import numbers_of
+from course.scoring.graders import LEFT_OUT
 from course.scoring.verdict import Status, Visibility
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.catalog.models import Exercise, Hints, Mutant
     from course.catalog.reading import Document
-    from course.scoring.verdict import CheckResult, Verdict
+    from course.scoring.verdict import CheckResult, Problem, Verdict
 
 __all__ = ["MUTANTS_EACH", "Proof", "Prover", "least_proofs", "plan"]
 
@@ -167,6 +168,7 @@ class Prover:
         self._checks = {check.id: check for check in checks}
         self._mutants_toml = mutants_toml
         self._findings = findings
+        self._broken = False  # its checks cannot be imported: nothing more can be said of them
         self._public = public_numbers(exercise)
         self._fields: dict[str, set[str]] = {task.id: set() for task in exercise.task}
 
@@ -193,7 +195,7 @@ class Prover:
 
     def judge_hints(self, hints: Document[Hints]) -> None:
         """Report fields that hints name and that no failed check has had. Call it after the last proof."""
-        for index, task in enumerate(hints.value.task):
+        for index, task in enumerate(() if self._broken else hints.value.task):
             for number, sentences in task.yours.items():
                 named = frozenset().union(*map(fields_of, sentences))
                 for field in sorted(named - self._fields.get(task.id, set())):
@@ -207,7 +209,10 @@ class Prover:
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
         """Report checks that broke instead of checking."""
-        if verdict.state == "grader_error" and verdict.error:
+        if verdict.error is not None and verdict.error.code == "check_file":
+            self._broken = True
+            self._findings.add(*_fault_of_file(verdict.error, self._findings.root))
+        elif verdict.state == "grader_error" and verdict.error:
             self._findings.add(
                 self.exercise.checks_path,
                 None,
@@ -291,6 +296,22 @@ class Prover:
         """The line a task's function starts on in this file."""
         found = signatures(parse(path)).get(task)
         return found.line if found else None
+
+
+_CHECK_FILE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?: (?P<problem>.*)", re.DOTALL)
+_NOT_THERE = re.compile(r": (?P<file>[^:]+) is not there\)")
+
+
+def _fault_of_file(error: Problem, root: Path) -> tuple[Path, int | None, str, str, str]:
+    """A file that grader processes could not import, as a finding about it."""
+    said = _CHECK_FILE.fullmatch(error.message)
+    assert said is not None
+    problem, fix = said["problem"], error.help
+    absent = _NOT_THERE.search(problem)
+    if absent is not None and (root / absent["file"]).exists():
+        problem = f"a grader process does not have {absent['file']}, which this line reads."
+        fix = f"Move it: the files in {' and '.join(sorted(LEFT_OUT))} are not graded with, nor is prose."
+    return root / said["file"], int(said["line"]) if said["line"] else None, "grader", problem, fix
 
 
 def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:

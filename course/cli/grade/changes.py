@@ -32,6 +32,8 @@ def show_change(console: Console, change: Change) -> None:
     elif (change.score_before, change.score_after) != (change.raw_before, change.raw_after):
         scores += f"; counting {points(change.score_before)} -> {points(change.score_after)}"
     console.item(f"{one_line(change.student)} {change.exercise}", scores)
+    if change.raw_before is None or change.raw_after is None:
+        return  # of what no check judged, none has changed
     for check in change.checks:
         delta = f", {check.points_after - check.points_before:+g} points"
         console.item(

@@ -12,7 +12,7 @@ from course.cli.frame.terminal.console import Console, current
 from course.cli.grade.changes import moved_scores, show_roster
 from course.cli.grade.options import Exercises, Missing, one_of
 from course.errors import CourseError, UsageError
-from course.grading.exports.autograder import write_autograder
+from course.grading.container.packing import write_autograder
 from course.grading.exports.formats import AUTOGRADER, FORMATS
 from course.grading.exports.formats import export as write
 from course.grading.exports.lines import grade_line

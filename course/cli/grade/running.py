@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective
     from course.grading.running.rerun import Change
     from course.grading.running.run import GradeAll, RunOptions
-    from course.grading.running.summary import Summary
+    from course.grading.running.summary import Summary, Ungraded
 
 __all__ = ["checks_gave", "explain", "run", "score_of"]
 
@@ -94,7 +94,7 @@ def run(
     people = read_roster(roster) if roster else None
     options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
     with (
-        _graders(catalog, jobs, local_cluster, scheduler) as grade,
+        _graders(jobs, local_cluster, scheduler) as grade,
         _progress(console, catalog.ref) as report,
     ):
         summary = grade_class(submissions, out, catalog, options, report, grade=grade)
@@ -145,18 +145,16 @@ def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -
         )
 
 
-def _graders(
-    catalog: Catalog, jobs: int, local_cluster: int | None, scheduler: str | None
-) -> AbstractContextManager[GradeAll]:
+def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> AbstractContextManager[GradeAll]:
     """The graders: processes on this machine, or a cluster."""
     from course.grading.running.batch import grade_all
 
     if local_cluster is None and scheduler is None:
         return nullcontext(partial(grade_all, graders=jobs))
     cluster: AbstractContextManager[GradeAll] = (
-        extras.load("cluster").local_cluster(local_cluster or 1, catalog)
+        extras.load("cluster").local_cluster(local_cluster or 1)
         if scheduler is None
-        else extras.load("cluster").remote_cluster(scheduler, catalog)
+        else extras.load("cluster").remote_cluster(scheduler)
     )
     return cluster
 
@@ -302,10 +300,13 @@ def _show_summary(
         rows = [row for row in summary.troubled if row.state == state]
         if rows:
             console.line((f"{len(rows)} {words}:", "bold"))
-        for row in rows[:_MOST_TROUBLED]:
-            console.item(f"{one_line(row.student)} {row.exercise}", f"{row.code}: {one_line(row.message)}")
-        if len(rows) > _MOST_TROUBLED:
-            console.line(f"and {len(rows) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+        told = _alike(rows)
+        for whose, row in told[:_MOST_TROUBLED]:
+            console.item(whose, f"{row.code}: {one_line(row.message)}")
+        if len(told) > _MOST_TROUBLED:
+            console.line(f"and {len(told) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+    if any(row.code == "check_file" for row in summary.troubled):
+        console.note(f"Once the file is right, {command('grade', 'rerun', out)} grades these.")
     if summary.unsettled:
         assign = command("grade", "assign", out)
         console.note(f"{assign} lists the files of those that could not be graded, and how to settle each.")
@@ -323,6 +324,21 @@ def _show_summary(
         console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
     files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
     console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
+
+
+def _alike(rows: list[Ungraded]) -> list[tuple[str, Ungraded]]:
+    """Whose work it is that could not be graded: one line for all whom the same file kept from it."""
+    files: dict[tuple[str, str], list[Ungraded]] = {}
+    told: list[tuple[str, Ungraded]] = []
+    for row in rows:
+        if row.code == "check_file":
+            files.setdefault((row.exercise, row.message), []).append(row)
+        else:
+            told.append((f"{one_line(row.student)} {row.exercise}", row))
+    for (exercise, _), those in files.items():
+        count = "1 submission" if len(those) == 1 else f"{len(those)} submissions"
+        told.append((f"{exercise}, {count}", those[0]))
+    return told
 
 
 def _mark(summary: Summary) -> str:

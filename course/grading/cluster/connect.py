@@ -1,6 +1,6 @@
 """Grading a class with Dask: on a cluster on this machine, or on one that runs elsewhere.
 
-    with local_cluster(4, catalog) as grade:
+    with local_cluster(4) as grade:
         grade_class(folder, out, catalog, options, report, grade=grade)
 
 Nothing is started before there is something to grade. A local cluster speaks TLS with a key of its own that
@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import logging
 from concurrent.futures import CancelledError
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -24,13 +23,10 @@ from course.grading.cluster.reach import check_scheduler
 from course.grading.cluster.worker import grade_batch
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import private_folder, remove_tree
-from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
     from course.grading.cluster.coordinator import Outcome
     from course.grading.intake.students import Entry
     from course.grading.running.batch import Graded
@@ -46,7 +42,6 @@ class Cluster:
     """Turns entries into verdicts, for ``grade_class``; a context manager that ends what it started.
 
     Args:
-        catalog: the course that the coordinator has.
         connect: gives a client, and puts on the stack what must be closed.
         remote: address of a scheduler that others may use too; empty for one of our own.
 
@@ -56,13 +51,11 @@ class Cluster:
 
     def __init__(
         self,
-        catalog: Catalog,
         connect: Callable[[contextlib.ExitStack], Any],
         *,
         remote: str = "",
     ) -> None:
         require("cluster")
-        self._catalog = catalog
         self._connect = connect
         self._remote = remote
         self._stack = contextlib.ExitStack()
@@ -92,28 +85,19 @@ class Cluster:
         workers = DaskWorkers(self._connect(self._stack))
 
         graders = in_use(terms.graders)
-
-        @cache
-        def version(exercise_id: str) -> str:
-            if graders is not None:
-                return graders.version(exercise_id)
-            return grader_version(self._catalog.exercise(exercise_id), self._catalog)
-
-        def version_of(exercise: Exercise) -> str:
-            return version(exercise.id)
-
-        packed = graders.snapshot.packed if graders else b""
-        yield from grade_on(workers, entries, terms, version_of, graders=packed)
+        if graders is None:
+            raise InternalError("The snapshot that is to judge is not unpacked here.")
+        yield from grade_on(workers, entries, terms, graders.version, graders=graders.snapshot.packed)
 
 
-def local_cluster(workers: int, catalog: Catalog) -> Cluster:
+def local_cluster(workers: int) -> Cluster:
     """A cluster of ``workers`` processes on this machine, for one run."""
-    return Cluster(catalog, lambda stack: start_cluster(stack, workers))
+    return Cluster(lambda stack: start_cluster(stack, workers))
 
 
-def remote_cluster(address: str, catalog: Catalog) -> Cluster:
+def remote_cluster(address: str) -> Cluster:
     """The cluster whose scheduler is at ``address``, or is described by the scheduler file of that name."""
-    return Cluster(catalog, lambda stack: _reach(stack, address), remote=address)
+    return Cluster(lambda stack: _reach(stack, address), remote=address)
 
 
 def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:

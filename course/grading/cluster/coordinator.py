@@ -23,7 +23,6 @@ from course.scoring.verdict import Problem
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from course.catalog.models import Exercise
     from course.errors import CourseError
     from course.grading.intake.students import Entry
     from course.scoring.judging.terms import Terms
@@ -72,7 +71,7 @@ def grade_on(
     workers: Workers,
     entries: Iterable[Entry],
     terms: Terms,
-    version: Callable[[Exercise], str],
+    version: Callable[[str], str],
     *,
     graders: bytes = b"",
     patience_s: float = _PATIENCE_S,
@@ -81,7 +80,7 @@ def grade_on(
 
     Args:
         workers: who grades.
-        version: the version of an exercise's graders here, which the workers' graders must have too.
+        version: the version of an exercise's graders, by its id, which the workers' graders must have too.
         graders: the snapshot that ``terms`` names, packed; it is sent to a worker that lacks it.
         patience_s: wall seconds to wait for a worker when there is none.
 
@@ -105,7 +104,7 @@ class _Coordinator:
         workers: Workers,
         entries: Iterable[Entry],
         terms: Terms,
-        version: Callable[[Exercise], str],
+        version: Callable[[str], str],
         graders: bytes,
         patience_s: float,
     ) -> None:
@@ -181,7 +180,7 @@ class _Coordinator:
                 return
             if entry.submission is not None:
                 exercise = entry.exercise
-                job = Job(exercise.id, dict(entry.submission.files), self._version(exercise))
+                job = Job(exercise.id, dict(entry.submission.files), self._version(exercise.id))
                 self._waiting.append(_Work(entry, job))
             elif entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))

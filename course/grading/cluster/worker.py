@@ -77,7 +77,7 @@ def _unpacked(batch: Batch) -> bool:
     """
     sha256 = batch.terms.graders
     with _lock:
-        if not sha256 or in_use(sha256) is not None:
+        if in_use(sha256) is not None:
             return True
         if not batch.graders:
             return False
@@ -133,7 +133,6 @@ class _WarmGrader:
     def __init__(self, config: Config) -> None:
         self.config = config
         self._process: subprocess.Popen[bytes] | None = None
-        self._used = False
         self._seat: socket.socket | None = None
         self._retirement: threading.Timer | None = None
 
@@ -144,12 +143,7 @@ class _WarmGrader:
             InternalError: no grader can be started here.
         """
         for _ in range(MAX_TRIES):
-            fresh = not self._used
             answer = self._ask(job)
-            if answer is not None and answer.error is not None and not fresh:
-                # Perhaps the course was updated since this grader was started: a new one knows.
-                self.close()
-                answer = self._ask(job)
             if answer is not None:
                 return answer
             self.close()
@@ -159,7 +153,6 @@ class _WarmGrader:
         process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None
-        self._used = True
         too_long = threading.Timer(hang_s(self.config.terms.timeout), process.kill)
         too_long.daemon = True
         too_long.start()
@@ -185,7 +178,7 @@ class _WarmGrader:
 
     def close(self) -> None:
         """End the process; the next job gets another one."""
-        process, self._process, self._used = self._process, None, False
+        process, self._process = self._process, None
         if process is not None:
             process.kill()  # its sandbox ends with it
             process.wait()

@@ -61,6 +61,7 @@ class Entry:
         notes: assumptions that were made, and files that were left aside, one sentence each.
         found: files that may be meant for the exercise, where there is a problem.
         only: ids of the checks to run; empty runs all.
+        asks: which functions each check used is asked for, too.
     """
 
     student: str
@@ -71,6 +72,7 @@ class Entry:
     notes: tuple[str, ...] = field(default=(), compare=False)
     found: Found | None = field(default=None, compare=False)
     only: tuple[str, ...] = ()
+    asks: bool = False
 
     @property
     def sha256(self) -> str:

@@ -14,8 +14,7 @@ import sys
 import time
 from collections import deque
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import msgspec
 
@@ -27,10 +26,10 @@ from course.grading.running.snapshot import in_use
 from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private
 from course.scoring.remote import BUDGET_S
-from course.scoring.verdict import Problem, Verdict
+from course.scoring.verdict import Problem, Verdict, not_graded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from course.grading.intake.students import Entry
     from course.scoring.judging.terms import Terms
@@ -38,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MAX_TRIES",
     "Graded",
+    "Graders",
     "answer_to",
     "as_error",
     "grade_all",
@@ -59,11 +59,13 @@ class Graded:
 
     Attributes:
         version: of the graders that judged it, by their own account; empty where none did.
+        asked: by check, the functions that it used, where the entry asks for that.
     """
 
     entry: Entry
     verdict: Verdict
     version: str = ""
+    asked: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
 @dataclass
@@ -88,16 +90,14 @@ def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> It
     """Verdicts on all entries that have a submission or a problem, in the order of arrival.
 
     Args:
+        terms: which snapshot judges, and how; it must be unpacked here.
         graders: processes.
 
     Raises:
         CourseError: no grader can work here at all (protection level, content).
     """
-    coordinator = _Coordinator(entries, terms, graders)
-    try:
-        yield from coordinator.run()
-    finally:
-        coordinator.close()
+    with Graders(terms, graders) as those:
+        yield from those.grade(entries)
 
 
 def start_grader(config: Config) -> subprocess.Popen[bytes]:
@@ -106,15 +106,12 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
     # -P: the folder the command is run in, which may be a student's, never becomes importable.
     command = [sys.executable, "-P", "-m", "course.grading.running.grader"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    # The graders run the same course as this process, wherever it was imported from, or a snapshot.
-    package = str(Path(__file__).resolve().parents[3])
-    if config.terms.graders:
-        graders = in_use(config.terms.graders)
-        if graders is None:
-            raise InternalError("The snapshot that is to judge is not unpacked here.")
-        package = str(graders.folder)
-        environment[ENVIRONMENT_VARIABLE] = str(graders.catalog.content.root)
-    environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
+    graders = in_use(config.terms.graders)
+    if graders is None:
+        raise InternalError("The snapshot that is to judge is not unpacked here.")
+    path = str(graders.folder), environment.get("PYTHONPATH")
+    environment["PYTHONPATH"] = os.pathsep.join(filter(None, path))
+    environment[ENVIRONMENT_VARIABLE] = str(graders.catalog.content.root)
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
     )
@@ -129,9 +126,16 @@ def hang_s(timeout: float) -> float:
     return WALL * (BUDGET_S + timeout) + 30.0
 
 
-class _Coordinator:
-    def __init__(self, entries: Iterable[Entry], terms: Terms, graders: int) -> None:
-        self._entries = iter(entries)
+class Graders:
+    """Grader processes of this machine; they stay warm from one class to the next.
+
+    Args:
+        terms: as for ``grade_all``.
+        graders: processes, at most; each is started when there is work for it.
+    """
+
+    def __init__(self, terms: Terms, graders: int) -> None:
+        self._entries: Iterator[Entry] = iter(())
         self._terms = terms
         self._frozen = in_use(terms.graders)
         self._places = graders
@@ -142,7 +146,15 @@ class _Coordinator:
         self._hang_s = hang_s(terms.timeout)  # only a fault of ours gets here
         self._false_starts = 0
 
-    def run(self) -> Iterator[Graded]:
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def grade(self, entries: Iterable[Entry]) -> Iterator[Graded]:
+        """As ``grade_all``; a class must be finished before the next is begun."""
+        self._entries = iter(entries)
         for number in range(self._places):
             if not self._feed(number):
                 break
@@ -159,6 +171,7 @@ class _Coordinator:
             self._end_hung()
 
     def close(self) -> None:
+        """End the processes."""
         for grader in self._graders.values():
             with contextlib.suppress(OSError):
                 if grader.process.stdin:
@@ -183,7 +196,8 @@ class _Coordinator:
             if entry.submission is not None:
                 exercise = entry.exercise.id
                 version = self._frozen.version(exercise) if self._frozen else ""
-                return _Work(entry, Job(exercise, dict(entry.submission.files), version, only=entry.only))
+                files = dict(entry.submission.files)
+                return _Work(entry, Job(exercise, files, version, only=entry.only, asks=entry.asks))
             if entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
         return None
@@ -229,7 +243,7 @@ class _Coordinator:
             raise as_error(answer.error, answer.exit_code)
         else:
             assert answer.verdict is not None
-            self._done.append(Graded(work.entry, answer.verdict, answer.version))
+            self._done.append(Graded(work.entry, answer.verdict, answer.version, answer.asked))
         self._feed(grader.number)
 
     def _start_again(self, grader: _Grader, work: _Work | None) -> None:
@@ -315,14 +329,4 @@ def killed_its_grader() -> Problem:
 
 def without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:
     """The verdict on an entry that no grader has to judge."""
-    return Verdict(
-        exercise=entry.exercise.id,
-        scope="full",
-        state=state,
-        score=0.0,
-        max_score=entry.exercise.max_points,
-        passed=False,
-        checks=(),
-        isolation="",
-        error=problem,
-    )
+    return not_graded(entry.exercise.id, entry.exercise.max_points, state, problem)

@@ -1,7 +1,8 @@
 """One grader process: reads jobs from standard input, writes verdicts to standard output.
 
 It is trusted, and only ever talks to the coordinator that started it. Frames are a 4-byte little-endian
-length and msgpack. Each exercise's checks are collected at its first job and kept for the next.
+length and msgpack. Each exercise's checks are collected at its first job and kept for the next. An exercise
+whose checks cannot be collected has no verdicts but "grader_error"; the others are graded.
 """
 
 from __future__ import annotations
@@ -12,16 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from course.errors import CourseError, MissingCapabilityError
-from course.grading.pipes import read_frame, write_frame
+from course.errors import ContentError, CourseError, MissingCapabilityError
+from course.grading.pipes import read_frame, served, write_frame
 from course.handed_in.notebook import opened
 from course.isolation.keeping import kept_sandboxes
 from course.isolation.launch import keep_private
 from course.scoring.judging.submission import Submission
 from course.scoring.judging.terms import Terms
-from course.scoring.verdict import Problem, Verdict
+from course.scoring.verdict import Problem, Verdict, not_graded
 
 if TYPE_CHECKING:
+    from course.catalog.models import Exercise
     from course.scoring.judging.session import GradingSession
 
 __all__ = ["Answer", "Config", "Job", "main"]
@@ -47,6 +49,7 @@ class Job(msgspec.Struct, frozen=True):
     Attributes:
         version: the ``grader_version`` that must grade it; empty takes the one here.
         only: checks to run, with those they require; empty runs all.
+        asks: which functions each check used is to be told, too.
         number: drawn at random for each job, so that only the grader knows it.
     """
 
@@ -54,6 +57,7 @@ class Job(msgspec.Struct, frozen=True):
     files: dict[str, bytes]
     version: str = ""
     only: tuple[str, ...] = ()
+    asks: bool = False
     number: int = msgspec.field(default_factory=lambda: secrets.randbits(63))
 
 
@@ -64,6 +68,7 @@ class Answer(msgspec.Struct, frozen=True):
         number: of the job it answers.
         sha256: digest of the graded content, computed by the grader itself.
         version: of the graders that judged, computed by the grader itself.
+        asked: by check, the functions of the submission that it used, if the job asks for that.
     """
 
     verdict: Verdict | None = None
@@ -72,6 +77,7 @@ class Answer(msgspec.Struct, frozen=True):
     number: int = 0
     sha256: str = ""
     version: str = ""
+    asked: dict[str, tuple[str, ...]] = {}
 
     def is_about(self, job: Job) -> bool:
         """Whether it answers this job and no other, and comes from the right graders."""
@@ -93,10 +99,10 @@ def main() -> None:
     write_frame(sink, Answer())  # started: from here on a death is some submission's doing
     try:
         with kept_sandboxes():
-            while (frame := read_frame(source)) is not None:
+            for frame in served(source):
                 write_frame(sink, grader.answer(msgspec.msgpack.decode(frame, type=Job)))
     except (KeyboardInterrupt, BrokenPipeError):
-        pass  # the coordinator reports the interruption
+        pass  # the coordinator is gone, or reports the interruption
     finally:
         grader.close()
 
@@ -109,17 +115,27 @@ class _Grader:
         self._catalog = Catalog()
         self._sessions: dict[str, GradingSession] = {}
         self._versions: dict[str, str] = {}
+        self._broken: dict[str, ContentError] = {}
 
     def answer(self, job: Job) -> Answer:
         about: dict[str, Any] = {"number": job.number, "sha256": Submission(job.files).sha256}
         try:
             version = self._checked_version(job)
-            submission = opened(job.files, self._catalog.exercise(job.exercise))
-            verdict = self._session(job.exercise).grade(submission, only=job.only)
+            exercise = self._catalog.exercise(job.exercise)
+            submission = opened(job.files, exercise)
+            try:
+                session = self._session(exercise)
+            except ContentError as fault:
+                verdict = not_graded(exercise.id, exercise.max_points, "grader_error", self._fault(fault))
+                return Answer(verdict=verdict, version=version, **about)
+            verdict = session.grade(submission, only=job.only)
             if verdict.error is not None and verdict.error.code == "isolation_failed":
                 # Its zygote may have been killed: a new sandbox, once, before it is called our fault.
                 self._sessions.pop(job.exercise).close()
-                verdict = self._session(job.exercise).grade(submission, only=job.only)
+                session = self._session(exercise)
+                verdict = session.grade(submission, only=job.only)
+            if job.asks:
+                about["asked"] = {check: tuple(sorted(used)) for check, used in session.asked.items()}
             return Answer(verdict=verdict, version=version, **about)
         except CourseError as error:
             problem = Problem(error.code, error.message, error.help)
@@ -131,7 +147,7 @@ class _Grader:
         Raises:
             MissingCapabilityError: it is not, and scores would not be comparable.
         """
-        from course.scoring.version import grader_version
+        from course.scoring.graders import grader_version
 
         if job.exercise not in self._versions:
             known = job.exercise in (*self._catalog.exercise_ids(), *self._catalog.warm_up_ids())
@@ -147,20 +163,38 @@ class _Grader:
             )
         return mine
 
-    def _session(self, exercise: str) -> GradingSession:
+    def _session(self, exercise: Exercise) -> GradingSession:
+        """The session of an exercise.
+
+        Raises:
+            ContentError: its checks cannot be run; that is found out once.
+            CourseError: this process cannot grade at all.
+        """
         from course.scoring.judging.session import GradingSession
 
-        if exercise not in self._sessions:
+        if exercise.id in self._broken:
+            raise self._broken[exercise.id]
+        if exercise.id not in self._sessions:
             if len(self._sessions) == _MOST_OPEN:
                 self._sessions.pop(next(iter(self._sessions))).close()
-            self._sessions[exercise] = GradingSession(
-                self._catalog.exercise(exercise),
-                self._catalog,
-                scope="full",
-                terms=self._config.terms,
-                processor=self._config.processor,
-            )
-        return self._sessions[exercise]
+            try:
+                self._sessions[exercise.id] = GradingSession(
+                    exercise,
+                    self._catalog,
+                    scope="full",
+                    terms=self._config.terms,
+                    processor=self._config.processor,
+                )
+            except ContentError as fault:
+                self._broken[exercise.id] = fault
+                raise
+        return self._sessions[exercise.id]
+
+    def _fault(self, fault: ContentError) -> Problem:
+        """What is wrong with a file of an exercise, which has another name here than at its author's."""
+        file = self._catalog.content.shown(fault.file)
+        where = f"{file}:{fault.line}" if fault.line else file
+        return Problem("check_file", f"{where}: {fault.problem}", fault.help)
 
     def close(self) -> None:
         for session in self._sessions.values():

@@ -34,8 +34,8 @@ from course.grading.running.snapshot import Snapshot, among_graders, frozen, kep
 from course.grading.running.summary import Summary
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
+from course.scoring.graders import grader_version
 from course.scoring.judging.terms import Terms
-from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

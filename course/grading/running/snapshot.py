@@ -1,8 +1,8 @@
 """The graders of a run, frozen: a copy made when the run began does the judging, whatever is edited since.
 
-A snapshot holds everything that a grader process reads and imports: the exercises with their checks, hidden
-checks and solutions, the quiz, and the part of this package that grades. It is one zip, known by a digest of
-its names and contents, and is kept in the gradebook, so that any result can be reproduced later.
+A snapshot holds everything that a grader process reads and imports: what ``course.scoring.graders`` lists. It
+is one zip, known by a digest of its names and contents, and is kept in the gradebook, so that any result can
+be reproduced later.
 
 A grader process starts with the unpacked snapshot first on its path, so it and its successors run the frozen
 code; with every verdict it sends the version that it computes of itself. A newer coordinator may run an old
@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import io
+import json
 import os
 import zipfile
 from dataclasses import dataclass, field
@@ -22,31 +23,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog.load import Catalog
-from course.catalog.locate import Content, chosen
+from course.catalog.locate import NAMES, PLACES, Content, chosen
 from course.errors import IntegrityError
 from course.isolation.launch import private_folder, remove_tree
-from course.scoring.version import grader_version
+from course.scoring.graders import grader_files, grader_version
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from course.grading.gradebook.book import Gradebook
 
 __all__ = ["Snapshot", "Unpacked", "among_graders", "frozen", "in_use", "kept"]
 
 _PACKAGE = Path(__file__).resolve().parents[2]
-#: The parts of this package that a grader process imports, and those that checks may import.
-_CODE = (
-    "catalog", "engines", "figures", "handed_in", "isolation", "physics", "progress", "scoring",
-    "simulations",
-)  # fmt: skip
-_FILES = (
-    "grading/__init__.py", "grading/kit.py", "grading/pipes.py",
-    "grading/running/__init__.py", "grading/running/grader.py",
-)  # fmt: skip
-#: Wrong and unusual solutions take no part in grading, nor do files that only people read.
-_LEFT_OUT = {"__pycache__", "accepted", "mutants"}
-_PROSE = {".md", ".pyc"}
 _MAX_UNPACKED = 200 << 20
 #: A compiled file is used only if it is so many seconds younger than its source: one that was compiled in the
 #: second of an edit may be of the text before.
@@ -66,12 +55,17 @@ class Snapshot:
     packed: bytes = field(repr=False)
 
     @classmethod
-    def take(cls, content: Content) -> Snapshot:
-        """The graders as they are now."""
+    def take(cls, content: Content, exercises: Collection[str] | None = None) -> Snapshot:
+        """The graders as they are now.
+
+        Args:
+            exercises: ids, where no others and no quiz are to be graded; None for all.
+        """
         digest, buffer = hashlib.sha256(), io.BytesIO()
         with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
-            for name, path in sorted(_files(content)):
-                body = path.read_bytes()
+            files = {name: path.read_bytes() for name, path in grader_files(content, exercises)}
+            files[f"content/{NAMES}"] = _names(content)
+            for name, body in sorted(files.items()):
                 digest.update(f"{len(name)}:{name}:{len(body)}:".encode() + body)
                 archive.writestr(zipfile.ZipInfo(name), body, zipfile.ZIP_DEFLATED)
         return cls(digest.hexdigest(), buffer.getvalue())
@@ -103,28 +97,14 @@ def kept(book: Gradebook, sha256: str | None) -> Snapshot | None:
 
 def among_graders(folder: Path, content: Content) -> bool:
     """Whether a folder goes into snapshots, or lies in one that does."""
-    return any(folder.resolve().is_relative_to(one.resolve()) for one in _folders(content).values())
+    folders = [content.quiz, *(content.place(name) for name in PLACES)]
+    return any(one and folder.resolve().is_relative_to(one.resolve()) for one in folders)
 
 
-def _folders(content: Content) -> dict[str, Path]:
-    """The content's folders, by their names in a snapshot."""
-    found = {"exercises": content.exercises, "quiz": content.quiz}
-    found |= {"solutions": content.solutions} if content.solutions is not None else {}
-    return found | ({"graders": content.graders} if content.graders is not None else {})
-
-
-def _files(content: Content) -> Iterator[tuple[str, Path]]:
-    """The files of a snapshot: each name there, and the path."""
-    folders = {f"course/{name}": _PACKAGE / name for name in _CODE}
-    folders |= {f"content/{name}": folder for name, folder in _folders(content).items()}
-    for name, folder in folders.items():
-        for path in folder.rglob("*"):
-            inner = path.relative_to(folder)
-            if path.is_file() and path.suffix not in _PROSE and not _LEFT_OUT.intersection(inner.parts):
-                yield f"{name}/{inner.as_posix()}", path
-    yield "content/lessons/syllabus.toml", content.syllabus
-    yield from ((f"course/{it.name}", it) for it in _PACKAGE.glob("*.py") if it.name != "__main__.py")
-    yield from ((f"course/{name}", _PACKAGE / name) for name in _FILES)
+def _names(content: Content) -> bytes:
+    """How the content's folders are called where they are, for messages about a file."""
+    folders = {name: content.place(name) for name in PLACES}
+    return json.dumps({name: content.shown(folder) for name, folder in folders.items() if folder}).encode()
 
 
 def _members(packed: bytes) -> Iterator[tuple[str, bytes]]:

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 from course.errors import ContentError
+from course.scoring.checks.companions import not_importable
 from course.scoring.checks.plugin import CheckPlugin
 
 if TYPE_CHECKING:
@@ -157,12 +158,12 @@ def _collect(paths: list[Path], plugin: CheckPlugin) -> tuple[pytest.Session, li
             items = session.perform_collect()
         except pytest.UsageError as error:
             raise ContentError(paths[0], None, str(error), help="Restore the file.") from None
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a file does that is imported
+            plugin.refused = error
         finally:
             MARK_GEN._config = around
-    if plugin.collect_errors:
-        last = plugin.collect_errors[0].strip().splitlines()[-1].removeprefix("E").strip()
-        problem = f"a check file cannot be imported: {last}"
-        raise ContentError(paths[0], None, problem, help="Repair the file.")
+    if plugin.refused is not None:
+        raise not_importable(plugin.refused, paths[0])
     if not items:
         raise ContentError(paths[0], None, "there is no check in it", help="Name its functions test_...")
     found = [item for item in items if isinstance(item, pytest.Item)]

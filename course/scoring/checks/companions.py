@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import os
 import sys
+import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
 
-from course.catalog.locate import content
+from course.catalog.locate import PLACES, content
+from course.errors import ContentError
+from course.printable import one_line
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import read_table
 from course.scoring.explain.words import FILE as WORDS
@@ -19,7 +24,7 @@ from course.scoring.explain.words import Words, read_words
 if TYPE_CHECKING:
     from types import ModuleType
 
-__all__ = ["companion", "companion_path", "known_answers", "reference", "sibling", "words"]
+__all__ = ["companion", "companion_path", "known_answers", "not_importable", "reference", "sibling", "words"]
 
 
 def companion(exercise_id: str, module: str) -> ModuleType:
@@ -80,6 +85,33 @@ def sibling(file: str, module: str) -> ModuleType:
     """
     path = Path(file).resolve()
     return _load(path.with_name(f"{module}.py"), f"{path.parent.name}_{module}")
+
+
+def not_importable(error: BaseException, file: Path) -> ContentError:
+    """The fault of a course's file that raises while a check file is imported.
+
+    Args:
+        file: the one to name where the error itself names none of the course's.
+    """
+    while isinstance(error, pytest.Collector.CollectError) and error.__cause__ is not None:
+        error = error.__cause__
+    here, line = content(), None
+    if isinstance(error, SyntaxError) and error.filename:
+        file, line = Path(error.filename), error.lineno
+    else:
+        for frame in traceback.extract_tb(error.__traceback__):  # the innermost of the course's own
+            path = Path(frame.filename)
+            if any(place and path.is_relative_to(place) for place in map(here.place, PLACES)):
+                file, line = path, frame.lineno
+    said = one_line(str(error).partition("\n")[0], 200)
+    if isinstance(error, FileNotFoundError) and (missing := error.filename or _first_path(error)):
+        said = f"{here.shown(Path(os.fsdecode(missing)))} is not there"
+    problem = f"it cannot be imported ({type(error).__name__}: {said})." if said else "it cannot be imported."
+    return ContentError(file, line, problem, help="Correct that line, or what it needs.")
+
+
+def _first_path(error: FileNotFoundError) -> Path | None:
+    return next((one for one in error.args if isinstance(one, Path)), None)
 
 
 @functools.cache

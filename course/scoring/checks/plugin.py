@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from course.scoring.remote import RemoteSubmission
 
 __all__ = ["MARKERS", "CheckPlugin"]
@@ -36,15 +38,19 @@ class CheckPlugin:
         self.submission: RemoteSubmission | None = None
         self.outcome: BaseException | None = None
         self.called = False
-        self.collect_errors: list[str] = []
+        self.refused: BaseException | None = None  # why a file could not be collected
 
     def pytest_configure(self, config: pytest.Config) -> None:
         for marker in MARKERS:
             config.addinivalue_line("markers", marker)
 
-    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
-        if report.failed:
-            self.collect_errors.append(report.longreprtext)
+    @pytest.hookimpl(wrapper=True)
+    def pytest_make_collect_report(self) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+        report = yield
+        call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
+        if report.failed and call is not None and call.excinfo is not None and self.refused is None:
+            self.refused = call.excinfo.value
+        return report
 
     @pytest.fixture(name="submission")
     def _submission(self) -> Any:

@@ -23,7 +23,7 @@ from course.isolation.launch import keep_private
 from course.isolation.session import LoadRefusedError
 from course.isolation.spawn import Level
 from course.scoring.checks.collected import Check, CollectedChecks
-from course.scoring.checks.companions import companion, companion_path
+from course.scoring.checks.companions import companion, companion_path, not_importable
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.judging.explaining import Explainer
 from course.scoring.judging.outcomes import found, load_problem, no_functions, result, skipped, unjudged
@@ -355,6 +355,9 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
         hidden = graders / catalog.content.place_of(exercise.id) / "checks.py"
         if hidden.is_file():
             files.append((hidden, Visibility.HIDDEN))
+        elif exercise.hidden_checks:
+            problem = f"it is missing, and {exercise.id} has {exercise.hidden_checks} hidden checks."
+            raise ContentError(hidden, None, problem, help="Restore the file.")
     return files
 
 
@@ -369,7 +372,10 @@ def _explainer(exercise: Exercise) -> Explainer | None:
     questions = companion_path(exercise.id, "questions")
     if not questions.is_file():
         raise ContentError(questions, None, "it is missing, and diagnoses.toml is there.", help="Write it.")
-    return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))
+    try:
+        return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))
+    except Exception as error:  # noqa: BLE001 - whatever a file does that is imported
+        raise not_importable(error, questions) from None
 
 
 def _open(imports: tuple[str, ...], terms: Terms, processor: int | None) -> tuple[Spawner, int | None]:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from unittest.mock import Mock
 
 import msgspec
 import pytest
 
-from course.authoring.exercises import grading
 from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path
 from course.catalog.load import Catalog
+from course.grading.running.batch import Graded, Graders
 from course.scoring.judging.session import GradingSession, Submission
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
+    from course.grading.intake.students import Entry
     from course.scoring.verdict import Verdict
 
 #: What may come after a model solution, and the checks of "doubling" that see it.
@@ -38,12 +39,8 @@ def plain(verdict: Verdict) -> Verdict:
     return msgspec.structs.replace(verdict, checks=checks)
 
 
-@pytest.mark.parametrize("worth_a_grader", [5, 100], ids=["processes", "here"])
-def test_every_source_gets_the_verdict_of_all_checks(
-    mini: Path, monkeypatch: pytest.MonkeyPatch, worth_a_grader: int
-) -> None:
-    monkeypatch.setattr(grading, "_WORTH_A_GRADER", worth_a_grader)
-    monkeypatch.setattr(grading, "grade_all", used := Mock(wraps=grading.grade_all))
+@pytest.mark.parametrize("graders", [1, 2])
+def test_every_source_gets_the_verdict_of_all_checks(mini: Path, graders: int) -> None:
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise)
@@ -51,8 +48,7 @@ def test_every_source_gets_the_verdict_of_all_checks(
     sources += [compose(model, path) for path in mutant_files(catalog, exercise)]
     sources += [f"{model.read_text('utf-8').rstrip()}\n\n\n{after}".encode() for after in AFTER.values()]
     sources += [exercise.stub_path.read_bytes(), b"def double(x):\n    return 2 * x\n", b"(", b""]
-    found = dict(grade_sources([(exercise, source) for source in sources]))
-    assert used.called == (worth_a_grader == 5)
+    found = dict(grade_sources([(exercise, source) for source in sources], graders=graders))
     with GradingSession(exercise, catalog, scope="full") as session:
         for index, source in enumerate(sources):
             whole = session.grade(Submission({exercise.module: source}))
@@ -63,13 +59,17 @@ def test_every_source_gets_the_verdict_of_all_checks(
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
     """The checks that each grading is to run; none stands for all."""
     seen: list[tuple[str, ...]] = []
-    grade = GradingSession.grade
+    grade = Graders.grade
 
-    def watched(session, submission, *, only=()):
-        seen.append(tuple(only))
-        return grade(session, submission, only=only)
+    def watched(self: Graders, entries: Iterable[Entry]) -> Iterator[Graded]:
+        def noted() -> Iterator[Entry]:
+            for entry in entries:
+                seen.append(entry.only)
+                yield entry
 
-    monkeypatch.setattr(GradingSession, "grade", watched)
+        return grade(self, noted())
+
+    monkeypatch.setattr(Graders, "grade", watched)
     return seen
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course.catalog.load import Catalog
+from course.catalog.locate import chosen
 from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.terms import Terms
@@ -20,18 +21,22 @@ if TYPE_CHECKING:
 MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 
 
-@pytest.fixture(scope="module")
-def catalog() -> Iterator[Catalog]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("COURSE_CONTENT", str(MINI))
-        yield Catalog()
+@pytest.fixture(autouse=True)
+def _chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What looks for the course of this process finds the miniature one, for as long as a test lasts."""
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
 
 
 @pytest.fixture(scope="module")
-def unpacked(catalog: Catalog) -> Iterator[None]:
-    """The graders as a run unpacks them, once for all runs of a file; edited ones are others."""
-    with frozen(Snapshot.take(catalog.content)):
-        yield
+def catalog() -> Catalog:
+    return Catalog(chosen(MINI))
+
+
+@pytest.fixture(scope="module")
+def unpacked(catalog: Catalog) -> Iterator[str]:
+    """Digest of the graders, unpacked as a run does it, once for a file of tests; edited ones are others."""
+    with frozen(Snapshot.take(catalog.content)) as graders:
+        yield graders.snapshot.sha256
 
 
 @pytest.fixture(scope="module")
@@ -47,5 +52,8 @@ def solution() -> bytes:
 @pytest.fixture(scope="module")
 def session(catalog: Catalog, doubling: Exercise) -> Iterator[GradingSession]:
     # A right solution takes milliseconds; what never answers is waited for, by each check of its task.
-    with GradingSession(doubling, catalog, scope="full", terms=Terms(timeout=0.3)) as opened:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COURSE_CONTENT", str(MINI))
+        opened = GradingSession(doubling, catalog, scope="full", terms=Terms(timeout=0.3))
+    with opened:
         yield opened

@@ -12,11 +12,11 @@ import pytest
 
 from course.errors import ContentError, MissingCapabilityError
 from course.grading import kit
+from course.scoring.graders import grader_version
 from course.scoring.judging.session import GradingSession, Submission
 from course.scoring.judging.terms import Terms
 from course.scoring.values import plain
 from course.scoring.verdict import Status, finite, for_student
-from course.scoring.version import grader_version
 
 if TYPE_CHECKING:
     from pathlib import Path

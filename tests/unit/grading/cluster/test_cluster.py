@@ -17,6 +17,7 @@ import msgspec
 import pytest
 
 from course.catalog.load import Catalog
+from course.catalog.locate import content
 from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.cluster import connect, coordinator, worker
@@ -26,10 +27,10 @@ from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
 from course.grading.running.grader import Answer, Job
 from course.grading.running.snapshot import Snapshot, in_use
+from course.scoring.graders import grader_version
 from course.scoring.judging.session import Submission
 from course.scoring.judging.terms import Terms
 from course.scoring.verdict import Problem, Verdict
-from course.scoring.version import grader_version
 from tests.unit.grading.made import stillborn
 
 if TYPE_CHECKING:
@@ -370,13 +371,14 @@ def at_work(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Answers]]
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
 
     def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
-        reply = decode_answers(
-            worker.grade_batch(encode(Batch(FORMAT, Terms(level, "L1", 5.0), tuple(jobs))))
-        )
+        snapshot = Snapshot.take(content())
+        terms = Terms(level, "L1", 5.0, graders=snapshot.sha256)
+        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, terms, tuple(jobs), snapshot.packed))))
         assert reply is not None
         return reply
 
     yield answers
+    worker._forget()
     for grader in list(worker._idle):
         grader.stay()
         grader.close()
@@ -539,7 +541,7 @@ def test_without_dask_the_command_that_installs_it_is_said(
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     with pytest.raises(MissingCapabilityError, match="distributed and cryptography") as raised:
-        connect.local_cluster(2, catalog)
+        connect.local_cluster(2)
     assert "pip install 'distributed>=" in raised.value.help
 
 
@@ -547,7 +549,7 @@ def test_a_cluster_of_others_does_not_run_unprotected_submissions(
     catalog: Catalog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(connect, "require", lambda part: None)
-    cluster = connect.remote_cluster("tls://nowhere.invalid:1", catalog)
+    cluster = connect.remote_cluster("tls://nowhere.invalid:1")
     with cluster, pytest.raises(UsageError, match="whole cluster"):
         next(cluster(iter(()), Terms(at_least="L1")))
 
@@ -572,7 +574,7 @@ def test_ways_of_grading_exclude_each_other(
 def test_a_scheduler_that_is_not_there_is_said(catalog: Catalog, tmp_path: Path) -> None:
     pytest.importorskip("distributed", reason="needs the extra `cluster`")
     pytest.importorskip("cryptography", reason="needs the extra `cluster`")
-    cluster = connect.remote_cluster(str(tmp_path / "scheduler.json"), catalog)
+    cluster = connect.remote_cluster(str(tmp_path / "scheduler.json"))
     with cluster, pytest.raises(MissingCapabilityError, match="No Dask scheduler answers") as raised:
         next(cluster(iter(()), Terms(at_least="L2")))
     assert raised.value.code == "no_scheduler"

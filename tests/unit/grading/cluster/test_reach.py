@@ -211,7 +211,7 @@ def test_a_scheduler_that_cannot_be_reached_leaves_no_folder(tmp_path: Path, cat
     (tmp_path / "class" / "ada" / "doubling.py").write_text("def double(x): return 2 * x\n")
     options = RunOptions(exercises=("doubling",), seed=1)
     with (
-        remote_cluster(f"tcp://127.0.0.1:{port}", catalog) as grade,
+        remote_cluster(f"tcp://127.0.0.1:{port}") as grade,
         pytest.raises(MissingCapabilityError, match="No Dask scheduler answers"),
     ):
         grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=grade)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import re
@@ -11,22 +10,27 @@ import subprocess
 import sys
 import tomllib
 import zipfile
-from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from packaging.requirements import Requirement
 
 from course.catalog.load import Catalog
+from course.catalog.locate import content
 from course.errors import MissingCapabilityError
-from course.grading.exports.autograder import write_autograder
-from course.grading.exports.container import grade, main
-from course.scoring.judging.session import GradingSession
+from course.grading.container import inside
+from course.grading.container.inside import SNAPSHOT, main
+from course.grading.container.packing import write_autograder
+from course.grading.running.snapshot import Snapshot
 from tests.unit.grading.conftest import MINI
+from tests.unit.grading.running.test_run import right
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from course.grading.intake.students import Entry
+    from course.grading.running.batch import Graded
     from course.scoring.judging.terms import Terms
 
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
@@ -34,15 +38,6 @@ WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 HIDDEN = ("17.25", "34.5")
 #: What ``setup.sh`` installs.
 INSTALLED = ("msgspec", "numpy", "pymunk", "pytest")
-#: Denies what an image that has run ``setup.sh`` lacks, though it is installed here.
-DENY = """
-import sys
-class Absent:
-    def find_spec(self, name, *_):
-        if name.partition(".")[0] in ABSENT:
-            raise ModuleNotFoundError(f"No module named {name!r} in the container", name=name)
-sys.meta_path.insert(0, Absent())
-"""
 
 
 @pytest.fixture(scope="module")
@@ -65,13 +60,13 @@ def test_the_zip_has_what_gradescope_runs_and_only_what_grading_needs(
         modes = {info.filename: info.external_attr >> 16 for info in packed.infolist()}
     assert all(modes[name] & stat.S_IXUSR for name in ("setup.sh", "run_autograder"))
     names = set(modes)
-    assert {
-        "content/graders/doubling/checks.py",
-        "content/exercises/halving/checks.py",
-        "config.json",
-    } <= names
-    assert "content/solutions/doubling/doubling.py" in names
-    assert not [name for name in names if "mutants" in name or name.startswith(("course/cli", "tests"))]
+    assert {"graders.zip", "config.json", "course/grading/container/inside.py"} <= names
+    assert not [name for name in names if not name.startswith("course/") and "/" in name]
+    with zipfile.ZipFile(unpacked / "source" / "graders.zip") as graders:
+        inside = set(graders.namelist())
+    assert {"content/graders/doubling/checks.py", "content/exercises/halving/checks.py"} <= inside
+    assert "content/solutions/doubling/doubling.py" in inside
+    assert not [name for name in inside if "mutants/" in name or name.startswith(("course/cli", "tests"))]
     assert not [name for name in names if name.startswith("/") or ".." in name or "__pycache__" in name]
     again = tmp_path / "again.zip"
     write_autograder(again, catalog, catalog.exercises(), seed=5, timeout=5.0, asked=False)
@@ -102,8 +97,8 @@ def test_it_grades_from_the_unpacked_zip_alone(unpacked: Path, solution: bytes) 
     (submission / "doubling.py").write_bytes(solution + WRONG)
     source, results = unpacked / "source", unpacked / "results" / "results.json"
     environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH"}}
-    environment |= {"COURSE_CONTENT": str(source / "content"), "PYTHONPATH": str(source)}
-    command = [sys.executable, "-P", "-m", "course.grading.exports.container"]
+    environment |= {"PYTHONPATH": str(source)}
+    command = [sys.executable, "-P", "-m", "course.grading.container.inside"]
     done = subprocess.run(
         [*command, submission, results, source / "config.json"],
         env=environment, cwd="/", capture_output=True, text=True, check=False,
@@ -118,106 +113,54 @@ def test_it_grades_from_the_unpacked_zip_alone(unpacked: Path, solution: bytes) 
     assert not [value for value in HIDDEN if value in results.read_text("utf-8")]
 
 
-def test_the_model_solution_of_every_exercise_has_full_marks_in_the_container(tmp_path: Path) -> None:
-    """With the files of the zip and the packages of ``setup.sh``, and nothing else of this machine."""
-    catalog = Catalog()
-    path = tmp_path / "autograder.zip"
-    write_autograder(path, catalog, catalog.exercises(), seed=7, timeout=10.0, asked=True)
-    source, results = tmp_path / "source", tmp_path / "results.json"
-    with zipfile.ZipFile(path) as packed:
-        packed.extractall(source)
-    assert catalog.content.solutions is not None
-    for exercise in catalog.exercises():
-        (tmp_path / "submission" / exercise.id).mkdir(parents=True)
-        model = (catalog.content.solutions / exercise.id / exercise.module).read_bytes()
-        (tmp_path / "submission" / exercise.id / exercise.module).write_bytes(model)
-    (tmp_path / "deny").mkdir()
-    (tmp_path / "deny" / "sitecustomize.py").write_text(f"ABSENT = {absent()!r}\n{DENY}", "utf-8")
-    environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH"}}
-    environment |= {"COURSE_CONTENT": str(source / "content"), "PYTHONPATH": f"{source}:{tmp_path / 'deny'}"}
-    done = subprocess.run(
-        [sys.executable, "-P", "-m", "course.grading.exports.container",
-         tmp_path / "submission", results, source / "config.json"],
-        env=environment, cwd="/", capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    body: dict[str, Any] = json.loads(results.read_bytes())
-    lost = [(test["number"], test["output"]) for test in body["tests"] if test["status"] != "passed"]
-    assert lost == []
-    assert body["score"] == sum(exercise.max_points for exercise in catalog.exercises())
-
-
-def absent() -> set[str]:
-    """Top-level modules of what is installed here and not by ``setup.sh``."""
-    wanted, present = list(INSTALLED), set()
-    while wanted:
-        name = wanted.pop().lower().replace("_", "-")
-        if name not in present:
-            present.add(name)
-            with contextlib.suppress(metadata.PackageNotFoundError):
-                needs = [Requirement(text) for text in metadata.requires(name) or ()]
-                wanted += [need.name for need in needs if need.marker is None or need.marker.evaluate()]
-    modules = metadata.packages_distributions()
-    kept = {*present, "course", "course-physics-sim"}
-    return {
-        module
-        for module, owners in modules.items()
-        if module != "course" and not {owner.lower().replace("_", "-") for owner in owners} & kept
-    }
-
-
 def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(
     tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The total is shown at once; a comparison with a drawn number would tell one bit of it each time."""
-    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
     (tmp_path / "submission").mkdir()
     seeds: list[int] = []
-    plain = GradingSession.__init__
 
-    def noted(self: GradingSession, *args: Any, terms: Terms, **more: Any) -> None:
+    def noted(entries: list[Entry], terms: Terms) -> Iterator[Graded]:
         seeds.append(terms.seed)
-        plain(self, *args, terms=terms, **more)
+        return right(entries, terms)
 
-    monkeypatch.setattr(GradingSession, "__init__", noted)
-    facts = json.loads(config(tmp_path).read_text())
+    monkeypatch.setattr(inside, "grade_all", noted)
     for what in (b"", b"# below 0.5?\n", b""):
         (tmp_path / "submission" / "doubling.py").write_bytes(solution + what)
-        assert grade(tmp_path / "submission", facts)["score"] == 10
+        assert graded(tmp_path)["score"] == 10
     assert seeds[0] == seeds[2] != seeds[1]
     assert all(0 <= seed < 2**63 for seed in seeds)
 
 
-def config(tmp_path: Path, **changes: object) -> Path:
-    path = tmp_path / "config.json"
+def graded(tmp_path: Path, **changes: object) -> dict[str, Any]:
+    """The body of the results for the submission there, whose exit code is always 0."""
+    snapshot = Snapshot.take(content())
+    (tmp_path / SNAPSHOT).write_bytes(snapshot.packed)
     facts = {"exercises": ["doubling"], "required": True, "seed": 1, "timeout": 5.0, "at_least": "L1"}
-    path.write_text(json.dumps(facts | changes), "utf-8")
-    return path
+    path, results = tmp_path / "config.json", tmp_path / "results.json"
+    path.write_text(json.dumps(facts | {"graders": snapshot.sha256} | changes), "utf-8")
+    assert main([str(tmp_path / "submission"), str(results), str(path)]) == 0
+    found: dict[str, Any] = json.loads(results.read_bytes())
+    return found
 
 
-def test_what_cannot_be_graded_is_explained_to_the_student(
-    tmp_path: Path, catalog: Catalog, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+def test_what_cannot_be_graded_is_explained_to_the_student(tmp_path: Path) -> None:
     (tmp_path / "submission").mkdir()
-    body = grade(tmp_path / "submission", json.loads(config(tmp_path).read_text()))
+    body = graded(tmp_path)
     assert body["score"] == 0
     assert "There is no doubling.py" in body["tests"][0]["output"]
-    body = grade(tmp_path / "submission", json.loads(config(tmp_path, required=False).read_text()))
+    body = graded(tmp_path, required=False)
     assert (body["score"], body["tests"]) == (0, [])
     assert "doubling/doubling.py" in body["output"]
 
 
-@pytest.mark.parametrize("changes", [{"exercises": ["none"]}, {"at_least": "L9"}])
+@pytest.mark.parametrize("changes", [{"exercises": ["none"]}, {"at_least": "L9"}, {"graders": "0" * 64}])
 def test_a_fault_of_ours_gives_no_score_and_always_a_results_file(
-    tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch, changes: dict[str, object]
+    tmp_path: Path, solution: bytes, changes: dict[str, object]
 ) -> None:
-    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
     (tmp_path / "submission").mkdir()
     (tmp_path / "submission" / "doubling.py").write_bytes(solution)
-    results = tmp_path / "results.json"
-    assert main([str(tmp_path / "submission"), str(results), str(config(tmp_path, **changes))]) == 0
-    body = json.loads(results.read_bytes())
+    body = graded(tmp_path, **changes)
     assert "score" not in body
     assert "tests" not in body
     assert "not of yours" in body["output"]

@@ -17,7 +17,7 @@ from course.grading.results.effective import Results
 from course.grading.results.override import override
 from course.grading.running.batch import Graded
 from course.grading.running.rerun import RerunOptions, rerun
-from course.scoring.version import grader_version
+from course.scoring.graders import grader_version
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 

@@ -137,13 +137,13 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
 
 
 def test_a_grader_that_dies_costs_no_other_submission(
-    tmp_path: Path, catalog: Catalog, doubling: Exercise, solution: bytes
+    tmp_path: Path, unpacked: str, doubling: Exercise, solution: bytes
 ) -> None:
     """The grader is killed from outside as soon as the first result is out; its work is done again."""
     make_class(tmp_path / "class", solution, 8)
     entries = read_class(tmp_path / "class", [doubling], required=True)
     found = {}
-    for number, graded in enumerate(grade_all(entries, Terms(at_least="L1"))):
+    for number, graded in enumerate(grade_all(entries, Terms(at_least="L1", graders=unpacked))):
         found[graded.entry.student] = graded.verdict
         if number == 2:
             for pid in _children(os.getpid()):
@@ -154,12 +154,13 @@ def test_a_grader_that_dies_costs_no_other_submission(
 
 @pytest.mark.parametrize("deaths", [MAX_TRIES - 1, MAX_TRIES])
 def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, doubling: Exercise, solution: bytes, deaths: int
-) -> None:
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes,
+    deaths: int,
+) -> None:  # fmt: skip
     make_class(tmp_path / "class", solution, 2)
     monkeypatch.setattr(batch, "start_grader", stillborn(batch.start_grader, deaths))
     entries = read_class(tmp_path / "class", [doubling], required=True)
-    graded = grade_all(entries, Terms(at_least="L1"))
+    graded = grade_all(entries, Terms(at_least="L1", graders=unpacked))
     if deaths < MAX_TRIES:
         assert sorted((one.entry.student, one.verdict.state) for one in graded) == [
             ("student-000", "graded"), ("student-001", "graded"),
@@ -171,8 +172,9 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
 
 @pytest.mark.parametrize("forger", ["the verdict of another", "nonsense", "the number alone"])
 def test_a_verdict_is_taken_from_who_was_asked_for_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, doubling: Exercise, solution: bytes, forger: str
-) -> None:
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes,
+    forger: str,
+) -> None:  # fmt: skip
     """Whoever writes to the pipe of a grader, a frame too many must not move the next verdicts by one."""
     make_class(tmp_path / "class", solution, 3)
     read, forged = batch.read_frame, []
@@ -194,7 +196,9 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
 
     monkeypatch.setattr(batch, "read_frame", first_a_forgery)
     entries = read_class(tmp_path / "class", [doubling], required=True)
-    found = {one.entry.student: one.verdict for one in grade_all(entries, Terms(at_least="L1"))}
+    found = {
+        one.entry.student: one.verdict for one in grade_all(entries, Terms(at_least="L1", graders=unpacked))
+    }
     assert forged
     assert {verdict.state for verdict in found.values()} == {"graded"}
     assert len(found) == 3
@@ -202,13 +206,16 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
 
 
 def test_a_submission_that_stops_its_grader_holds_nobody_up(
-    tmp_path: Path, doubling: Exercise, solution: bytes
+    tmp_path: Path, unpacked: str, doubling: Exercise, solution: bytes
 ) -> None:
     make_class(tmp_path / "class", solution, 3)
     stop = b"\nimport os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
     (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + stop)
     entries = read_class(tmp_path / "class", [doubling], required=True)
-    found = {one.entry.student: one.verdict.state for one in grade_all(entries, Terms(level="L1"))}
+    found = {
+        one.entry.student: one.verdict.state
+        for one in grade_all(entries, Terms(level="L1", graders=unpacked))
+    }
     assert found == {"student-000": "graded", "student-001": "grader_error", "student-002": "graded"}
 
 

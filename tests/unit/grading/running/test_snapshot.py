@@ -21,8 +21,8 @@ from course.grading.running.grader import Config
 from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen, in_use
+from course.scoring.graders import grader_version
 from course.scoring.judging.terms import Terms
-from course.scoring.version import grader_version
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import make_class, right
 

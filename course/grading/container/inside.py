@@ -1,8 +1,9 @@
 """Inside Gradescope's container: grade the submission and write ``results.json``.
 
-Run as ``python -m course.grading.exports.container SUBMISSION RESULTS CONFIG``. It works at the best
-protection level the container allows and says which in the output that the instructor sees. A results file is
-always written: if the grader fails, it says so and gives no score, so that no student loses points for it.
+Run as ``python -m course.grading.container.inside SUBMISSION RESULTS CONFIG``. The snapshot that lies beside
+CONFIG grades, by the same grader process as in a run. It works at the best protection level the container
+allows and says which in the output that the instructor sees. A results file is always written: if the grader
+fails, it says so and gives no score, so that no student loses points for it.
 """
 
 from __future__ import annotations
@@ -12,9 +13,8 @@ import json
 import sys
 import traceback
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from course.catalog.load import Catalog
 from course.errors import CourseError
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.gradescope import results_body
@@ -22,20 +22,30 @@ from course.grading.gradebook.records import Key, Result
 from course.grading.intake.downloads import Place, Student
 from course.grading.intake.students import read_student
 from course.grading.results.effective import Effective
-from course.handed_in.notebook import opened
-from course.scoring.judging.session import GradingSession
+from course.grading.running.batch import grade_all, without_grading
+from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.judging.terms import Terms
-from course.scoring.verdict import Problem, Verdict
-from course.scoring.version import grader_version
+from course.scoring.verdict import Problem
 
-__all__ = ["grade", "main"]
+if TYPE_CHECKING:
+    from course.grading.intake.students import Entry
+    from course.grading.running.snapshot import Unpacked
+    from course.scoring.verdict import Verdict
+
+__all__ = ["SNAPSHOT", "grade", "main"]
+
+#: The graders, beside the configuration.
+SNAPSHOT = "graders.zip"
 
 
 def main(arguments: list[str]) -> int:
     """Grade one submission; the exit code is 0 unless no results file could be written."""
     submission, results, config = (Path(argument) for argument in arguments)
     try:
-        body = grade(submission, json.loads(config.read_text("utf-8")))
+        told = json.loads(config.read_text("utf-8"))
+        snapshot = Snapshot.of(config.with_name(SNAPSHOT).read_bytes(), told["graders"])
+        with frozen(snapshot) as graders:
+            body = grade(submission, told, graders)
     except Exception:  # noqa: BLE001 - the boundary: Gradescope shows nothing without a results file
         traceback.print_exc()
         body = _our_fault()
@@ -49,7 +59,7 @@ def _our_fault() -> dict[str, Any]:
     return {"output": words, "output_format": "text", "visibility": "visible", "stdout_visibility": "hidden"}
 
 
-def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
+def grade(folder: Path, config: dict[str, Any], graders: Unpacked) -> dict[str, Any]:
     """The body of ``results.json`` for the submission in a folder.
 
     Args:
@@ -59,8 +69,7 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
     hand in as often as they like: with the same inputs each time, files that differ in one comparison would
     read them out.
     """
-    catalog = Catalog()
-    exercises = [catalog.exercise(name) for name in config["exercises"]]
+    exercises = [graders.catalog.exercise(name) for name in config["exercises"]]
     student = Student("submission", Place(folder))
     found: list[Effective] = []
     for entry in read_student(student, exercises, required=bool(config["required"])):
@@ -68,20 +77,10 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
             continue
         drawn = hashlib.sha256(f"{config['seed']} {entry.sha256}".encode()).digest()
         seed = int.from_bytes(drawn[:8]) >> 1
-        terms = Terms(at_least=config["at_least"], timeout=config["timeout"], seed=seed)
-        if entry.submission is None:
-            assert entry.problem is not None
-            verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "ungradable", entry.problem)
-        else:
-            try:
-                with GradingSession(entry.exercise, catalog, scope="full", terms=terms) as session:
-                    verdict = session.grade(opened(entry.submission.files, entry.exercise))
-            except CourseError as error:
-                problem = Problem(error.code, error.message, error.help)
-                verdict = _not_graded(entry.exercise.id, entry.exercise.max_points, "grader_error", problem)
+        terms = Terms(None, config["at_least"], config["timeout"], seed, graders.snapshot.sha256)
+        verdict = _judged(entry, terms)
         _log(verdict)
-        version = grader_version(entry.exercise, catalog)
-        key = Key("submission", entry.exercise.id, entry.sha256, version, seed)
+        key = Key("submission", entry.exercise.id, entry.sha256, graders.version(entry.exercise.id), seed)
         score = None if verdict.state == "grader_error" else verdict.score
         found.append(Effective(Result(key, verdict), score, verdict.max_score, verdict.passed))
     if any(effective.score is None for effective in found):
@@ -95,17 +94,18 @@ def grade(folder: Path, config: dict[str, Any]) -> dict[str, Any]:
     return body
 
 
+def _judged(entry: Entry, terms: Terms) -> Verdict:
+    try:
+        (graded,) = grade_all([entry], terms)
+    except CourseError as error:
+        return without_grading(entry, "grader_error", Problem(error.code, error.message, error.help))
+    return graded.verdict
+
+
 def _log(verdict: Verdict) -> None:
     """A line that only the instructor sees."""
     level = verdict.isolation or "no level"
     print(f"{verdict.exercise}: {verdict.state} at {level}", verdict.error or "")  # noqa: T201
-
-
-def _not_graded(exercise: str, most: float, state: str, problem: Problem) -> Verdict:
-    return Verdict(
-        exercise=exercise, scope="full", state=state, score=0.0, max_score=most, passed=False, checks=(),
-        isolation="", error=problem,
-    )  # fmt: skip
 
 
 if __name__ == "__main__":

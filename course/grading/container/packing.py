@@ -13,8 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.extras import CONTAINER, requirement_of
+from course.grading.container.inside import SNAPSHOT
 from course.grading.exports.cells import write_bytes
 from course.grading.exports.selection import Written
+from course.grading.running.snapshot import Snapshot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -24,9 +26,10 @@ if TYPE_CHECKING:
 
 __all__ = ["write_autograder"]
 
+_PACKAGE = Path(__file__).resolve().parents[2]
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
-#: Parts of the package that grading does not use, and the content of a wheel.
-_LEFT_OUT = {"cli", "authoring", "notebooks", "sandbox", "content", "lessons", "__pycache__"}
+#: The content of a wheel, which the snapshot has.
+_CONTENT = {"content", "lessons", "__pycache__"}
 
 _SETUP = """#!/usr/bin/env bash
 # Runs once, as root, when Gradescope builds the image.
@@ -64,8 +67,7 @@ _RUN = """#!/usr/bin/env bash
 # Runs for every submission.
 set -uo pipefail
 cd /
-unset PYTHONPATH PYTHONSTARTUP
-export COURSE_CONTENT=/autograder/source/content
+unset PYTHONPATH PYTHONSTARTUP COURSE_CONTENT
 export PYTHONPATH=/autograder/source
 export PYTHONDONTWRITEBYTECODE=1
 exec /opt/grader/bin/python -P -m {module} \\
@@ -88,12 +90,15 @@ def write_autograder(
             cannot be written.
     """
     catalog.content.instructors()
+    ids = [exercise.id for exercise in exercises]
+    snapshot = Snapshot.take(catalog.content, ids)
     config = {
-        "exercises": [exercise.id for exercise in exercises],
+        "exercises": ids,
         "required": asked,
         "seed": seed,
         "timeout": timeout,
         "at_least": "L1",
+        "graders": snapshot.sha256,
     }
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as packed:
@@ -102,8 +107,9 @@ def write_autograder(
         _put(packed, "setup.sh", setup.encode(), executable=True)
         _put(packed, "run_autograder", _RUN.replace("{module}", CONTAINER.module).encode(), executable=True)
         _put(packed, "config.json", json.dumps(config, indent=1).encode())
-        for name, source in _files(catalog, exercises):
-            _put(packed, name, source.read_bytes())
+        _put(packed, SNAPSHOT, snapshot.packed)
+        for name, source in _package():
+            _put(packed, f"course/{name}", source.read_bytes())
     write_bytes(path, buffer.getvalue())
     notes = [
         "The zip holds hidden graders and model solutions: upload it, and give it to no student.",
@@ -113,27 +119,12 @@ def write_autograder(
     return Written(paths=[path], rows=len(exercises), notes=notes)
 
 
-def _files(catalog: Catalog, exercises: Sequence[Exercise]) -> Iterator[tuple[str, Path]]:
-    """Each name in the zip with its file, in a fixed order."""
-    package = Path(__file__).resolve().parents[2]
-    for path in _tree(package):
-        if not _LEFT_OUT & set(path.relative_to(package).parts):
-            yield f"course/{path.relative_to(package).as_posix()}", path
-    content = catalog.content
-    assert content.graders is not None
-    assert content.solutions is not None
-    yield "content/lessons/syllabus.toml", content.syllabus
-    for exercise in exercises:
-        for kind, folder in (("exercises", content.exercises), ("graders", content.graders)):
-            for path in _tree(folder / exercise.place):
-                yield f"content/{kind}/{path.relative_to(folder).as_posix()}", path
-        # Hidden checks take right answers from the modules beside the model solution.
-        for path in sorted((content.solutions / exercise.place).glob("*.py")):
-            yield f"content/solutions/{path.relative_to(content.solutions).as_posix()}", path
-
-
-def _tree(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+def _package() -> Iterator[tuple[str, Path]]:
+    """The program, which reads what was handed in and starts the grader: each file's name, and the file."""
+    for source in sorted(_PACKAGE.rglob("*")):
+        inner = source.relative_to(_PACKAGE)
+        if source.is_file() and not _CONTENT.intersection(inner.parts):
+            yield inner.as_posix(), source
 
 
 def _put(packed: zipfile.ZipFile, name: str, content: bytes, *, executable: bool = False) -> None:

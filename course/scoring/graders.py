@@ -1,0 +1,87 @@
+"""The files of a grader process: one list, and the version of an exercise's graders, a digest of its part.
+
+A run, ``author check`` and the tests' audit, a cluster and Gradescope's container all grade from these files,
+unpacked into a folder of their own, and from nothing else. So a check that reads a file which is not listed
+here fails wherever it is graded first, and that is at its author's.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from course.catalog.locate import PLACES
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from course.catalog.load import Catalog
+    from course.catalog.locate import Content
+    from course.catalog.models import Exercise
+
+__all__ = ["LEFT_OUT", "grader_files", "grader_version"]
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+#: The parts of this package that a grader process imports, and those that checks may import.
+_CODE = (
+    "catalog", "engines", "figures", "handed_in", "isolation", "physics", "progress", "scoring",
+    "simulations",
+)  # fmt: skip
+_FILES = (
+    "grading/__init__.py", "grading/kit.py", "grading/pipes.py",
+    "grading/running/__init__.py", "grading/running/grader.py",
+)  # fmt: skip
+#: Folders without a part in grading: an exercise's wrong and its unusual solutions.
+LEFT_OUT = frozenset({"accepted", "mutants"})
+_NOT_READ = frozenset({".md", ".pyc"})
+#: Of this package's code, what every exercise's score depends on.
+_DECIDES = ("scoring", "isolation", "physics")
+
+
+def grader_files(content: Content, exercises: Collection[str] | None = None) -> Iterator[tuple[str, Path]]:
+    """Each file's name in an unpacked grader (``course/...``, ``content/...``), and where it is now.
+
+    Args:
+        exercises: ids, where the others and the quiz are not to be graded; None for all.
+    """
+    for path in _PACKAGE.glob("*.py"):
+        if path.name != "__main__.py":
+            yield f"course/{path.name}", path
+    yield from ((f"course/{name}", _PACKAGE / name) for name in _FILES)
+    for name in _CODE:
+        yield from _below(f"course/{name}", _PACKAGE / name)
+    yield "content/lessons/syllabus.toml", content.syllabus
+    for name in PLACES:
+        folder = content.place(name)
+        if folder is None:
+            continue
+        if exercises is None:
+            yield from _below(f"content/{name}", folder)
+            continue
+        for place in map(content.place_of, exercises):
+            yield from _below(f"content/{name}/{place.as_posix()}", folder / place)
+    if exercises is None:
+        yield from _below("content/quiz", content.quiz)
+
+
+def _below(name: str, folder: Path) -> Iterator[tuple[str, Path]]:
+    for path in folder.rglob("*"):
+        inner = path.relative_to(folder)
+        if path.is_file() and path.suffix not in _NOT_READ and not LEFT_OUT.intersection(inner.parts):
+            yield f"{name}/{inner.as_posix()}", path
+
+
+def grader_version(exercise: Exercise, catalog: Catalog, package: Path = _PACKAGE) -> str:
+    """A digest of everything that decides an exercise's score: its files in a grader, and what runs them.
+
+    Args:
+        package: the folder of ``course``; the one that is running, unless it is a grader's own.
+    """
+    content, place = catalog.content, catalog.content.place_of(exercise.id)
+    folders = {name: package / name for name in _DECIDES}
+    folders |= {name: folder / place for name in PLACES if (folder := content.place(name)) is not None}
+    digest = hashlib.sha256()
+    for label, path in sorted(file for name, folder in folders.items() for file in _below(name, folder)):
+        digest.update(label.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]

@@ -34,6 +34,9 @@ _HEADER = wire.HEADER.unpack_from
 _MAX_NESTING = 8
 #: The total size of the callbacks of one call, because a check may keep every argument it gets.
 _CALLBACK_BYTES = 16 << 20
+#: The total size of everything in one check: a check may keep all results, too. Accepted solutions of the
+#: course were seen to need 1 MB.
+_CHECK_BYTES = 32 << 20
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
 
@@ -102,6 +105,7 @@ class Connection:
         self._nesting = 0
         self._refused: AssertionError | None = None
         self._received = 0  # bytes, since the call began
+        self._taken = 0  # and since the check did
         self._printed = ""
         self._deadline = deadline
         self.alive = True
@@ -126,6 +130,7 @@ class Connection:
     @deadline.setter
     def deadline(self, deadline: Deadline) -> None:
         self._deadline = deadline
+        self._taken = 0
         if self.alive:
             deadline.watch(self._handle)
 
@@ -346,6 +351,9 @@ class Connection:
             raise self._breach("a frame of impossible length")
         end = 4 + length
         self._received += end
+        self._taken += end
+        if self._taken > _CHECK_BYTES:
+            raise self._breach("more in one check than any solution needs")
         if len(buffer) >= end:
             body: bytes | memoryview = buffer[5:end]
             self._buffer = buffer[end:]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+from course.isolation.inside.frames import MAX_VALUES
 from course.printable import one_line
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding
@@ -106,16 +107,15 @@ def as_list(value: Any, name: str = "the result", length: int | None = None) -> 
     if isinstance(value, np.ndarray):
         if not value.ndim:
             _refuse_shape(value, name, "(n, ...)")
-        value = list(value)
-    if not isinstance(value, list | tuple):
+    elif not isinstance(value, list | tuple):
         _refuse(value, name, "a list", "a list" if length is None else f"a list of {length}")
-    if length is not None and len(value) != length:
+    if len(value) > MAX_VALUES or (length is not None and len(value) != length):
         raise CheckFailed(
             Finding(
                 message=f"{_capital(name)} has the wrong length.",
                 help="Print its `len` and compare it with what the README asks for.",
                 diagnosis="WRONG_TYPE",
-                expected=f"a list of {length}",
+                expected="a shorter list" if length is None else f"a list of {length}",
                 actual=plain(value),
             )
         )
@@ -238,7 +238,8 @@ def overwritten(name: str) -> CheckFailed:
 def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per kind of value
     """``value`` for a finding: numpy becomes lists and numbers, long values are cut, other objects named."""
     if isinstance(value, np.ndarray):
-        return plain(value.tolist(), value.ndim) if value.size <= _SHOWN else f"array of shape {value.shape}"
+        few = math.prod(max(extent, 1) for extent in value.shape) <= _SHOWN  # an empty one may have many rows
+        return plain(value.tolist(), value.ndim) if few else f"array of shape {value.shape}"
     if isinstance(value, np.longdouble | np.clongdouble):  # their item() is no Python number
         value = complex(value) if isinstance(value, np.clongdouble) else float(value)
     if isinstance(value, np.generic):

@@ -9,6 +9,7 @@ import contextlib
 import gc
 import io
 import os
+import signal
 import sys
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -37,9 +38,22 @@ _GARBAGE = 50_000
 def main() -> NoReturn:
     """The ``course`` command."""
     gc.set_threshold(_GARBAGE, 20, 20)
+    _end_as_after_ctrl_c()
     if "_COURSE_COMPLETE" in os.environ:
         _program(fancy=False).main(prog_name="course")
     sys.exit(run(sys.argv[1:]))
+
+
+def _end_as_after_ctrl_c() -> None:
+    """A closed window or a plain kill ends a command as Ctrl-C does, so that it cleans up behind itself."""
+
+    def stop(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    for name in ("SIGTERM", "SIGHUP", "SIGBREAK"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not below nohup
+            signal.signal(number, stop)
 
 
 def run(arguments: Sequence[str]) -> int:

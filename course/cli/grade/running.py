@@ -24,9 +24,9 @@ from course.cli.grade.options import (
     levels,
 )
 from course.cli.work.verdict.screen import show_everything
-from course.errors import NotFoundError, UsageError
+from course.errors import CourseError, NotFoundError, UsageError
 from course.grading.exports.lines import grade_line
-from course.grading.results.effective import MISSING
+from course.grading.results.effective import MISSING, NOT_YET
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.printable import command, one_line
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 __all__ = ["checks_gave", "explain", "run", "score_of"]
 
 _MOST_TROUBLED = 20
+INTERRUPTED = 130
 
 
 def run(
@@ -93,14 +94,28 @@ def run(
     catalog.content.instructors()  # before a roster is read, and perhaps corrected, for nothing
     people = read_roster(roster) if roster else None
     options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
-    with (
-        _graders(jobs, local_cluster, scheduler) as grade,
-        _progress(console, catalog.ref) as report,
-    ):
-        summary = grade_class(submissions, out, catalog, options, report, grade=grade)
-        changes = _would_change(console, summary, out, catalog, terms, grade)
+    progress = _progress(console, catalog.ref)
+    try:
+        with _graders(jobs, local_cluster, scheduler) as grade, progress as report:
+            summary = grade_class(submissions, out, catalog, options, report, grade=grade)
+            changes = _would_change(console, summary, out, catalog, terms, grade)
+    except KeyboardInterrupt:
+        raise _interrupted(progress, out) from None
     _show_summary(console, summary, out, options, changes)
     return summary.exit_code
+
+
+def _interrupted(progress: _progress, out: Path) -> CourseError:
+    """What is there after Ctrl-C, and how it goes on."""
+    done, total = progress.reached
+    if not out.exists():
+        told = CourseError("Interrupted before anything was graded; nothing was written.", code="interrupted")
+    else:
+        words = f"all of the work of {done} of {total} students is graded" if total else "nothing was graded"
+        message = f"Interrupted: {words}. What is graded is kept, and the rest is not graded yet."
+        told = CourseError(message, help="The same command with --resume goes on.", code="interrupted")
+    told.exit_code = INTERRUPTED
+    return told
 
 
 def _would_change(
@@ -212,8 +227,18 @@ class _progress:  # noqa: N801 - used as a function
         self._console = console
         self._course = course
         self._bar: Any = None
+        self.reached = 0, 0  # students done, and all
 
     def __enter__(self) -> Callable[[Effective, int, int], None]:
+        show = self._shown()
+
+        def report(result: Effective, done: int, total: int) -> None:
+            self.reached = done, total
+            show(result, done, total)
+
+        return report
+
+    def _shown(self) -> Callable[[Effective, int, int], None]:
         console = self._console
         if console.json:
             return self._json
@@ -414,7 +439,7 @@ def _show_result(
 
 def checks_gave(found: Effective) -> str:
     """What the graders said of work that has a score by hand."""
-    if found.verdict.state in {"ungradable", MISSING}:
+    if found.verdict.state in {"ungradable", MISSING, NOT_YET}:
         return "no check ran"
     return f"the checks gave {score_of(found)}"
 

@@ -7,7 +7,6 @@ at twenty times a second: one question to the file system, which works on every 
 from __future__ import annotations
 
 import contextlib
-import signal
 import threading
 import time
 from dataclasses import dataclass, field
@@ -81,7 +80,6 @@ def watch(
     wake = threading.Event()
     try:
         with (
-            _ended_like_ctrl_c(),
             open_session(chosen, here.catalog) as session,
             _keys(console, wake) as keys,
         ):
@@ -113,23 +111,6 @@ def _keys(console: Console, wake: threading.Event) -> Iterator[Keys | None]:
         return
     with keys_of_terminal(lambda _: wake.set()) as keys:
         yield keys
-
-
-@contextlib.contextmanager
-def _ended_like_ctrl_c() -> Iterator[None]:
-    """A closed window or a plain kill ends the watch as Ctrl-C does, so that the sandbox is cleaned up."""
-
-    def stop(_number: int, _frame: object) -> None:
-        raise KeyboardInterrupt
-
-    here = threading.current_thread() is threading.main_thread()
-    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)]
-    before = {number: signal.signal(number, stop) for number in numbers} if here else {}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def saves(path: Path, wake: threading.Event | None = None) -> Iterator[None]:

@@ -13,7 +13,7 @@ import msgspec
 
 from course.grading.exports.cells import csv_bytes, number, write_bytes
 from course.grading.exports.handout import checks_for_student, problem_for_student
-from course.grading.exports.selection import ExportOptions, Written, check_zeros, select
+from course.grading.exports.selection import ExportOptions, Written, check_settled, select
 from course.printable import one_line
 from course.scoring.numbers import in_points
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite
@@ -42,7 +42,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
         MissingCapabilityError: students are missing in the roster, or a file cannot be written.
     """
     selection = select(results, options)
-    check_zeros(selection, options)
+    check_settled(selection, options)
     rows: list[Sequence[str]] = []
     for effective in (item for item in selection.each() if not item.missing):
         # A student's id never becomes a path.

@@ -38,7 +38,7 @@ def write_junit(path: Path, results: Results, options: ExportOptions) -> Written
     with replacing(path) as handle:
         handle.write(b'<?xml version="1.0" encoding="utf-8"?>\n')
         handle.write(b"<testsuites name=%s>\n" % _attribute(results.course.id))
-        for effective in (item for item in selection.each() if not item.missing):
+        for effective in (item for item in selection.each() if not (item.missing or item.waiting)):
             handle.write(ET.tostring(suite(effective), encoding="utf-8", xml_declaration=False) + b"\n")
         handle.write(b"</testsuites>\n")
     selection.written.paths.append(path)

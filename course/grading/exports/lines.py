@@ -9,6 +9,7 @@ import msgspec
 
 from course.catalog.models import CourseRef
 from course.grading.exports.cells import csv_bytes, number, replacing, safe_cell, write_bytes
+from course.grading.results.effective import NOT_YET
 from course.scoring.verdict import CheckResult, Problem, finite
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class GradeLine(msgspec.Struct, frozen=True, kw_only=True, tag="course.grade/1",
 def grade_line(effective: Effective, course: CourseRef) -> GradeLine:
     """A result as its line of JSON."""
     verdict, key, override = effective.verdict, effective.result.key, effective.override
-    codes = {"ungradable": 3, "grader_error": 70}
+    codes = {"ungradable": 3, "grader_error": 70, NOT_YET: 3}
     return GradeLine(
         ok=verdict.all_pass,
         exit_code=codes.get(verdict.state, 0 if verdict.all_pass else 1),

@@ -15,7 +15,7 @@ from course.grading.exports.selection import (
     Needs,
     Selection,
     Written,
-    check_zeros,
+    check_settled,
     select,
 )
 
@@ -65,7 +65,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
                 help="It is the number at the end of the assignment's address in Canvas.",
                 code="needs_assignment",
             )
-    check_zeros(selection, options)
+    check_settled(selection, options)
     titles = [f"{results.title(name)} ({options.assignments[name]})" for name in selection.exercises]
     headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
@@ -94,7 +94,7 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
             cannot be written.
     """
     selection = select(results, options, usable=_has_moodle_key, needs=_MOODLE)
-    check_zeros(selection, options)
+    check_settled(selection, options)
     headings = ["moodle_key", "name", "email", *(results.title(name) for name in selection.exercises)]
     rows = []
     for student, scores in _table(selection).items():

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective, Results
     from course.grading.results.roster import Person, Roster
 
-__all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_zeros", "is_part", "select"]
+__all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_settled", "is_part", "select"]
 
 _SHOWN = 10
 
@@ -107,7 +107,7 @@ class Selection:
             if effective.missing:
                 if self.zeros:
                     effective = replace(effective, score=0.0)
-            elif effective.score is None:
+            elif effective.score is None and not effective.waiting:
                 self.written.without_grade.append(f"{effective.student} {effective.exercise}")
             self.written.rows += 1
             yield effective
@@ -163,29 +163,40 @@ def select(
     return Selection(results, exercises, people, written, options.missing == "zero")
 
 
-def check_zeros(selection: Selection, options: ExportOptions) -> None:
-    """Refuse to export a zero that the instructor has not confirmed.
+def check_settled(selection: Selection, options: ExportOptions) -> None:
+    """Refuse to tell a platform what is not known yet, or a zero that the instructor has not confirmed.
 
     Raises:
-        MissingCapabilityError: something could not be graded, and neither a score by hand nor ``zeros`` says
-            that it is worth 0.
+        MissingCapabilityError: a run has still to look at somebody's work; or something could not be graded,
+            and neither a score by hand nor ``zeros`` says that it is worth 0.
     """
+    left_out = set(selection.written.unmatched)
+    waiting = sorted(map(repr, selection.results.waiting - left_out))
+    if waiting:
+        are = "1 student is" if len(waiting) == 1 else f"{len(waiting)} students are"
+        raise MissingCapabilityError(
+            f"{are} not graded yet: {_some(waiting)}. Nothing was written.",
+            help="Finish the run first: the command that began it, with --resume, goes on.",
+            code="not_graded_yet",
+        )
     if options.zeros:
         return
-    left_out = set(selection.written.unmatched)
     unseen = [
         f"{item.student!r} {item.exercise} ({item.verdict.error.code if item.verdict.error else 'no reason'})"
         for item in selection.results.all()
         if item.unsettled and item.exercise in selection.exercises and item.student not in left_out
     ]
     if unseen:
-        listed = ", ".join(unseen[:_SHOWN]) + (f" and {len(unseen) - _SHOWN} more" if unseen[_SHOWN:] else "")
         raise MissingCapabilityError(
-            f"{len(unseen)} could not be graded and would get 0: {listed}. Nothing was written.",
+            f"{len(unseen)} could not be graded and would get 0: {_some(unseen)}. Nothing was written.",
             help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
             " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
         )
+
+
+def _some(listed: list[str]) -> str:
+    return ", ".join(listed[:_SHOWN]) + (f" and {len(listed) - _SHOWN} more" if listed[_SHOWN:] else "")
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:

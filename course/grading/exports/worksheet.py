@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from course.errors import UsageError
 from course.grading.exports.cells import for_moodle, number, safe_cell, write_bytes
 from course.grading.exports.handout import problem_for_student
-from course.grading.exports.selection import ExportOptions, Needs, Written, check_zeros, select
+from course.grading.exports.selection import ExportOptions, Needs, Written, check_settled, select
 from course.grading.results.roster import moodle_key, read_text
 from course.scoring.numbers import in_points
 
@@ -55,7 +55,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
             help=f"Add --exercise, one of {', '.join(selection.exercises)}.",
             code="needs_exercise",
         )
-    check_zeros(selection, options)
+    check_settled(selection, options)
     headings, rows = _read(options.worksheet)
     mine = {selection.people[one.student].moodle_key: one for one in selection.each()}
     locked, filled = [], 0

@@ -349,6 +349,27 @@ class Gradebook:
             ).fetchall()
         return [Decision(*row) for row in rows]
 
+    def set_waiting(self, students: Iterable[str], *, others: bool) -> None:
+        """Note whose work a run has still to look at.
+
+        Args:
+            others: those who waited before go on waiting.
+        """
+        with self._transaction():
+            if not others:
+                self._db.execute("DELETE FROM waiting")
+            self._db.executemany(row_into("waiting", "INSERT OR REPLACE"), [(name,) for name in students])
+
+    def settle(self, student: str) -> None:
+        """Note that all of a student's work was looked at, and what there was of it is graded."""
+        with self._transaction():
+            self._db.execute("DELETE FROM waiting WHERE student = ?", (student,))
+
+    def waiting(self) -> set[str]:
+        """The students whose work was not all looked at: a run is going on, or was interrupted."""
+        with explained(self.path):
+            return {row[0] for row in self._db.execute("SELECT student FROM waiting")}
+
     # -- graders, and what was found ------------------------------------------------------------------
 
     def keep_snapshot(self, sha256: str, packed: bytes) -> None:

@@ -45,8 +45,9 @@ __all__ = [
     "unseal",
 ]
 
-#: 2 had no seal; 3 had no digests of rows, no snapshots and no journal. Both can be read.
-FORMAT_VERSION = 4
+#: 2 had no seal; 3 had no digests of rows, no snapshots and no journal; 4 did not know who waits. All can be
+#: read.
+FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
@@ -87,15 +88,18 @@ CREATE TABLE results (
     UNIQUE (student, exercise, submission_sha256, grader_version, seed, run)
 );
 """
-#: Since format 4: the graders of each run as one zip; files that are not a submission yet; and
-#: who changed a grade, when, why, and what it was before.
-_SINCE_4 = """
-CREATE TABLE snapshots (sha256 TEXT PRIMARY KEY, packed BLOB NOT NULL, row_sha256 TEXT) WITHOUT ROWID;
-CREATE TABLE found (
+#: Since formats 4 and 5: the graders of each run as one zip; files that are not a submission yet; who changed
+#: a grade, when, why, and what it was before; and students whose work a run has still to look at.
+_SINCE_3 = """
+CREATE TABLE IF NOT EXISTS snapshots (
+    sha256 TEXT PRIMARY KEY, packed BLOB NOT NULL, row_sha256 TEXT
+) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS found (
     student TEXT NOT NULL, exercise TEXT NOT NULL, listed TEXT NOT NULL, row_sha256 TEXT,
     PRIMARY KEY (student, exercise)
 ) WITHOUT ROWID;
-CREATE TABLE journal (
+CREATE TABLE IF NOT EXISTS waiting (student TEXT PRIMARY KEY, row_sha256 TEXT) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS journal (
     number INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, kind TEXT NOT NULL,
     student TEXT NOT NULL, exercise TEXT NOT NULL, reason TEXT NOT NULL, before TEXT NOT NULL,
     after TEXT NOT NULL, row_sha256 TEXT
@@ -117,6 +121,7 @@ TABLES = {
     "snapshots": ("sha256", "packed"),
     "found": ("student", "exercise", "listed"),
     "journal": ("number", "at", "who", "kind", "student", "exercise", "reason", "before", "after"),
+    "waiting": ("student",),
 }  # fmt: skip
 _OLD = ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results")
 _TO_4 = "".join(
@@ -136,10 +141,12 @@ _SEALED = (
     " verdict_sha256 FROM results ORDER BY number",
 )
 _SEALED_SINCE_4 = (
+    *_SEALED,
     "SELECT sha256 FROM snapshots ORDER BY sha256",
     "SELECT * FROM found ORDER BY student, exercise",
     "SELECT * FROM journal ORDER BY number",
 )
+_SEALED_NOW = (*_SEALED_SINCE_4, "SELECT * FROM waiting ORDER BY student")
 #: Format 1 had results alone, and in them a lateness that was never filled in.
 _FROM_1 = f"""
 ALTER TABLE results RENAME TO results_1;
@@ -237,7 +244,7 @@ def create(path: Path) -> None:
         with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:
             _know_digests(db)
             db.executescript(
-                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} {_TO_4} {_SINCE_4}"
+                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} {_TO_4} {_SINCE_3}"
                 f"PRAGMA user_version = {FORMAT_VERSION}; PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
             )
         _publish(draft, path)
@@ -317,19 +324,23 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("PRAGMA locking_mode = NORMAL")
         db.execute("SELECT count(*) FROM meta").fetchone()
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
-    sealed = _SEALED if version < 4 else (*_SEALED, *_SEALED_SINCE_4)
+    sealed = _SEALED if version < 4 else _SEALED_SINCE_4 if version < 5 else _SEALED_NOW
     if kept is not None and kept[0] != _digest(db, sealed):
         raise IntegrityError(
             f"{path} is damaged: its content is not what the course wrote.", help=_rescue(path)
         )
-    if version < 4 and writing:
+    if version < FORMAT_VERSION and writing:
+        digests = _TO_4 if version < 4 else ""
         db.executescript(
-            f"BEGIN EXCLUSIVE; {_TO_4} {_SINCE_4} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"
+            f"BEGIN EXCLUSIVE; {digests} {_SINCE_3} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"
         )
         if kept is not None:
             seal(db)
-    elif version < 4:  # unchanged; missing tables count as empty
-        db.executescript(_SINCE_4.replace("CREATE TABLE", "CREATE TEMP TABLE"))
+    elif version < FORMAT_VERSION:  # unchanged; missing tables count as empty
+        made = {name for (name,) in db.execute("SELECT name FROM sqlite_schema WHERE type = 'table'")}
+        for statement in filter(str.strip, _SINCE_3.split(";")):
+            if statement.split("EXISTS ")[1].split()[0] not in made:
+                db.execute(statement.replace("CREATE TABLE", "CREATE TEMP TABLE"))
 
 
 def _know_digests(db: sqlite3.Connection) -> None:
@@ -339,7 +350,7 @@ def _know_digests(db: sqlite3.Connection) -> None:
 
 def seal(db: sqlite3.Connection) -> None:
     """Note what is in it now."""
-    sealed = _digest(db, (*_SEALED, *_SEALED_SINCE_4))
+    sealed = _digest(db, _SEALED_NOW)
     db.execute(row_into("meta", "INSERT OR REPLACE"), (SEAL, sealed))
 
 

@@ -84,10 +84,13 @@ def salvage(path: Path, target: Path) -> Salvaged:
         _take(_with_log(path), found, Counter())
     _take_decided(found)
     settled = {row[4:6] for row in found["journal"].values() if row[3] == "assign"}
+    waiting = dict(found["waiting"]) if path.is_file() else None
     for backup in others:
         _take(backup.read_bytes(), found, told.from_backup)
     _take_decided(found)
     found["found"] = {key: row for key, row in found["found"].items() if row[:2] not in settled}
+    if waiting is not None:  # a backup does not know who was graded since
+        found["waiting"] = waiting
     if not any(found.values()):
         raise IntegrityError(
             f"{path} has no intact row, and there is no backup.", help="Grade the class into a new folder."

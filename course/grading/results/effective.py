@@ -5,7 +5,8 @@ combines them, in the same way for every export and report. The newest grading o
 counts, less the penalty for lateness; an override replaces it and is final, whatever the lateness. A fault of
 ours is never a zero: its score is None until it is graded or overridden. Enrolled students who handed in
 nothing, or without a roster those whose folder held no work, have a result too: ``missing``, without a score;
-an option decides how an export writes it.
+an option decides how an export writes it. Until a run has looked at all of a student's work, nothing is
+``missing``: it is ``not_graded_yet``, and no platform is told anything.
 """
 
 from __future__ import annotations
@@ -22,16 +23,28 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.results.late import Policy, lateness, parse_policy
 from course.grading.results.roster import Person, Roster
-from course.scoring.verdict import Problem, Verdict
+from course.scoring.verdict import Problem, Verdict, not_graded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-__all__ = ["MISSING", "Effective", "Results"]
+__all__ = ["MISSING", "NOT_YET", "Effective", "Results"]
 
 #: State of work that an enrolled student did not hand in.
 MISSING = "missing"
+#: State of work that a run has not looked at: whether there is any is not known.
+NOT_YET = "not_graded_yet"
+_NOTHING = {
+    MISSING: Problem("not_submitted", "Nothing was handed in."),
+    "ungradable": Problem("not_submitted", "Nothing was handed in.", "The score was set by the instructor."),
+    NOT_YET: Problem(
+        "not_graded_yet",
+        "The run was interrupted before it had looked at all of this student's work.",
+        "The command that began the run, with --resume, goes on.",
+    ),
+}
+_WITHOUT_SCORE = frozenset({"grader_error", MISSING, NOT_YET})
 
 
 @dataclass(frozen=True)
@@ -40,7 +53,8 @@ class Effective:
 
     Attributes:
         result: the newest grading, with its verdict.
-        score: in points; None if it is missing, or if a fault of ours kept it from being graded.
+        score: in points; None if it is missing or not graded yet, or if a fault of ours kept it from being
+            graded.
         max_score: points of the exercise.
         passed: whether ``score`` reaches the exercise's pass mark.
         penalty: points taken off for lateness; 0 under an override.
@@ -80,6 +94,11 @@ class Effective:
         return self.verdict.state == MISSING and self.override is None
 
     @property
+    def waiting(self) -> bool:
+        """Whether no run has looked for it yet, and no decision was made about it."""
+        return self.verdict.state == NOT_YET and self.override is None
+
+    @property
     def unsettled(self) -> bool:
         """Whether it is a zero that no instructor has decided on: not gradable, and no score by hand."""
         return self.verdict.state == "ungradable" and self.override is None
@@ -87,7 +106,7 @@ class Effective:
     @property
     def raw_score(self) -> float | None:
         """The checks' score, before lateness and overrides."""
-        return None if self.verdict.state in {"grader_error", MISSING} else self.verdict.score
+        return None if self.verdict.state in _WITHOUT_SCORE else self.verdict.score
 
 
 class Results:
@@ -102,6 +121,7 @@ class Results:
         course: its id and version.
         seed: of the run's hidden inputs.
         policy: the late policy in force, if any.
+        waiting: students whose work a run has still to look at.
 
     Raises:
         IntegrityError: its content was changed or damaged.
@@ -116,6 +136,7 @@ class Results:
         self.policy: Policy | None = parse_policy(meta["late_policy"]) if "late_policy" in meta else None
         self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
         self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
+        self.waiting = book.waiting()
         self.downloads = book.students()
         self._exercises = {exercise.id: exercise for exercise in book.exercises()}
         self._overrides: dict[tuple[str, str], Override] = {}
@@ -148,20 +169,20 @@ class Results:
 
     def students(self) -> list[str]:
         """All students with a result, an override, a row in the roster or a folder, by name."""
-        return sorted({*self.graded(), *self.absent()})
+        return sorted({*self.present(), *self.absent()})
 
     def absent(self) -> list[str]:
         """The students without work: of the roster, in its order, or those whose folder held none."""
-        known = self.graded()
+        known = self.present()
         if self.roster is None:
             return sorted(self._without_work - known)
         found, _ = self.roster.match(known, self.downloads)
         there = known | {person.student for person in found.values()}
         return [one.student for one in self.roster.people if one.student not in there]
 
-    def graded(self) -> set[str]:
-        """The students with a result or an override."""
-        return {*self.book.student_ids(), *(name for name, _ in self._overrides)}
+    def present(self) -> set[str]:
+        """The students with a result or an override, and those whose work waits."""
+        return {*self.book.student_ids(), *(name for name, _ in self._overrides), *self.waiting}
 
     def title(self, exercise: str) -> str:
         """The exercise's title; its id where none was noted."""
@@ -179,10 +200,9 @@ class Results:
             for result in group:
                 done.add((name, result.key.exercise))
                 yield self.of(result)
-            if name in enrolled:
-                yield from self._without_grading(name, exercise, done, asked)
-        others = [student] if student is not None else sorted({it for it, _ in self._overrides} | enrolled)
-        for name in others:
+            yield from self._without_grading(name, exercise, done, asked if name in enrolled else frozenset())
+        named = {name for name, _ in self._overrides} | enrolled | self.waiting
+        for name in sorted(named) if student is None else [student]:
             yield from self._without_grading(name, exercise, done, asked if name in enrolled else frozenset())
 
     @cached_property
@@ -193,7 +213,7 @@ class Results:
         """
         if self.roster is None:
             return set(self.absent())
-        return {*self.absent(), *self.roster.match(self.graded(), self.downloads)[0]}
+        return {*self.absent(), *self.roster.match(self.present(), self.downloads)[0]}
 
     @cached_property
     def _asked(self) -> frozenset[str]:
@@ -203,13 +223,16 @@ class Results:
     def _without_grading(
         self, student: str, exercise: str | None, done: set[tuple[str, str]], asked: frozenset[str]
     ) -> Iterator[Effective]:
-        """The results for work that was not handed in: a score by hand, or missing if it was asked for."""
+        """The results for work that no grader saw: by hand, waiting, or missing if it was asked for."""
+        waits = student in self.waiting
         for about in self._exercises if exercise is None else [exercise]:
             override = self._overrides.get((student, about))
             by_hand = override is not None and override.score is not None
-            if (student, about) not in done and (by_hand or about in asked):
+            may_wait = waits and about in self._exercises
+            if (student, about) not in done and (by_hand or may_wait or about in asked):
                 done.add((student, about))
-                yield self.of(self._nothing(student, about, "ungradable" if by_hand else MISSING))
+                state = "ungradable" if by_hand else NOT_YET if waits else MISSING
+                yield self.of(self._nothing(student, about, state))
 
     def of(self, result: Result) -> Effective:
         """The effective result for a grading."""
@@ -224,7 +247,7 @@ class Results:
         penalty = 0.0
         if override is not None:
             score = override.score
-        elif verdict.state in {"grader_error", MISSING}:
+        elif verdict.state in _WITHOUT_SCORE:
             score = None
         else:
             if self.policy is not None and verdict.state == "graded":
@@ -278,11 +301,6 @@ class Results:
     def _nothing(self, student: str, exercise: str, state: str = "ungradable") -> Result:
         """Stands in for a grading where nothing was handed in."""
         noted = self._exercises.get(exercise)
-        told = "" if state == MISSING else "The score was set by the instructor."
-        problem = Problem("not_submitted", "Nothing was handed in.", told)
-        verdict = Verdict(
-            exercise=exercise, scope="full", state=state, score=0.0,
-            max_score=noted.max_points if noted else 0.0, passed=False, checks=(), isolation="",
-            error=problem,
-        )  # fmt: skip
+        problem = _NOTHING[state]
+        verdict = not_graded(exercise, noted.max_points if noted else 0.0, state, problem)
         return Result(Key(student, exercise, "", "", self.seed), verdict)

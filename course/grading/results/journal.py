@@ -76,8 +76,8 @@ def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
     before = next(view.all(key.student, key.exercise), None)
     yield
     after = next(view.all(key.student, key.exercise), None)
-    if before is None or after is None:
-        return
+    if before is None or after is None or before.waiting:
+        return  # it is the first
     if (before.verdict.state, before.score) != (after.verdict.state, after.score):
         told = counted(before), counted(after)
         book.note(Decision("", "", "resume", key.student, key.exercise, "another submission", *told))

@@ -42,7 +42,7 @@ class Merged:
 
 def merged(results: Results, new: Roster) -> Merged:
     """The new roster, completed from the one of the results."""
-    old, graded = results.roster, results.graded()
+    old, graded = results.roster, results.present()
     if old is None:
         return Merged(new)
     found, _ = old.match(graded, results.downloads)

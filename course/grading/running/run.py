@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import secrets
 import time
-from collections import Counter
+from collections import Counter, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -127,10 +127,13 @@ def grade_class(
         frozen(_begun_with(book, options) or Snapshot.take(catalog.content)) as graders,
     ):
         run = _Run(members.students, graders, folder, options, book)
+        if options.resume and (out / "grades.csv").is_file():
+            export_all(out, Results(book))  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
             with run.replacing(result.key):
                 book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
+            run.one_less(result.key.student)
             report(run.view.of(result), run.done, len(members.students))
         run.note_times()
         summary = run.summary
@@ -186,14 +189,18 @@ class _Run:
         asked = not options.exercises or QUIZ in options.exercises
         self._bank = _bank(self._catalog) if asked else Bank(())
         self._with_quiz = bool(self._bank.ids)
+        self._quiz_version = quiz_version(self._bank)
         self.summary = Summary(seed=_seed(book, options), graders=graders.snapshot.sha256)
         self.roster: Roster | None = None
         self.done = 0
         self._open: Counter[str] = Counter()
+        self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
         self._found = set(book.found())
         self._assigned = {(it.student, it.exercise) for it in book.journal() if it.kind == "assign"}
+        before = book.waiting()
         self._note_facts()
         self.view = Results(book)
+        self.view.waiting = before  # what was missing till now, and not only unread, is told when it comes
 
     def _note_facts(self) -> None:
         options, book = self._options, self._book
@@ -210,6 +217,8 @@ class _Run:
             book.begin_run("run", facts)
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
+        # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
+        book.set_waiting([who.name for who in self._students], others=bool(options.only))
         if options.roster is not None:
             self.roster = self.summary.enrol(remember(book, options.roster))
 
@@ -219,8 +228,8 @@ class _Run:
             self._options.terms, seed=self.summary.seed, graders=self.summary.graders
         )
         for graded in grade(self._left_to_do(), terms):
+            yield from self._quizzes()
             submission = graded.entry.submission
-            self._one_less(graded.entry.student)
             verdict = graded.verdict
             if graded.entry.notes:
                 warnings = (*verdict.warnings, *graded.entry.notes)
@@ -229,8 +238,7 @@ class _Run:
                 Result(self._key(graded.entry, graded.version), verdict),
                 dict(submission.files) if submission else None,
             )
-        if self._with_quiz:
-            yield from self._quizzes()
+        yield from self._quizzes()
 
     def _key(self, entry: Entry, judged_by: str = "") -> Key:
         version = judged_by or self._versions[entry.exercise.id]
@@ -250,7 +258,9 @@ class _Run:
                     continue
                 self._open[student.name] += 1
                 yield entry
-            self._one_less(student.name)
+            if self._with_quiz:
+                self._score_quiz(student)
+            self.one_less(student.name)
 
     def _is_done(self, entry: Entry) -> bool:
         """Whether it was graded before, or an assigned file still takes the place of a missing one."""
@@ -275,31 +285,36 @@ class _Run:
         elif about in self._found:
             self._book.set_found(*about, None)
 
-    def _one_less(self, student: str) -> None:
+    def one_less(self, student: str) -> None:
         """A student is done when all of their files are read and all that was read is graded."""
         self._open[student] -= 1
         if not self._open[student]:
             del self._open[student]
             self.done += 1
+            self._book.settle(student)
 
     def _quizzes(self) -> Iterator[tuple[Result, dict[str, bytes]]]:
-        """The quiz attempts that came with the submissions, scored here: no student's code is involved."""
-        version = quiz_version(self._bank)
-        for student in self._students:
-            path = None
-            try:
-                record, path = read_quiz(student)
-            except UngradableError as error:
-                record = error.code  # no list of attempts, which the scoring says of it
-            verdict = grade_quiz(self._bank, record)
-            if verdict is None:
-                continue
-            key = Key(student.name, QUIZ, record_sha256(record), version, self.summary.seed)
-            self._witnessed(witnesses(student, QUIZ, key.submission_sha256, path))
-            if self._options.resume and self._confirmed(key):
-                self.summary.already += 1
-            else:
-                yield Result(key, verdict), {QUIZ_RECORD: _as_json(record)}
+        """The quizzes that were scored meanwhile."""
+        while self._scored:
+            yield self._scored.popleft()
+
+    def _score_quiz(self, student: Student) -> None:
+        """Score the quiz attempts that came with a submission; no student's code is involved."""
+        path = None
+        try:
+            record, path = read_quiz(student)
+        except UngradableError as error:
+            record = error.code  # no list of attempts, which the scoring says of it
+        verdict = grade_quiz(self._bank, record)
+        if verdict is None:
+            return
+        key = Key(student.name, QUIZ, record_sha256(record), self._quiz_version, self.summary.seed)
+        self._witnessed(witnesses(student, QUIZ, key.submission_sha256, path))
+        if self._options.resume and self._confirmed(key):
+            self.summary.already += 1
+            return
+        self._open[student.name] += 1
+        self._scored.append((Result(key, verdict), {QUIZ_RECORD: _as_json(record)}))
 
     def _witnessed(self, times: tuple[SubmittedAt, ...]) -> None:
         self._times += times

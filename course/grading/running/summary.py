@@ -100,7 +100,7 @@ class Summary:
             self.compared = results.roster.compared(self.strangers, results.downloads)
         for effective in results.all():
             verdict = effective.verdict
-            if effective.missing:
+            if effective.missing or effective.waiting:
                 continue
             settled = effective.override is not None  # a score by hand counts, even without a grading
             self.states["graded" if settled else verdict.state] += 1

@@ -259,14 +259,16 @@ class Reader:
             shape = tuple(self._u32() for _ in range(ndim))
         dtype = DTYPES[code]
         elements = 1
-        padded = 1  # numpy refuses shapes whose non-zero extents overflow even when the array is empty
+        rows = 1  # of an empty array: it has no bytes, and as many as its other extents say
         for extent in shape:
             elements *= extent
-            padded *= max(extent, 1)
+            rows *= max(extent, 1)
         size = elements * dtype.itemsize
         self.bulk += size
-        if self.bulk > MAX_ARRAY_BYTES or padded * dtype.itemsize > MAX_ARRAY_BYTES:
-            raise WireError("more than 64 MB of arrays")
+        if self.bulk > MAX_ARRAY_BYTES:
+            raise WireError("more than 8 MB of arrays")
+        if not elements:
+            self._count_values(rows)
         if self.at + size > len(self.body):
             raise WireError("an array that runs past the end")
         raw = np.frombuffer(self.body, np.uint8 if code == 2 else dtype, elements, self.at)

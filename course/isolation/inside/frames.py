@@ -11,7 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 
 MAX_VALUE_BYTES = 1 << 20  # everything of a frame that is not array data
-MAX_ARRAY_BYTES = 64 << 20  # all arrays of a frame together
+#: All arrays of a frame together. The largest that any accepted solution of the course returns have 1 MB.
+MAX_ARRAY_BYTES = 8 << 20
 MAX_FRAME = MAX_VALUE_BYTES + MAX_ARRAY_BYTES
 MAX_DEPTH = 32
 MAX_DIMENSIONS = 8

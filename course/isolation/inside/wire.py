@@ -97,7 +97,7 @@ class Codec:
         frame = bytearray().join(parts)
         size = len(frame) - HEADER.size
         if size - arrays > MAX_VALUE_BYTES or arrays > MAX_ARRAY_BYTES:
-            raise UnsupportedValueError("a value that is too large (1 MB of plain values, 64 MB of arrays)")
+            raise UnsupportedValueError("a value that is too large (1 MB of plain values, 8 MB of arrays)")
         HEADER.pack_into(frame, 0, size + 1, kind)
         return frame
 

@@ -80,7 +80,7 @@ def _put(numbers: array.array[float], value: Any, depth: int = 8) -> None:
     if isinstance(value, dict) and value.keys() == {"raised"}:
         numbers.append(_RAISED)
     elif isinstance(value, np.ndarray):
-        _put_array(numbers, value, depth)
+        _put_array(numbers, value)
     elif isinstance(value, list | tuple) and depth:
         numbers.append(float(len(value)))
         if set(map(type, value)) == {float}:
@@ -96,18 +96,18 @@ def _put(numbers: array.array[float], value: Any, depth: int = 8) -> None:
         numbers.append(_number(value))
 
 
-def _put_array(numbers: array.array[float], value: np.ndarray[Any, Any], depth: int) -> None:
+def _put_array(numbers: array.array[float], value: np.ndarray[Any, Any]) -> None:
     if value.ndim == 0:
         numbers.append(_number(value.item()))
-    elif value.dtype.kind in "fiu" and value.ndim <= depth:
-        _put_floats(numbers, _with_lengths(value.astype(float)))
-    elif depth:
-        numbers.append(float(len(value)))
-        for row in value:
-            if isinstance(row, np.ndarray):
-                _put_array(numbers, row, depth - 1)
-            else:
-                _put(numbers, row.item())
+    else:
+        _put_floats(numbers, _with_lengths(_as_numbers(value)))
+
+
+def _as_numbers(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """An array's elements as ``_number`` has them, at the cost of an array and not of its elements."""
+    if value.dtype.kind == "b":
+        return np.where(value, _TRUE, _FALSE)
+    return value.astype(float) if value.dtype.kind in "fiu" else np.full(value.shape, _OTHER)
 
 
 def _with_lengths(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

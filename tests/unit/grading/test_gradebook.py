@@ -14,7 +14,7 @@ import pytest
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.file import _SEALED, _digest
+from course.grading.gradebook.file import _SEALED, FORMAT_VERSION, _digest
 from course.grading.gradebook.records import (
     GradedExercise,
     Key,
@@ -314,10 +314,10 @@ def test_what_changed_since_it_was_closed_is_damage(tmp_path: Path, change: str)
 
 
 def before_4(db: sqlite3.Connection) -> None:
-    """Make of a gradebook what the format before had: rows without digests, and three tables fewer."""
+    """Make of a gradebook what the format before had: rows without digests, and four tables fewer."""
     for table in ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results"):
         db.execute(f"ALTER TABLE {table} DROP COLUMN row_sha256")
-    for table in ("snapshots", "found", "journal"):
+    for table in ("snapshots", "found", "journal", "waiting"):
         db.execute(f"DROP TABLE {table}")
 
 
@@ -364,7 +364,7 @@ def test_a_gradebook_without_a_seal_is_read_and_sealed_by_the_next_who_writes(tm
         book.set_meta(late_policy="x")
         assert book.meta() == {"seed": "7", "roster": "[]", "late_policy": "x"}
     with contextlib.closing(sqlite3.connect(path)) as db:
-        assert db.execute("PRAGMA user_version").fetchone()[0] == 4
+        assert db.execute("PRAGMA user_version").fetchone()[0] == FORMAT_VERSION
         db.execute("UPDATE exercises SET pass_share = 0.7")
         db.commit()
     with pytest.raises(IntegrityError, match="damaged"):

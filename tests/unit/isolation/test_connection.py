@@ -261,10 +261,25 @@ def test_more_data_than_any_solution_needs_ends_a_call() -> None:
 
 
 def test_each_call_may_use_the_allowance_anew() -> None:
-    frames = [_value(Kind.CALLBACK, [0, None, np.zeros(1 << 20)]), _value(Kind.RESULT, 1)] * 4
+    frames = [_value(Kind.CALLBACK, [0, None, np.zeros(1 << 20)]), _value(Kind.RESULT, 1)] * 3
     connection = _connect(*frames)
-    assert [connection.call("f", lambda array: None) for _ in range(4)] == [1] * 4
+    assert [connection.call("f", lambda array: None) for _ in range(3)] == [1] * 3
     connection.close()
+
+
+def test_all_that_comes_in_one_check_has_a_limit_and_the_next_check_begins_anew() -> None:
+    connection = _connect(*[_value(Kind.RESULT, np.zeros(1 << 20))] * 7)
+    for _ in range(2):
+        connection.deadline = Deadline(2.0)
+        for _ in range(3):
+            connection.call("f")
+    connection.close()
+    connection = _connect(*[_value(Kind.RESULT, np.zeros(1 << 20))] * 4)
+    for _ in range(3):
+        connection.call("f")
+    with pytest.raises(StudentFailure, match="more in one check"):
+        connection.call("f")
+    assert not connection.alive
 
 
 def test_a_refusal_of_ours_outweighs_what_came_of_it() -> None:

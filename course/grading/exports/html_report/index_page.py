@@ -54,6 +54,8 @@ def _score(effective: Effective | None) -> tuple[float | None, str] | None:
         remarks.append("by hand")
     elif effective.missing:
         remarks.append("missing")
+    elif effective.waiting:
+        remarks.append("not graded yet")
     elif effective.score is None:
         remarks.append("fault of the grader")
     elif effective.verdict.state != "graded":

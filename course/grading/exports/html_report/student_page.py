@@ -68,6 +68,8 @@ class _Shown:
         item = self.effective
         if item.missing:
             return "nothing was handed in"
+        if item.waiting:
+            return "not graded yet"
         if item.score is None:
             return "to be graded again"
         passed = "passed" if item.passed else "not passed"

@@ -92,6 +92,7 @@ class ExerciseTally:
         ungraded: results that could not be graded and have no score by hand.
         faults: results without a score because the grader failed.
         missing: enrolled students who handed in nothing.
+        waiting: students whose work a run has still to look at.
         seconds: wall time of the checks of each graded submission.
     """
 
@@ -103,6 +104,7 @@ class ExerciseTally:
     ungraded: int = 0
     faults: int = 0
     missing: int = 0
+    waiting: int = 0
     seconds: array[float] = field(default_factory=lambda: array("d"))
     checks: dict[str, CheckTally] = field(default_factory=dict)
     tasks: dict[str, TaskTally] = field(default_factory=dict)
@@ -115,8 +117,9 @@ class ExerciseTally:
     def take(self, effective: Effective) -> None:
         """Count one student's result."""
         verdict = effective.verdict
-        if effective.missing:
-            self.missing += 1
+        if effective.missing or effective.waiting:
+            self.missing += effective.missing
+            self.waiting += effective.waiting
             return
         self.results += 1
         self.passed += effective.passed
@@ -232,7 +235,7 @@ class Tally:
         self.students += 1
         for effective in found:
             self.exercises[effective.exercise].take(effective)
-            if effective.missing:
+            if effective.missing or effective.waiting:
                 continue
             self._take_facts(effective)
             if effective.result.number:

@@ -1,4 +1,4 @@
-"""A fault in the files of one exercise is that exercise's: named, without a score, and the others are graded."""
+"""A fault in the files of one exercise is that exercise's: named, without a score; the others are graded."""
 
 from __future__ import annotations
 

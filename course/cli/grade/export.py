@@ -59,6 +59,10 @@ def export(
     accept_zeros: Annotated[
         bool, typer.Option("--accept-zeros", help="Write 0 for ungraded submissions without a decision.")
     ] = False,
+    overwrite: Annotated[
+        bool,
+        typer.Option("--overwrite", help="Replace grades and feedback that are in Moodle's worksheet."),
+    ] = False,
     exercise: Exercises = None,
     seed: Annotated[
         int | None,
@@ -92,7 +96,7 @@ def export(
             raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
         sheet = roster if format == "moodle-worksheet" else None
         given = _assignments(assignment or [])
-        options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet)
+        options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet, overwrite)
         written, found = _from_gradebook(console, out, format, output, people, options)
     if written is not None:
         _show(console, format, written, out, found)
@@ -189,6 +193,7 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
                 rows=written.rows,
                 unmatched=tuple(written.unmatched),
                 without_grade=tuple(written.without_grade),
+                kept=tuple(written.kept),
                 notes=tuple(written.notes),
                 moved=tuple(found.moved),
                 dropped=tuple(found.dropped),

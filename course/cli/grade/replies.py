@@ -148,7 +148,8 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
 class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):
     """The export. ``unmatched`` are students without a row in the roster, left out with ``--partial``.
 
-    ``moved`` are the scores that a second roster changed, ``dropped`` the students whom it does not have.
+    ``moved`` are the scores that a second roster changed, ``dropped`` the students whom it does not have,
+    ``kept`` rows of Moodle's worksheet that have a teacher's grade or feedback.
     """
 
     format: str
@@ -159,6 +160,7 @@ class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=Tr
     notes: tuple[str, ...]
     moved: tuple[ScoreChange, ...] = ()
     dropped: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
 
 
 class SimilarPair(msgspec.Struct, frozen=True, kw_only=True):

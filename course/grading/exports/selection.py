@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from course.grading.results.effective import Effective, Results
     from course.grading.results.roster import Person, Roster
 
-__all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_settled", "is_part", "select"]
+__all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_settled", "is_part", "select", "some"]
 
 _SHOWN = 10
 
@@ -32,6 +32,7 @@ class ExportOptions:
         zeros: work that could not be graded may be written as 0, although the instructor has not looked at
             it.
         worksheet: Moodle's file to fill in.
+        overwrite: a grade or feedback that is in it already gives way to ours.
     """
 
     exercises: tuple[str, ...] = ()
@@ -40,6 +41,7 @@ class ExportOptions:
     missing: str = "blank"
     zeros: bool = False
     worksheet: Path | None = None
+    overwrite: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,7 @@ class Written:
         rows: results in them.
         unmatched: students left out.
         without_grade: "student exercise" of results without a score because the grader failed.
+        kept: rows of a platform's file that have a grade or feedback of a teacher's, with it.
         notes: what the instructor should know, one sentence each.
     """
 
@@ -79,6 +82,7 @@ class Written:
     rows: int = 0
     unmatched: list[str] = field(default_factory=list)
     without_grade: list[str] = field(default_factory=list)
+    kept: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
@@ -175,7 +179,7 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
     if waiting:
         are = "1 student is" if len(waiting) == 1 else f"{len(waiting)} students are"
         raise MissingCapabilityError(
-            f"{are} not graded yet: {_some(waiting)}. Nothing was written.",
+            f"{are} not graded yet: {some(waiting)}. Nothing was written.",
             help="Finish the run first: the command that began it, with --resume, goes on.",
             code="not_graded_yet",
         )
@@ -188,14 +192,15 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
     ]
     if unseen:
         raise MissingCapabilityError(
-            f"{len(unseen)} could not be graded and would get 0: {_some(unseen)}. Nothing was written.",
+            f"{len(unseen)} could not be graded and would get 0: {some(unseen)}. Nothing was written.",
             help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
             " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
         )
 
 
-def _some(listed: list[str]) -> str:
+def some(listed: list[str]) -> str:
+    """The first of a list, and how many more there are."""
     return ", ".join(listed[:_SHOWN]) + (f" and {len(listed) - _SHOWN} more" if listed[_SHOWN:] else "")
 
 

@@ -4,7 +4,8 @@ A teacher downloads it ("Download grading worksheet"), and uploads it again ("Up
 Moodle finds a row by ``Identifier``, takes ``Grade`` and ``Feedback comments`` from it, refuses a file
 without ``Last modified (grade)``, leaves out a grade that is empty, out of range or locked, and one that was
 changed in Moodle after the time in that column. An empty feedback cell deletes existing feedback. So
-everything but those two cells is written unchanged, and so is the whole row where we have no grade.
+everything but those two cells is written unchanged, and so is the whole row where we have no grade. A row
+that has a grade or feedback already, other than ours, is a teacher's: it is kept, and listed.
 
 Source: Moodle's own reader, https://github.com/moodle/moodle/tree/main/mod/assign/feedback/offline
 """
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING
 from course.errors import UsageError
 from course.grading.exports.cells import for_moodle, number, safe_cell, write_bytes
 from course.grading.exports.handout import problem_for_student
-from course.grading.exports.selection import ExportOptions, Needs, Written, check_settled, select
+from course.grading.exports.selection import ExportOptions, Needs, Written, check_settled, select, some
 from course.grading.results.roster import moodle_key, read_text
 from course.scoring.numbers import in_points
 
@@ -58,7 +59,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     check_settled(selection, options)
     headings, rows = _read(options.worksheet)
     mine = {selection.people[one.student].moodle_key: one for one in selection.each()}
-    locked, filled = [], 0
+    locked, kept, filled = [], [], 0
     for row in rows:
         effective = mine.get(moodle_key(row[headings.index(_KEY)]) or "")
         if effective is None or effective.score is None:
@@ -66,9 +67,14 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         if _OPEN in headings and row[headings.index(_OPEN)].strip().casefold() == "no":
             locked.append(effective.student)
             continue
-        row[headings.index(_GRADE)] = _grade(options.worksheet, effective, _most(headings, row))
-        if _FEEDBACK in headings:
-            row[headings.index(_FEEDBACK)] = _feedback(effective)
+        ours = {_GRADE: _grade(options.worksheet, effective, _most(headings, row))}
+        ours |= {_FEEDBACK: _feedback(effective)} if _FEEDBACK in headings else {}
+        theirs = {name: cell for name in ours if (cell := row[headings.index(name)].strip())}
+        if any(not _same(cell, ours[name]) for name, cell in theirs.items()) and not options.overwrite:
+            kept.append(f"{effective.student} ({', '.join(theirs.values())})")
+            continue
+        for name, cell in ours.items():
+            row[headings.index(name)] = cell
         filled += 1
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\r\n").writerows([headings, *rows])
@@ -77,6 +83,13 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     written.paths.append(path)
     written.rows = filled
     written.notes.append(f"{len(rows) - filled} rows of the worksheet are unchanged.")
+    if kept:
+        written.kept = kept
+        rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
+        written.notes.append(
+            f"{rows_have} a grade or feedback already and stayed as they were: {some(kept)}. --overwrite"
+            " writes ours in their place."
+        )
     if locked:
         written.notes.append(
             f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."
@@ -84,6 +97,14 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     if _FEEDBACK not in headings:
         written.notes.append("The worksheet has no feedback comments: Moodle's feedback type is off.")
     return written
+
+
+def _same(theirs: str, ours: str) -> bool:
+    """Whether a cell says the same: 55.00 and 55 are one grade."""
+    try:
+        return float(theirs.replace(",", ".")) == float(ours.replace(",", "."))
+    except ValueError:
+        return theirs == ours.strip()
 
 
 def _read(path: Path) -> tuple[list[str], list[list[str]]]:

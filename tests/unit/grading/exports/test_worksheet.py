@@ -130,8 +130,44 @@ def test_feedback_with_backslashes_is_one_cell_to_moodle(tmp_path: Path, out: Pa
 
 def test_missing_work_is_a_zero_only_as_told(tmp_path: Path, out: Path) -> None:
     sheet = write(tmp_path / "sheet.csv", SHEET)
-    filled(out, sheet, tmp_path / "zero.csv", missing="zero")
+    filled(out, sheet, tmp_path / "kept.csv", missing="zero")
+    assert taken_by_moodle(tmp_path / "kept.csv", 100.0)["102"] == (None, "See me, Bob")
+    filled(out, sheet, tmp_path / "zero.csv", missing="zero", overwrite=True)
     assert taken_by_moodle(tmp_path / "zero.csv", 100.0)["102"][0] == 0.0
+
+
+def with_cells(grade: str, feedback: str) -> list[list[str]]:
+    """The sheet as a teacher may have left it, with something in Ada's row."""
+    return [[*SHEET[0][:4], grade, *SHEET[0][5:9], feedback], *SHEET[1:]]
+
+
+@pytest.mark.parametrize(
+    ("grade", "feedback"),
+    [("55.00", "Seen in the oral: fine"), ("55,0", ""), ("", "See me"), ("100", "See me")],
+)
+def test_a_teachers_grade_and_feedback_stay_and_are_listed(
+    tmp_path: Path, out: Path, grade: str, feedback: str
+) -> None:
+    sheet = write(tmp_path / "sheet.csv", with_cells(grade, feedback))
+    written = filled(out, sheet, tmp_path / "back.csv")
+    rows = list(csv.reader(io.StringIO((tmp_path / "back.csv").read_bytes().decode(), newline="")))
+    assert rows[1] == with_cells(grade, feedback)[0]
+    assert len(written.kept) == 1
+    assert written.kept[0].startswith("Ada Lovelace_101 (")
+    (said,) = [note for note in written.notes if "already" in note]
+    assert all(cell in said for cell in ("--overwrite", grade, feedback))
+    replaced = filled(out, sheet, tmp_path / "new.csv", overwrite=True)
+    assert replaced.kept == []
+    assert taken_by_moodle(tmp_path / "new.csv", 100.0)["101"][0] == 100.0
+
+
+def test_a_sheet_that_has_our_own_grades_is_filled_in_again(tmp_path: Path, out: Path) -> None:
+    """Moodle gives back what was uploaded, with two digits after the point."""
+    filled(out, write(tmp_path / "sheet.csv", SHEET), tmp_path / "back.csv")
+    head, *rows = csv.reader(io.StringIO((tmp_path / "back.csv").read_bytes().decode(), newline=""))
+    rows = [[*row[:4], row[4] and f"{float(row[4]):.2f}", *row[5:]] for row in rows]
+    written = filled(out, write(tmp_path / "again.csv", rows, head), tmp_path / "twice.csv")
+    assert (written.rows, written.kept) == (2, [])
 
 
 def test_the_grade_is_on_moodles_scale_with_its_comma(tmp_path: Path, out: Path) -> None:

@@ -43,6 +43,7 @@ class _Cell(msgspec.Struct, frozen=True):
     cell_type: str = ""
     source: str | list[str] = ""
     input: str | list[str] = ""
+    id: str = ""
     metadata: dict[str, Any] = {}
 
 
@@ -77,6 +78,8 @@ class CodeCell:
         tree: its syntax tree; None if it is not Python.
         tags: what the course wrote into the cell's metadata when it generated it; {} where that is lost.
         dropped: lines that were taken out, (line, text) each.
+        raw: its text as it is in the notebook.
+        id: its id there, if it has one.
     """
 
     number: int
@@ -84,6 +87,8 @@ class CodeCell:
     tree: ast.Module | None
     tags: dict[str, Any]
     dropped: tuple[tuple[int, str], ...] = field(default=())
+    raw: str = ""
+    id: str = ""
 
 
 def code_cells(data: bytes, name: str) -> list[CodeCell]:
@@ -167,7 +172,8 @@ def _code_cell(number: int, cell: _Cell) -> CodeCell:
     text, dropped = _without_magics(_text(cell).replace("\r\n", "\n").replace("\r", "\n"))
     text, more = _without_shell(text)
     tags = cell.metadata.get("course")
-    return CodeCell(number, text, _parsed(text), tags if isinstance(tags, dict) else {}, (*dropped, *more))
+    tags = tags if isinstance(tags, dict) else {}
+    return CodeCell(number, text, _parsed(text), tags, (*dropped, *more), _text(cell), cell.id)
 
 
 def _text(cell: _Cell) -> str:

@@ -1,24 +1,24 @@
-"""The graded part of a notebook: the module that its cells make up.
+"""The graded part of a notebook: the module that its cells make up, in the order in which they stand there.
 
-Cells that the course generated for an exercise say so in their metadata; where that was lost, a cell that
-defines one of the exercise's functions is one of them. These count whole and in order, as if they had been
-written into the module one after the other, so that the last definition of a name wins. Of all other cells
-(helpers, experiments, plots) only the statements count that bind a name which the counted code uses.
+Of every cell those statements count that bind a name which the exercise's functions use; where a cell was
+generated for an exercise, or defines one of its functions, all that it defines, imports and assigns counts.
+Whatever else stands in a cell (plots, prints, tries) takes no part. A later definition of a name replaces an
+earlier one. A cell that is no Python costs what it would have defined, and nothing else.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-import symtable
 from bisect import bisect_right
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import msgspec
 
 from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
+from course.isolation.inside import statements
 from course.printable import one_line
 from course.scoring.judging.submission import Submission
 from course.scoring.places import Places
@@ -53,13 +53,13 @@ class NotebookSource(Places):
         source: the module's text, UTF-8.
         notes: parts left out, and assumptions, a sentence each.
         starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
-        called: the name of a cell, by its number.
+        called: names of cells by their numbers, for those that are not called "cell 7".
     """
 
     source: bytes
     notes: tuple[str, ...]
     starts: tuple[tuple[int, int], ...]
-    called: str = "cell {}"
+    called: Mapping[int, str] = field(default_factory=dict)
 
     def record(self) -> bytes:
         """Notes and places as bytes, to store beside the module."""
@@ -94,7 +94,7 @@ class NotebookSource(Places):
         if index < 0:
             return f"line {line}"
         start, cell = self.starts[index]
-        return f"{self.called.format(cell)}, line {line - start + 1}"
+        return f"{self.called.get(cell, f'cell {cell}')}, line {line - start + 1}"
 
 
 #: How a student's frame begins in a traceback, as ``StudentFailure`` has it.
@@ -129,8 +129,14 @@ def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook")
         ) from None
 
 
-def source_of(cells: list[CodeCell], exercise: Exercise, name: str) -> NotebookSource:
-    """The module that cells stand for, however they came to be known; see ``notebook_source``."""
+def source_of(
+    cells: list[CodeCell], exercise: Exercise, name: str, called: Mapping[int, str] | None = None
+) -> NotebookSource:
+    """The module that cells stand for, however they came to be known; see ``notebook_source``.
+
+    Args:
+        called: names of cells by their numbers, for those that are not called "cell 7".
+    """
     functions = {task.id for task in exercise.task}
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:
@@ -140,54 +146,88 @@ def source_of(cells: list[CodeCell], exercise: Exercise, name: str) -> NotebookS
             help=f"Keep the names the notebook gave: {listed}.",
             code="no_declared_functions",
         )
-    blocks = _blocks(cells, chosen)
-    return _written(blocks, _notes(cells, chosen, exercise.id))
+    names = {cell.number: f"cell {cell.number}" for cell in cells} | dict(called or {})
+    notes = _notes(cells, chosen, exercise, names)
+    return replace(_written(_blocks(cells, chosen, functions), notes), called=dict(called or {}))
 
 
 def _counts(cell: CodeCell, exercise: str, functions: set[str]) -> bool:
-    """Whether a cell is part of the solution as a whole."""
+    """Whether a cell belongs to the solution: all that it defines counts."""
     if cell.tags.get("exercise") == exercise and cell.tags.get("role") in (SOLUTION, SETUP):
         return bool(cell.text.strip())
     # Also in a cell that was generated to check something: two cells that are merged keep the marks of one.
+    return not functions.isdisjoint(_names(cell))
+
+
+def _names(cell: CodeCell) -> set[str]:
+    """What a cell defines, or would define if it were Python."""
     if cell.tree is None:
-        # Not Python: what it would have defined decides, so that it is refused as the module would be.
-        found = re.findall(r"^(?:async )?def\s+(\w+)", cell.text, re.MULTILINE)
-        return not functions.isdisjoint(found)
-    return not functions.isdisjoint(name for node in cell.tree.body for name in _bound(node))
+        return set(statements.defined_in(cell.text))
+    return {name for node in cell.tree.body for name in statements.bound(node)}
 
 
-# -- statements of other cells -----------------------------------------------------------------------------
+# -- what counts of the cells ------------------------------------------------------------------------------
+
+#: What counts in a solution's cell whether or not anything needs it.
+_DEFINITIONS = (
+    ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Import, ast.ImportFrom, ast.Assign,
+    ast.AnnAssign, ast.AugAssign,
+)  # fmt: skip
 
 
-def _blocks(cells: list[CodeCell], chosen: list[CodeCell]) -> list[tuple[CodeCell, str]]:
+@dataclass(frozen=True)
+class _Part:
+    """A statement of a cell, or some lines of it that are no Python."""
+
+    cell: CodeCell
+    first: int
+    last: int
+    node: ast.stmt | None
+    names: tuple[str, ...] = ()
+
+
+def _parts(cell: CodeCell) -> Iterator[_Part]:
+    if cell.tree is not None:
+        yield from (_part(cell, node) for node in cell.tree.body)
+        return
+    found = statements.pieces(cell.text)
+    ends = [*(piece.line - 1 for piece in found[1:]), cell.text.count("\n") + 1][: len(found)]
+    for piece, end in zip(found, ends, strict=True):
+        if piece.error is not None:
+            yield _Part(cell, piece.line, end, None, piece.names)
+        yield from (_part(cell, node) for node in piece.body)
+
+
+def _part(cell: CodeCell, node: ast.stmt) -> _Part:
+    decorators = getattr(node, "decorator_list", [])
+    first = min([node.lineno, *(decorator.lineno for decorator in decorators)])
+    return _Part(cell, first, node.end_lineno or node.lineno, node)
+
+
+def _blocks(cells: list[CodeCell], chosen: list[CodeCell], functions: set[str]) -> list[tuple[CodeCell, str]]:
     """(cell, text) of everything that counts, in order; lines left out are empty."""
-    whole = {cell.number for cell in chosen}
-    others = [
-        (cell, node)
-        for cell in cells
-        if cell.number not in whole and cell.tree
-        for node in cell.tree.body
-        if not _is_tool(cell, node)
+    solution = {cell.number for cell in chosen}
+    parts = [
+        part for cell in cells for part in _parts(cell) if part.node is None or not _is_tool(cell, part.node)
     ]
-    binding: dict[str, list[int]] = {}
-    for index, (_, node) in enumerate(others):
-        for name in _bound(node):
-            binding.setdefault(name, []).append(index)
-    kept: set[int] = set()
-    wanted = [name for cell in chosen if cell.tree for name in _loaded(cell.tree)]
-    while wanted:
-        for index in binding.pop(wanted.pop(), ()):  # each name is looked up once
-            if index not in kept:
-                kept.add(index)
-                wanted += _loaded(others[index][1])
-    nodes: dict[int, list[ast.stmt]] = {}
-    for index in sorted(kept):
-        nodes.setdefault(others[index][0].number, []).append(others[index][1])
-    return [
-        (cell, cell.text if cell.number in whole else _only(cell.text, nodes[cell.number]))
-        for cell in cells
-        if cell.number in whole or cell.number in nodes
+    whole = [part for part in parts if part.node is not None]
+    nodes = [part.node for part in whole if part.node is not None]
+    always = [
+        index
+        for index, part in enumerate(whole)
+        if part.cell.number in solution and isinstance(part.node, _DEFINITIONS)
     ]
+    kept = [whole[index] for index in statements.needed(nodes, functions, always)]
+    wanted = functions.union(*(statements.loaded(part.node) for part in kept if part.node is not None))
+    broken = [
+        part
+        for part in parts
+        if part.node is None and (part.cell.number in solution or not wanted.isdisjoint(part.names))
+    ]
+    lines: dict[int, list[_Part]] = {}
+    for part in (*kept, *broken):
+        lines.setdefault(part.cell.number, []).append(part)
+    return [(cell, _only(cell.text, lines[cell.number])) for cell in cells if cell.number in lines]
 
 
 def _is_tool(cell: CodeCell, node: ast.stmt) -> bool:
@@ -197,74 +237,12 @@ def _is_tool(cell: CodeCell, node: ast.stmt) -> bool:
     return isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "course"
 
 
-def _bound(node: ast.AST) -> Iterator[str]:
-    """Names that a statement binds at its own level, or changes: x = 1, x[0] = 1, x.append(1), def x."""
-    match node:
-        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
-            yield node.name
-        case ast.Import() | ast.ImportFrom():
-            for alias in node.names:
-                yield (alias.asname or alias.name).partition(".")[0]
-        case ast.Name(ctx=ast.Store() | ast.Del()):
-            yield node.id
-        case ast.Attribute(ctx=ast.Store() | ast.Del()) | ast.Subscript(ctx=ast.Store() | ast.Del()):
-            yield from _base(node)
-        case ast.Expr(value=ast.Call(func=ast.Attribute() as method)):
-            yield from _base(method)
-        case ast.Lambda() | ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
-            return
-        case _:
-            for child in ast.iter_child_nodes(node):
-                yield from _bound(child)
-
-
-def _base(node: ast.expr) -> Iterator[str]:
-    """The name at the root of a.b[c].d."""
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        node = node.value
-    if isinstance(node, ast.Name):
-        yield node.id
-
-
-def _loaded(node: ast.AST) -> Iterator[str]:
-    """Every name of the module that a piece of code reads; parameters and other local names are none."""
-    yield from _augmented(node)
-    try:
-        table = symtable.symtable(ast.unparse(node), "cell", "exec")
-    except SyntaxError:  # such as a return outside of a function: the names it reads are unknown
-        yield from (child.id for child in ast.walk(node) if isinstance(child, ast.Name))
-    else:
-        yield from _global(table)
-
-
-def _global(table: symtable.SymbolTable) -> Iterator[str]:
-    """Names that a scope and those within it take from the module."""
-    outermost = table.get_type() == "module"
-    for symbol in table.get_symbols():
-        if symbol.is_referenced() if outermost else symbol.is_global():
-            yield symbol.get_name()
-    for child in table.get_children():
-        yield from _global(child)
-
-
-def _augmented(node: ast.AST) -> Iterator[str]:
-    """Names that are changed from what they were, at the level of the module: x += 1."""
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
-        return
-    if isinstance(node, ast.AugAssign):
-        yield from _base(node.target)
-    for child in ast.iter_child_nodes(node):
-        yield from _augmented(child)
-
-
-def _only(text: str, nodes: list[ast.stmt]) -> str:
-    """The lines of some statements of a cell; the lines of all others are empty."""
+def _only(text: str, parts: list[_Part]) -> str:
+    """The lines of some parts of a cell; the lines of all others are empty."""
     lines = text.split("\n")
     shown = [""] * len(lines)
-    for node in nodes:
-        decorators = getattr(node, "decorator_list", [])
-        first = min([node.lineno, *(decorator.lineno for decorator in decorators)])
-        shown[first - 1 : node.end_lineno] = lines[first - 1 : node.end_lineno]
+    for part in parts:
+        shown[part.first - 1 : part.last] = lines[part.first - 1 : part.last]
     return "\n".join(shown)
 
 
@@ -296,21 +274,37 @@ def _imports_future(tree: ast.Module) -> bool:
     return any(isinstance(node, ast.ImportFrom) and node.module == "__future__" for node in tree.body)
 
 
-def _notes(cells: list[CodeCell], chosen: list[CodeCell], exercise: str) -> tuple[str, ...]:
+def _notes(
+    cells: list[CodeCell], chosen: list[CodeCell], exercise: Exercise, names: Mapping[int, str]
+) -> tuple[str, ...]:
     dropped = [
-        (cell.number, line, text)
+        (names[cell.number], line, text)
         for cell in cells
         if cell.tags.get("role") in (None, SOLUTION, SETUP)
         for line, text in cell.dropped
     ]
     notes = [
-        f"Cell {number}, line {line}: left out, since it is not Python: {one_line(text, 80)}"
-        for number, line, text in dropped[:MAX_NOTES]
+        f"{where[:1].upper()}{where[1:]}, line {line}: left out, since it is not Python: {one_line(text, 80)}"
+        for where, line, text in dropped[:MAX_NOTES]
     ]
     if len(dropped) > MAX_NOTES:
         notes.append(f"{len(dropped) - MAX_NOTES:,} more lines were left out, since they are not Python.")
-    unmarked = [str(cell.number) for cell in chosen if cell.tags.get("exercise") != exercise]
+    unmarked = [names[cell.number] for cell in chosen if cell.tags.get("exercise") != exercise.id]
     if unmarked:
-        numbers = ", ".join(unmarked[:MAX_NOTES]) + (" and more" if len(unmarked) > MAX_NOTES else "")
-        notes.append(f"Taken for part of the solution by what they define: cells {numbers}.")
-    return tuple(notes)
+        notes.append(f"Taken for part of the solution by what they define: {_listed(unmarked)}.")
+    return (*notes, *_twice(cells, exercise, names))
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(names[:MAX_NOTES]) + (" and more" if len(names) > MAX_NOTES else "")
+
+
+def _twice(cells: list[CodeCell], exercise: Exercise, names: Mapping[int, str]) -> Iterator[str]:
+    """Which functions are defined in more than one cell."""
+    defined: dict[str, list[str]] = {task.id: [] for task in exercise.task}
+    for cell in cells:
+        for name in _names(cell) & defined.keys():
+            defined[name].append(names[cell.number])
+    for name, where in defined.items():
+        if len(where) > 1:
+            yield f"`{name}` is defined more than once, in {_listed(where)}; the last of them counts."

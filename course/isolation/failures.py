@@ -34,6 +34,7 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         traceback: the student's own frames, as text.
         bases: names of the classes the exception derives from, its own included.
         places: how ``line`` is named in messages to the student; None if unknown here.
+        why: of a "missing" function, what kept it from being loaded.
     """
 
     def __init__(
@@ -54,11 +55,18 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
         self.traceback = traceback
         self.bases = tuple(bases) or (type,)
         self.places: Any = None
+        self.why: StudentFailure | None = None
 
     @classmethod
-    def missing(cls, function: str) -> Self:
-        """The submission has no callable of this name."""
-        return cls("missing", type=function, message=f"no function {function!r}")
+    def missing(cls, function: str, why: StudentFailure | None = None) -> Self:
+        """The submission has no callable of this name.
+
+        Args:
+            why: what kept it from being loaded, if the file has it.
+        """
+        failure = cls("missing", type=function, message=f"no function {function!r}")
+        failure.why = why
+        return failure
 
     def is_a(self, exception: str) -> bool:
         """Whether the student's code raised this exception or one derived from it."""

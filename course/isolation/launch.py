@@ -35,7 +35,8 @@ __all__ = [
 _PACKAGE = "course_worker"
 _COPIED = (
     *(f"isolation/inside/{name}.py" for name in ("frames", "encoding", "decoding", "wire")),
-    *(f"isolation/inside/{name}.py" for name in ("loops", "declared", "worker", "lockdown", "zygote")),
+    *(f"isolation/inside/{name}.py" for name in ("loops", "statements", "declared", "loading")),
+    *(f"isolation/inside/{name}.py" for name in ("worker", "lockdown", "zygote")),
     "physics/systems.py",
 )
 _PREFIX = "course-worker-"

@@ -10,7 +10,7 @@ from course.printable import one_line
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["claimed_text", "raised"]
+__all__ = ["claimed_line", "claimed_names", "claimed_text", "raised"]
 
 _MAX_FRAMES = 12  # of a traceback
 
@@ -55,6 +55,17 @@ def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | Non
 def claimed_text(value: Any, limit: int = 2000) -> str:
     """Text that can be shown on one line; empty if it is not text."""
     return one_line(value, limit) if isinstance(value, str) else ""
+
+
+def claimed_names(value: Any) -> list[str]:
+    """Names of functions; none if it is not a list of such."""
+    names = value[:1000] if isinstance(value, list) else []
+    return [name for name in names if isinstance(name, str)]
+
+
+def claimed_line(value: Any, source: Sequence[str]) -> int | None:
+    """A line of the file; None if it is none."""
+    return value if _is_line(value, source) else None
 
 
 def _items(value: Any) -> list[Any]:

@@ -8,23 +8,23 @@ from __future__ import annotations
 
 import sys
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.hanging import where_it_hangs
 from course.isolation.inside import wire
 from course.isolation.levels import START_TIMEOUT
-from course.isolation.reports import claimed_text, raised
+from course.isolation.reports import claimed_line, claimed_names, claimed_text, raised
 from course.physics import systems
 from course.printable import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from course.isolation.spawn import Exit, Handle, Spawner
 
-__all__ = ["Connection", "LoadRefusedError", "RemoteFunction"]
+__all__ = ["Connection", "LoadFault", "LoadRefusedError", "RemoteFunction"]
 
 Kind = wire.Kind
 _CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
@@ -37,6 +37,7 @@ _CALLBACK_BYTES = 16 << 20
 #: The total size of everything in one check: a check may keep all results, too. Accepted solutions of the
 #: course were seen to need 1 MB.
 _CHECK_BYTES = 32 << 20
+_MOST_FAULTS = 20
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
 
@@ -56,6 +57,22 @@ class LoadRefusedError(Exception):
         self.failure = failure
         self.text = text
         self.printed = ""
+
+
+class LoadFault(NamedTuple):
+    """What of a submission could not be loaded, by its own account.
+
+    Attributes:
+        stage: "syntax" or "import".
+        failure: why; its line is where what was left out begins.
+        names: what that would have defined.
+        text: the offending line, for a syntax error.
+    """
+
+    stage: str
+    failure: StudentFailure
+    names: frozenset[str]
+    text: str = ""
 
 
 class RemoteFunction:
@@ -81,6 +98,11 @@ class Connection:
         deadline: by which loading must be done.
         asks: ask where the code is if it does not answer in time. Only at home, because the code may have
             chosen the answer.
+        needed: functions of which nothing but what they need is to be loaded; empty for all of the file.
+
+    Attributes:
+        functions: names of what can be called.
+        faults: what was left out of the file.
 
     Raises:
         LoadRefusedError: the submission cannot be loaded.
@@ -95,8 +117,11 @@ class Connection:
         deadline: Deadline,
         *,
         asks: bool = False,
+        needed: Sequence[str] = (),
     ) -> None:
         self._files = files
+        self._needed = list(needed)
+        self.faults: tuple[LoadFault, ...] = ()
         self._asks = asks
         self._main = main
         self._codec = wire.Codec(self)
@@ -235,7 +260,7 @@ class Connection:
     def _ask(self, kind: wire.Kind, request: list[Any], function: str | RemoteFunction) -> Any:
         name = function if isinstance(function, str) else "your function"
         if isinstance(function, str) and function not in self.functions:
-            raise StudentFailure.missing(function)
+            raise self.missing(function)
         if not self._nesting:
             self._lent.clear()
             self._refused = None
@@ -290,18 +315,27 @@ class Connection:
             self._nesting -= 1
         self._send(answer)
 
+    def missing(self, function: str) -> StudentFailure:
+        """The failure of a function that is not there, with the reason if it was left out."""
+        fault = next((fault for fault in self.faults if function in fault.names), None)
+        return StudentFailure.missing(function, fault.failure if fault else None)
+
     def _load(self) -> frozenset[str]:
         self._await_lockdown()
         try:
-            self._send(wire.Codec().encode(Kind.LOAD, [dict(self._files), self._main]))
+            request = [dict(self._files), self._main, self._needed]
+            self._send(wire.Codec().encode(Kind.LOAD, request))
             kind, value = self._receive()
         except StudentFailure as failure:
             raise LoadRefusedError(failure.kind, failure) from None
-        if kind == Kind.LOADED and isinstance(value, list):
-            return frozenset(name for name in value if isinstance(name, str))
+        if kind == Kind.LOADED and isinstance(value, dict):
+            faults = value.get("faults")
+            claims = faults[:_MOST_FAULTS] if isinstance(faults, list) else []
+            self.faults = tuple(self._fault(claim) for claim in claims if isinstance(claim, dict))
+            return frozenset(claimed_names(value.get("names")))
         if kind == Kind.REFUSED and isinstance(value, dict):
-            stage = "syntax" if value.get("stage") == "syntax" else "import"
-            raise LoadRefusedError(stage, self._raised(value), claimed_text(value.get("text")))
+            fault = self._fault(value)
+            raise LoadRefusedError(fault.stage, fault.failure, fault.text)
         raise LoadRefusedError("crash", self._breach("an answer of another form"))
 
     def _await_lockdown(self) -> None:
@@ -320,10 +354,21 @@ class Connection:
         deadline.postpone(self._deadline.wall)
         self.deadline = deadline
 
+    def _fault(self, value: dict[str, Any]) -> LoadFault:
+        """What a worker reports that it could not load."""
+        failure = self._raised(value)
+        line = claimed_line(value.get("at"), self._lines())
+        failure.line = line or failure.line
+        stage = "syntax" if value.get("stage") == "syntax" else "import"
+        names = frozenset(claimed_names(value.get("names")))
+        return LoadFault(stage, failure, names, claimed_text(value.get("text")))
+
+    def _lines(self) -> list[str]:
+        return self._files[self._main].decode("utf-8", "replace").splitlines()
+
     def _raised(self, value: Any) -> StudentFailure:
         """The exception a worker reports."""
-        source = self._files[self._main].decode("utf-8", "replace").splitlines()
-        return raised(value, self._main, source) or self._breach("an exception in another form")
+        return raised(value, self._main, self._lines()) or self._breach("an exception in another form")
 
     # -- frames ---------------------------------------------------------------------------------------
 

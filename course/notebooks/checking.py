@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.notebooks.findings import CheckTable
-from course.notebooks.typed import defines_all, given, module_of, typed_in
+from course.notebooks.typed import at_hand, defines_all, given
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -77,7 +77,7 @@ def checked(
 
 def _submission(exercise: Exercise, source: Source | None) -> Submission:
     if source is None:
-        return module_of(typed_in(_shell()), exercise).submission(exercise)
+        return at_hand(_shell(), exercise).submission(exercise)
     if isinstance(source, str) and "\n" not in source and source.endswith((".py", ".ipynb")):
         source = Path(source)
     if isinstance(source, Path):

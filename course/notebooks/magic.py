@@ -1,9 +1,9 @@
 """``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
 
 With ``%%course_check`` at its head, a cell is the whole file and does not run in the kernel. Otherwise the
-text of the cells that were run is checked, not the objects in the kernel: the functions run again in a
-process of their own, so a check means the same here, in a terminal and in the grading run. In a workspace the
-attempt is recorded as `course check` records it.
+text of the notebook is checked, as it would be handed in, and not the objects in the kernel: the functions
+run again in a process of their own, so a check means the same here, in a terminal and in the grading run. In
+a workspace the attempt is recorded as `course check` records it.
 """
 
 from __future__ import annotations
@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING, Any
 from course.errors import CourseError
 from course.notebooks import checking
 from course.notebooks.checking import checked, must_have
-from course.notebooks.typed import typed_in
+from course.notebooks.typed import Runs, at_hand
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from course.notebooks.findings import CheckTable
     from course.notebooks.page import ReportPage
 
@@ -26,6 +24,7 @@ __all__ = ["check", "check_cell", "register", "report"]
 
 def register(shell: Any) -> None:
     """Add ``%course_check`` and ``%course_report`` to an IPython shell."""
+    shell.course_runs = Runs(shell)
 
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
         """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
@@ -36,7 +35,7 @@ def register(shell: Any) -> None:
         try:
             if cell is not None:
                 return check_cell(f"{cell}\n", *words)
-            return check(typed_in(shell), *words)
+            return check(shell, *words)
         except CourseError as error:
             _said(f"{error.message} {error.help}")
             return None
@@ -48,7 +47,7 @@ def register(shell: Any) -> None:
             _said("Write: %course_report EXERCISE")
             return None
         try:
-            return report(typed_in(shell), words[0])
+            return report(shell, words[0])
         except CourseError as error:
             _said(f"{error.message} {error.help}")
             return None
@@ -61,11 +60,11 @@ def _said(text: str) -> None:
     print(text)  # noqa: T201 - a cell's output is its screen
 
 
-def report(history: Sequence[str], exercise_id: str) -> ReportPage:
-    """A report: what the functions in the run cells do on public data.
+def report(shell: Any, exercise_id: str) -> ReportPage:
+    """A report: what the functions of a notebook do on public data.
 
     Args:
-        history: what was run, oldest first.
+        shell: of IPython, that runs it.
 
     Raises:
         NotFoundError: there is no such exercise, or it has nothing to show.
@@ -73,33 +72,29 @@ def report(history: Sequence[str], exercise_id: str) -> ReportPage:
     """
     from course.catalog.load import Catalog
     from course.notebooks.page import ReportPage
-    from course.notebooks.typed import module_of
     from course.scoring.judging.reporting import report_of
 
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
-    module = module_of(history, exercise)
-    return ReportPage(report_of(exercise, catalog, module.submission(exercise)))
+    return ReportPage(report_of(exercise, catalog, at_hand(shell, exercise).submission(exercise)))
 
 
-def check(history: Sequence[str], exercise_id: str, task: str | None = None) -> CheckTable:
-    """The public checks of an exercise, or of one of its functions, on the cells that were run.
+def check(shell: Any, exercise_id: str, task: str | None = None) -> CheckTable:
+    """The public checks of an exercise, or of one of its functions, on a notebook.
 
     Args:
-        history: what was run, oldest first.
+        shell: of IPython, that runs it.
 
     Raises:
         NotFoundError: there is no such exercise or function.
         UngradableError: there is nothing to check yet.
     """
     from course.catalog.load import Catalog
-    from course.notebooks.typed import module_of
 
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     must_have(exercise, task)
-    module = module_of(history, exercise)
-    return checked(catalog, exercise, module.submission(exercise), task)
+    return checked(catalog, exercise, at_hand(shell, exercise).submission(exercise), task)
 
 
 def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTable:

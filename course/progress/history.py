@@ -288,17 +288,19 @@ def _kept(check: _Check) -> dict[str, object]:
 def fingerprint(source: bytes) -> str:
     """A digest of a file's statements, without comments and layout; another one is another attempt.
 
-    The same code in a notebook is the same attempt. There a module's docstring is a text cell, a ``pass``
-    replaces each magic, and cells run in the order in which the student ran them; so neither of these counts.
-    A file that does not parse is known by its bytes, line endings aside.
+    The same code in a notebook is the same attempt. There a module's docstring is a text cell, and a ``pass``
+    replaces each magic; so neither of these counts, nor does the order of functions. That of all other
+    statements does. A file that does not parse is known by its bytes, line endings aside.
     """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
             tree = ast.parse(source)
             body = tree.body[1:] if ast.get_docstring(tree, clean=False) is not None else tree.body
-            statements = {ast.dump(node) for node in body if not isinstance(node, ast.Pass)}
-            code = "\n".join(sorted(statements)).encode("utf-8", "surrogatepass")
+            functions = {node.name: ast.dump(node) for node in body if isinstance(node, ast.FunctionDef)}
+            others = [node for node in body if not isinstance(node, ast.FunctionDef | ast.Pass)]
+            statements = [*sorted(functions.values()), *map(ast.dump, others)]
+            code = "\n".join(statements).encode("utf-8", "surrogatepass")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         code = source.replace(b"\r\n", b"\n")
     return hashlib.sha256(code).hexdigest()

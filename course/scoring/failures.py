@@ -87,6 +87,8 @@ def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     """
     if failure.kind == "error":
         return _error_finding(failure, shown=shown)
+    if failure.kind == "missing" and failure.why is not None:
+        return _left_out(failure, failure.why)
     if failure.kind == "missing":
         return Finding(
             message=f"Your file has no function `{failure.type}`.",
@@ -97,6 +99,20 @@ def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
     if failure.kind == "timeout" and failure.line:
         message += f" It was still {_at(failure)}."
     return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
+
+
+def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
+    """The finding for a function that is in the file and could not be loaded."""
+    places: Places = failure.places or Places()
+    where = f" {places.phrase(why.line)}" if why.line else ""
+    said = f": {one_line(why.message, _SAID).rstrip(' .')}" if why.message else ""
+    if "SyntaxError" in why.bases:
+        message = f"Python cannot read `{failure.type}`{where}{said}."
+        advice = "Look at that line and the one above it: a bracket, a colon, the indentation?"
+    else:
+        message = f"`{failure.type}` could not be made: {why.type}{where}{said}."
+        advice = "Make that line work when the file is loaded, before any function is called."
+    return Finding(message=message, help=advice, diagnosis="MISSING_FUNCTION")
 
 
 def _at(failure: StudentFailure) -> str:

@@ -17,6 +17,7 @@ from course.scoring.values import Inspected, as_march, overwritten
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+    from course.isolation.session import LoadFault
     from course.isolation.spawn import Spawner
 
 T = TypeVar("T")
@@ -56,6 +57,8 @@ class RemoteSubmission:
         places: how its lines are told; failures carry it.
         home: a worker that does not answer is asked where it is.
         patience: seconds of CPU time for loading, if that is to have less than a check.
+        tasks: functions; a file that hangs or dies while it is loaded is loaded without what these do not
+            need.
         listened: functions whose calls are recorded in ``heard``.
 
     Attributes:
@@ -63,6 +66,7 @@ class RemoteSubmission:
         returned: name and value of the last of the student's functions that returned in this check.
         asked: names of the functions that this check has used.
         marched: the first march of this check at home, if it made one.
+        without: why only what the tasks need was loaded; None where all was.
 
     Raises:
         LoadRefusedError: it cannot be loaded.
@@ -79,9 +83,13 @@ class RemoteSubmission:
         places: Places | None = None,
         home: bool = False,
         patience: float | None = None,
+        tasks: Sequence[str] = (),
         listened: frozenset[str] = frozenset(),
     ) -> None:
         self._listened = listened
+        self._tasks = tuple(tasks)
+        self._needed: tuple[str, ...] = ()
+        self.without: LoadRefusedError | None = None
         self.heard: list[Heard] = []
         self._home = home
         self._places = places or Places(module=main)
@@ -91,7 +99,8 @@ class RemoteSubmission:
         self._main = main
         self._timeout = timeout
         self._cpu_left, self._wall_left = BUDGET_S, WALL * BUDGET_S
-        self._deadline = Deadline(min(timeout, self._cpu_left, timeout if patience is None else patience))
+        self._patience = min(timeout, timeout if patience is None else patience)
+        self._deadline = Deadline(min(self._patience, self._cpu_left))
         self._printed_before = 0
         self._task = ""
         self.returned: tuple[str, Any] | None = None
@@ -104,6 +113,11 @@ class RemoteSubmission:
     def functions(self) -> frozenset[str]:
         """Names of the functions and classes the module defines."""
         return self._connection.functions
+
+    @property
+    def faults(self) -> tuple[LoadFault, ...]:
+        """What of the file could not be loaded."""
+        return self._connection.faults
 
     # -- for checks -----------------------------------------------------------------------------------
 
@@ -140,7 +154,7 @@ class RemoteSubmission:
         """
         self.asked.add(name)
         if name not in self._live().functions:
-            raise StudentFailure.missing(name)
+            raise self._live().missing(name)
         return {"$function": name}
 
     def march(
@@ -286,7 +300,30 @@ class RemoteSubmission:
         self._spawner.tidy()
 
     def _connect(self) -> Connection:
-        return Connection(self._spawner, self._files, self._main, self._deadline, asks=self._home)
+        try:
+            return self._loaded()
+        except LoadRefusedError as refused:
+            if self._needed or refused.stage not in {"timeout", "crash"}:
+                raise
+            # Something beside the functions may hang or end the process: without that they can be had.
+            self._needed = self._tasks
+            self._cpu_left -= self._deadline.used
+            self._wall_left -= self._deadline.wall
+            self._deadline = Deadline(min(self._patience, self._cpu_left))
+            try:
+                connection = self._loaded()
+            except LoadRefusedError:
+                raise refused from None
+            if not connection.functions.intersection(self._tasks):
+                connection.close()
+                raise refused
+            self.without = refused
+            return connection
+
+    def _loaded(self) -> Connection:
+        return Connection(
+            self._spawner, self._files, self._main, self._deadline, asks=self._home, needed=self._needed
+        )
 
     @contextlib.contextmanager
     def _asking(self, name: str) -> Iterator[Connection]:

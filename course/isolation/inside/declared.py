@@ -112,17 +112,22 @@ class Imports:
         self._declared = ", ".join(sorted(declared)) or "none"
         self._replaced: set[str] = set()
 
-    def stand_in(self, source: str) -> None:
-        """Let a file load although it imports other packages.
+    def stand_in(self, node: ast.stmt) -> bool:
+        """Let a file load although this statement of it imports other packages; whether it may.
 
-        Only for imports at the top level: an import inside a ``try`` has an alternative, and an import in a
-        function concerns only that function.
+        Only an import at the top level: one inside a ``try`` has an alternative, and one in a function
+        concerns only that function. Nothing can stand for whatever a star import would bring.
         """
-        for node in ast.parse(source).body:
-            if isinstance(node, ast.Import):
-                self._replaced.update(alias.name.partition(".")[0] for alias in node.names)
-            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                self._replaced.add(node.module.partition(".")[0])
+        match node:
+            case ast.Import(names=names):
+                tops = {alias.name.partition(".")[0] for alias in names}
+            case ast.ImportFrom(module=str() as module, names=[ast.alias(name=name), *_], level=0):
+                tops = {module.partition(".")[0]} if name != "*" else set()
+            case _:
+                tops = set()
+        new = tops - self._replaced
+        self._replaced |= new
+        return bool(new)
 
     def find_spec(self, name: str, _path: Any = None, _target: Any = None) -> Any:
         top = name.partition(".")[0]

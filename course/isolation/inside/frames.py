@@ -54,7 +54,7 @@ class Kind(enum.IntEnum):
     FOLD = 7  # [function, state, [args, ...], which element is the next state or None, keys to keep or None]
     REPLY_RAISE = 5  # [exception name, message]: the callback refused its arguments
     READY = 15  # None: locked down, and nothing of the submission has run yet
-    LOADED = 16  # [names of functions]
+    LOADED = 16  # names of functions, and what was left out of the module
     REFUSED = 17  # {stage, type, message, line, text}
     RESULT = 18  # value
     RAISED = 19  # {type, message, line, function, frames}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import gc
-import importlib.machinery
 import importlib.util
 import io
 import itertools
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     import socket
 
 from ...physics import systems
-from . import declared, loops, wire
+from . import declared, loading, loops, wire
 
 __all__ = ["CappedText", "Worker"]
 
@@ -66,16 +65,6 @@ class CappedText(io.TextIOBase):
             with contextlib.suppress(OSError):  # a full or closed output must not fail a print
                 os.write(self._descriptor, kept.encode("utf-8", "replace"))
         return len(text)
-
-
-def _run(code: types.CodeType, main: str) -> types.ModuleType:
-    """A new module from a submission's code."""
-    module = types.ModuleType(main.removesuffix(".py"))
-    module.__file__ = main
-    module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None, origin=main)
-    sys.modules[module.__name__] = module
-    exec(code, module.__dict__)
-    return module
 
 
 class Worker:
@@ -199,11 +188,14 @@ class Worker:
 
     # -- loading --------------------------------------------------------------------------------------
 
-    def _load(self, files: dict[str, bytes], main: str) -> None:
+    def _load(self, files: dict[str, bytes], main: str, needed: list[str]) -> None:
         """Write the submission's files to the working folder and run its main module from memory.
 
         Byte-order marks, line endings and declared encodings are read as Python reads a file that it runs;
         ``compile`` on bare bytes would let undeclared ones pass in comments on some versions.
+
+        Args:
+            needed: functions of which nothing but what they need is to be run; empty for the whole file.
         """
         self._main = main
         for name, content in files.items():
@@ -214,26 +206,23 @@ class Worker:
         sys.meta_path.insert(0, imports)
         try:
             source = importlib.util.decode_source(files[main])
-            code = compile(source, main, "exec", dont_inherit=True)
-        except (SyntaxError, ValueError, MemoryError, RecursionError, UnicodeError) as error:
+        except (SyntaxError, ValueError, UnicodeError) as error:
             self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
             return
-        try:
-            try:
-                module = _run(code, main)
-            except declared.ImportNotDeclaredError as refused:
-                imports.stand_in(source)
-                try:
-                    module = _run(code, main)
-                except Exception:  # noqa: BLE001 - it cannot be loaded without that package
-                    raise refused from None
-        except BaseException as error:  # noqa: BLE001 - SystemExit at import is an answer too
-            self._send(Kind.REFUSED, {"stage": "import", **_described(error)})
+        module = loading.Loading(source, main, imports, needed)
+        if not module.run():
+            fault = module.faults[0]
+            self._send(Kind.REFUSED, {"stage": fault.stage, **_described(fault.error)})
             return
         declared.StandIn.loading = False
-        self._module = module
-        names = [name for name, value in list(vars(module).items()) if callable(value) and type(name) is str]
-        self._send(Kind.LOADED, names[:1000])
+        self._module = module.module
+        loaded = list(vars(self._module).items())
+        names = [name for name, value in loaded if callable(value) and type(name) is str]
+        faults = [
+            {"stage": it.stage, "at": it.line, "names": it.names, **_described(it.error)}
+            for it in module.faults
+        ]
+        self._send(Kind.LOADED, {"names": names[:1000], "faults": faults})
 
     # -- calls ----------------------------------------------------------------------------------------
 

@@ -14,11 +14,22 @@ if TYPE_CHECKING:
     from course.isolation.session import LoadRefusedError
     from course.scoring.checks.collected import Check
     from course.scoring.places import Places
+    from course.scoring.remote import RemoteSubmission
 
-__all__ = ["NOT_JUDGED", "found", "load_problem", "no_functions", "result", "skipped", "unjudged"]
+__all__ = [
+    "NOT_JUDGED",
+    "found",
+    "left_out_notes",
+    "load_problem",
+    "no_functions",
+    "result",
+    "skipped",
+    "unjudged",
+]
 
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
+_MOST_NOTES = 5
 
 
 def result(check: Check, status: Status, **fields: Any) -> CheckResult:
@@ -112,6 +123,24 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
     return Problem(
         "import_crash", message, "Remove what exits, kills or exhausts the process at the top level."
     )
+
+
+def left_out_notes(remote: RemoteSubmission, places: Places) -> list[str]:
+    """What of a file was left out so that the rest could be checked, a sentence each."""
+    notes = []
+    if remote.without is not None:
+        problem = load_problem(remote.without, places)
+        notes.append(f"{problem.message} Only what your functions need was loaded.")
+    for fault in remote.faults[:_MOST_NOTES]:
+        where = places.heading(fault.failure.line) if fault.failure.line else places.module
+        said = f": {fault.failure.message.rstrip(' .')}" if fault.failure.message else ""
+        if fault.stage == "syntax":
+            notes.append(f"{where}: left out, since Python cannot read it{said}.")
+        else:
+            notes.append(f"{where}: left out, since it raises {fault.failure.type} when it is loaded{said}.")
+    if len(remote.faults) > _MOST_NOTES:
+        notes.append("More of the file was left out.")
+    return notes
 
 
 def _loads_elsewhere(failure: StudentFailure) -> str:

@@ -26,7 +26,15 @@ from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.checks.companions import companion, companion_path, not_importable
 from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
 from course.scoring.judging.explaining import Explainer
-from course.scoring.judging.outcomes import found, load_problem, no_functions, result, skipped, unjudged
+from course.scoring.judging.outcomes import (
+    found,
+    left_out_notes,
+    load_problem,
+    no_functions,
+    result,
+    skipped,
+    unjudged,
+)
 from course.scoring.judging.repeating import Again
 from course.scoring.judging.submission import Submission
 from course.scoring.judging.terms import Terms
@@ -159,8 +167,9 @@ class GradingSession:
             return self._grader_error(str(error))
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
-                return self._ungradable(no_functions(self.exercise))
+                return self._ungradable(self._nothing_loaded(remote, submission))
             self._remote = remote
+            left_out = left_out_notes(remote, self._places(submission))
             self.printed = remote.printed()[:_PRINTED]
             results = self._run(remote, only, submission)
         except IsolationError as error:
@@ -169,7 +178,17 @@ class GradingSession:
             self._remote, self.running = None, ""
             with contextlib.suppress(IsolationError):
                 remote.close()
-        return self._graded(results)
+        verdict = self._graded(results)
+        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *left_out))
+
+    def _nothing_loaded(self, remote: RemoteSubmission, submission: Submission) -> Problem:
+        """Why none of the functions is there."""
+        if not remote.faults:
+            return no_functions(self.exercise)
+        fault = remote.faults[0]
+        return load_problem(
+            LoadRefusedError(fault.stage, fault.failure, fault.text), self._places(submission)
+        )
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
         """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.
@@ -201,6 +220,7 @@ class GradingSession:
             self._spawner, submission.files, self.exercise.module,
             timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
             home=self._terms.home, patience=self.exercise.patience() if self._terms.home else None,
+            tasks=[task.id for task in self.exercise.task],
             listened=self._explainer.listened(submission.files[self.exercise.module])
             if self._explainer else frozenset(),
         )  # fmt: skip

@@ -73,7 +73,7 @@ class Liar:
 
 
 READY = Codec().encode(Kind.READY, None)
-LOADED = Codec().encode(Kind.LOADED, ["f", "g"])
+LOADED = Codec().encode(Kind.LOADED, {"names": ["f", "g"], "faults": []})
 
 
 def _frame(kind: int, body: bytes) -> bytes:

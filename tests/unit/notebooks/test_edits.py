@@ -89,6 +89,9 @@ def test_an_error_in_a_notebook_is_told_by_its_cell(
         assert f"in {module.place(line)} of your notebook" in check.message
         assert (check.traceback or "").startswith(f"{module.place(line)} in explicit_euler_step")
         syntax = notebook_source(solved.replace(b"return q + h * v, v", b"return q + * h, v"), integrators)
-        refused = session.grade(handed_in(syntax, integrators))
-    assert refused.error is not None
-    assert refused.error.message.startswith("Cell ")
+        broken = session.grade(handed_in(syntax, integrators))
+    assert broken.state == "graded"
+    assert {check.task for check in broken.checks if check.status != "pass"} == {"explicit_euler_step"}
+    (check,) = [one for one in broken.checks if one.id == check.id]
+    assert check.message.startswith("Python cannot read `explicit_euler_step` in cell ")
+    assert broken.warnings[0].startswith("Cell ")

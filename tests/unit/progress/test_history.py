@@ -104,6 +104,11 @@ def test_the_order_of_functions_is_no_attempt_but_any_change_of_one_is():
     assert fingerprint(both + other) == fingerprint(other + both)
     assert fingerprint(both + other) != fingerprint(both)
     assert fingerprint(both + other) != fingerprint(both + other.replace(b"2", b"3"))
+    # Of two definitions the last counts, and of two assignments, too.
+    assert fingerprint(both + both.replace(b"x\n", b"1\n")) != fingerprint(
+        both.replace(b"x\n", b"1\n") + both
+    )
+    assert fingerprint(b"x = 1\nx = 2\n") != fingerprint(b"x = 2\nx = 1\n")
 
 
 @pytest.mark.parametrize("source", [b"def double(x:\n", b"\x00", b"\xff\xfe", b"(" * 100_000, b'"\\d"\n'])

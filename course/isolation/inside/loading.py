@@ -1,0 +1,201 @@
+"""Runs a submission's module, and what of it can be had where all of it cannot.
+
+A file is worth what its functions are worth, whatever stands beside them: what is no Python, and a statement
+that raises while the file is loaded, are left out and reported, and the rest is loaded. This runs in the
+student's process: what it reports is only a claim.
+"""
+
+from __future__ import annotations
+import __future__
+
+import ast
+import builtins
+import importlib.machinery
+import sys
+import types
+from typing import TYPE_CHECKING, Any
+
+from . import declared, statements
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+__all__ = ["Fault", "Loading"]
+
+_MOST_FAULTS = 20
+
+
+class Fault:
+    """What of a module was left out.
+
+    Attributes:
+        stage: "syntax" or "import".
+        error: why.
+        line: of the module, on which it begins.
+        names: what it would have defined.
+    """
+
+    def __init__(self, stage: str, error: BaseException, line: int, names: Collection[str]) -> None:
+        self.stage = stage
+        self.error = error
+        self.line = line
+        self.names = list(names)[:100]
+
+
+class Loading:
+    """One module on its way.
+
+    Args:
+        source: its text.
+        main: its file's name.
+        imports: decides what it may import.
+        needed: functions; where there are any, only what they need is run. Empty runs all.
+
+    Attributes:
+        module: as far as it is loaded.
+        faults: what was left out of it, in the order in which that was found.
+    """
+
+    def __init__(
+        self, source: str, main: str, imports: declared.Imports, needed: Collection[str] = ()
+    ) -> None:
+        self._source, self._main, self._imports, self._needed = source, main, imports, needed
+        self.faults: list[Fault] = []
+        self._refused: list[Fault] = []  # imports for which something stands
+        self.module = types.ModuleType(main.removesuffix(".py"))
+        self.module.__file__ = main
+        self.module.__spec__ = importlib.machinery.ModuleSpec(self.module.__name__, None, origin=main)
+        sys.modules[self.module.__name__] = self.module
+        # Every notebook has it, and so has code that was tried in one.
+        builtins.display = _display  # type: ignore[attr-defined]
+
+    def run(self) -> bool:
+        """Run it; whether there is anything in it that could be called.
+
+        Otherwise the first of ``faults`` says why.
+        """
+        try:
+            whole = compile(self._source, self._main, "exec", dont_inherit=True)
+        except statements.UNREADABLE as error:
+            self._go_on(self._readable(error))
+        else:
+            if self._needed:
+                self._go_on(self._chosen(statements.parsed(self._source)))
+            else:
+                self._run_whole(whole)
+        if self.faults and not self._has_functions():
+            self.faults[:0] = self._refused[:1]
+            return False
+        return True
+
+    def _run_whole(self, code: types.CodeType) -> None:
+        try:
+            exec(code, self.module.__dict__)
+        except BaseException as error:  # noqa: BLE001 - SystemExit is one of many ways to end a file
+            self._go_on(self._after(error))
+
+    def _has_functions(self) -> bool:
+        here = self.module.__name__
+        return any(
+            isinstance(value, types.FunctionType | type) and getattr(value, "__module__", here) == here
+            for value in list(vars(self.module).values())
+        )
+
+    def _chosen(self, body: list[ast.stmt]) -> list[ast.stmt]:
+        """The statements to run: all, or those that the functions need."""
+        if not self._needed:
+            return body
+        return [body[index] for index in statements.needed(body, self._needed)]
+
+    def _readable(self, error: BaseException) -> list[ast.stmt]:
+        """The statements of a module that is no Python as a whole; what is none is a fault."""
+        faults: list[Fault] = []
+        try:
+            body = statements.parsed(self._source)  # and the compiler will say it of one of them
+        except SyntaxError:
+            found = statements.pieces(self._source)
+            faults = [Fault("syntax", it.error, it.line, it.names) for it in found if it.error is not None]
+            body = [node for piece in found for node in piece.body]
+        except statements.UNREADABLE:
+            body = []
+        if not any(isinstance(node, ast.FunctionDef | ast.ClassDef) for node in body):
+            body, faults = [], [Fault("syntax", error, 0, ())]  # as Python says it of the whole file
+        self.faults += faults[:_MOST_FAULTS]
+        return self._chosen(body)
+
+    def _after(self, error: BaseException) -> list[ast.stmt]:
+        """The statements from the one on that raised; all if that cannot be told."""
+        line = _line_in(error, self._main)
+        body = statements.parsed(self._source)
+        for index, node in enumerate(body):
+            if line is not None and _first_line(node) <= line <= (node.end_lineno or node.lineno):
+                if self._is_allowed_now(node, error):
+                    return body[index:]
+                self._fault("import", error, line, statements.bound(node))
+                return body[index + 1 :]
+        self._fault("import", error, line or 0, ())
+        return []
+
+    def _go_on(self, body: list[ast.stmt]) -> None:
+        """Run statements one by one; one that raises is a fault and takes no other with it."""
+        flags = _future(body)
+        for node in body:
+            try:
+                code = compile(ast.Module([node], []), self._main, "exec", flags, dont_inherit=True)
+            except statements.UNREADABLE as error:
+                self._fault("syntax", error, _first_line(node), statements.bound(node))
+                continue
+            for _ in range(2):
+                try:
+                    exec(code, self.module.__dict__)
+                except BaseException as error:  # noqa: BLE001 - whatever it raises
+                    if self._is_allowed_now(node, error):
+                        continue
+                    line = _line_in(error, self._main) or _first_line(node)
+                    self._fault("import", error, line, statements.bound(node))
+                break
+
+    def _is_allowed_now(self, node: ast.stmt, error: BaseException) -> bool:
+        """Whether an import that was refused gets something that stands for the package."""
+        if not isinstance(error, declared.ImportNotDeclaredError) or not self._imports.stand_in(node):
+            return False
+        self._refused.append(Fault("import", error, _first_line(node), ()))
+        return True
+
+    def _fault(self, stage: str, error: BaseException, line: int, names: Any) -> None:
+        if len(self.faults) < _MOST_FAULTS:
+            self.faults.append(Fault(stage, error, line, names))
+
+
+def _first_line(node: ast.stmt) -> int:
+    decorators: list[ast.expr] = getattr(node, "decorator_list", [])
+    return min([node.lineno, *(one.lineno for one in decorators)])
+
+
+def _line_in(error: BaseException, main: str) -> int | None:
+    """The line of the module's own level at which an exception came out."""
+    trace = error.__traceback__
+    while trace is not None:
+        code = trace.tb_frame.f_code
+        if code.co_filename == main and code.co_name == "<module>":
+            return trace.tb_lineno
+        trace = trace.tb_next
+    return None
+
+
+def _future(body: list[ast.stmt]) -> int:
+    """The compiler's flags that a module asks for with ``from __future__``."""
+    names = [
+        alias.name
+        for node in body
+        if isinstance(node, ast.ImportFrom) and node.module == "__future__"
+        for alias in node.names
+    ]
+    flags = 0
+    for name in names:
+        flags |= int(getattr(getattr(__future__, name, None), "compiler_flag", 0))
+    return flags
+
+
+def _display(*values: object, **_: object) -> None:
+    print(*values)  # noqa: T201 - what a student shows is part of what they print

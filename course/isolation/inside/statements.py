@@ -1,0 +1,197 @@
+"""A module's text statement by statement: what of it is Python, and what its functions need.
+
+This runs beside a stranger's code and, for notebooks, where their cells are read. It imports the standard
+library and nothing of this course.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import symtable
+import warnings
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Sequence
+
+__all__ = ["UNREADABLE", "Piece", "bound", "defined_in", "loaded", "needed", "parsed", "pieces"]
+
+#: What Python raises for a text that it cannot read; the last two for nesting that its parser cannot follow.
+UNREADABLE = (SyntaxError, ValueError, RecursionError, MemoryError)
+#: A line on which a statement of a module begins: neither indented, nor a comment, nor the end of a bracket,
+#: nor a further part of the statement before.
+_BEGINS = re.compile(r"(?!(?:else|elif|except|finally)\b)[^\s#)\]}]")
+#: Errors of a piece that may be whole together with what follows it.
+_UNFINISHED = ("was never closed", "unterminated triple-quoted")
+#: A line that Python names within the text that it was given.
+_WITHIN = re.compile(r" \(detected at line \d+\)| on line \d+")
+_DEFINES = re.compile(r"^(?:async[ \t]+)?def[ \t]+(\w+)|^class[ \t]+(\w+)|^(\w+)[ \t]*=(?!=)", re.MULTILINE)
+
+
+class Piece(NamedTuple):
+    """Some lines of a module that belong together.
+
+    Attributes:
+        line: of the module on which it begins, 1 first.
+        body: its statements, with the module's lines; empty if it is no Python.
+        error: why it is none.
+        names: what a piece that is no Python would define, by its look.
+    """
+
+    line: int
+    body: list[ast.stmt]
+    error: BaseException | None = None
+    names: tuple[str, ...] = ()
+
+
+def parsed(text: str, line: int = 1) -> list[ast.stmt]:
+    """The statements of a text that begins on a line.
+
+    Raises:
+        UNREADABLE: it is no Python; a SyntaxError's line is the module's.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about escapes in the student's strings
+            tree = ast.parse(text)
+    except SyntaxError as error:
+        error.lineno = (error.lineno or 1) + line - 1
+        error.msg = _WITHIN.sub("", str(error.msg))
+        raise
+    if line > 1:
+        ast.increment_lineno(tree, line - 1)
+    return tree.body
+
+
+def pieces(source: str) -> list[Piece]:
+    """A module that is no Python as a whole, in pieces of which each is, or is not.
+
+    A piece ends where the next statement begins at the edge of the page. Where it ends in the middle of a
+    bracket or a text of several lines, it goes on.
+    """
+    lines = source.split("\n")
+    starts = [number for number, line in enumerate(lines) if _BEGINS.match(line)]
+    starts = [
+        at for before, at in zip([None, *starts], starts, strict=False) if not _decorates(lines, before)
+    ]
+    ends = [*starts[1:], len(lines)]
+    # Each line is tried once, and again only behind something that is not finished.
+    left = 8 * len(source) + 100_000
+    found: list[Piece] = []
+    at = 0
+    while at < len(starts):
+        piece, upto = _piece(lines, starts[at], ends[at]), at + 1
+        first = piece
+        while piece.error is not None and upto < len(starts) and left > 0 and _goes_on(piece.error):
+            left -= sum(map(len, lines[starts[at] : ends[upto]]))
+            piece, upto = _piece(lines, starts[at], ends[upto]), upto + 1
+        if piece.error is not None:
+            piece, upto = first, at + 1
+        found.append(piece)
+        at = upto
+    return found
+
+
+def _decorates(lines: list[str], at: int | None) -> bool:
+    return at is not None and lines[at].startswith("@")
+
+
+def _goes_on(error: BaseException) -> bool:
+    return isinstance(error, SyntaxError) and any(words in str(error.msg) for words in _UNFINISHED)
+
+
+def _piece(lines: list[str], start: int, end: int) -> Piece:
+    text = "\n".join(lines[start:end])
+    try:
+        return Piece(start + 1, parsed(text, start + 1))
+    except UNREADABLE as error:
+        return Piece(start + 1, [], error, tuple(defined_in(text)))
+
+
+def defined_in(text: str) -> list[str]:
+    """The names that a text would define at its top level if it were Python, by its look."""
+    return [next(filter(None, names)) for names in _DEFINES.findall(text)]
+
+
+# -- what functions need ----------------------------------------------------------------------------------
+
+
+def needed(statements: Sequence[ast.stmt], names: Iterable[str], always: Collection[int] = ()) -> list[int]:
+    """Indices of the statements that bind or change names, and of those that these need, in order.
+
+    Args:
+        always: indices of statements that count whether or not anything needs them.
+    """
+    binding: dict[str, list[int]] = {}
+    for index, node in enumerate(statements):
+        for name in bound(node):
+            binding.setdefault(name, []).append(index)
+    kept = {*binding.pop("*", ()), *always}  # a star import may bind anything
+    wanted = [*names, *(name for index in kept for name in loaded(statements[index]))]
+    while wanted:
+        for index in binding.pop(wanted.pop(), ()):  # each name is looked up once
+            if index not in kept:
+                kept.add(index)
+                wanted += loaded(statements[index])
+    return sorted(kept)
+
+
+def bound(node: ast.AST) -> Iterator[str]:
+    """Names that a statement binds at its own level, or changes: x = 1, x[0] = 1, x.append(1), def x."""
+    match node:
+        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+            yield node.name
+        case ast.Import() | ast.ImportFrom():
+            for alias in node.names:
+                yield (alias.asname or alias.name).partition(".")[0]
+        case ast.Name(ctx=ast.Store() | ast.Del()):
+            yield node.id
+        case ast.Attribute(ctx=ast.Store() | ast.Del()) | ast.Subscript(ctx=ast.Store() | ast.Del()):
+            yield from _base(node)
+        case ast.Expr(value=ast.Call(func=ast.Attribute() as method)):
+            yield from _base(method)
+        case ast.Lambda() | ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
+            return
+        case _:
+            for child in ast.iter_child_nodes(node):
+                yield from bound(child)
+
+
+def _base(node: ast.expr) -> Iterator[str]:
+    """The name at the root of a.b[c].d."""
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        node = node.value
+    if isinstance(node, ast.Name):
+        yield node.id
+
+
+def loaded(node: ast.AST) -> Iterator[str]:
+    """Every name of the module that a piece of code reads; parameters and other local names are none."""
+    yield from _augmented(node)
+    try:
+        table = symtable.symtable(ast.unparse(node), "statement", "exec")
+    except SyntaxError:  # such as a return outside of a function: the names it reads are unknown
+        yield from (child.id for child in ast.walk(node) if isinstance(child, ast.Name))
+    else:
+        yield from _global(table)
+
+
+def _global(table: symtable.SymbolTable) -> Iterator[str]:
+    """Names that a scope and those within it take from the module."""
+    outermost = table.get_type() == "module"
+    for symbol in table.get_symbols():
+        if symbol.is_referenced() if outermost else symbol.is_global():
+            yield symbol.get_name()
+    for child in table.get_children():
+        yield from _global(child)
+
+
+def _augmented(node: ast.AST) -> Iterator[str]:
+    """Names that are changed from what they were, at the level of the module: x += 1."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+        return
+    if isinstance(node, ast.AugAssign):
+        yield from _base(node.target)
+    for child in ast.iter_child_nodes(node):
+        yield from _augmented(child)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from course.handed_in.notebook import NotebookSource
     from course.scoring.judging.submission import Submission
 
-__all__ = ["StudentWork", "asked_for", "chosen_work", "work_of", "worked_on"]
+__all__ = ["StudentWork", "as_handed_in", "asked_for", "chosen_work", "work_of", "worked_on"]
 
 NOTEBOOK = ".ipynb"
 
@@ -256,6 +256,21 @@ def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | N
     if len(small) > MAX_FILE_BYTES:
         return None, f"larger than {MAX_FILE_BYTES:,} bytes without its outputs, which no grading run takes"
     return replace(notebook, data=small), ""
+
+
+def as_handed_in(work: StudentWork) -> Submission:
+    """A file as a grading run reads it: from the bytes that go into the archive alone.
+
+    Raises:
+        UngradableError: it is a notebook that cannot be graded.
+    """
+    from course.scoring.judging.submission import Submission
+
+    if work.notebook is None:
+        return Submission({work.exercise.module: work.data})
+    from course.handed_in.notebook import notebook_source
+
+    return notebook_source(work.data, work.exercise, work.name).submission(work.exercise)
 
 
 def _without_outputs(data: bytes) -> bytes:

@@ -197,7 +197,7 @@ class Update(Envelope, tag="course.update/1", frozen=True, kw_only=True):
 
 
 class SubmitFile(msgspec.Struct, frozen=True):
-    """A file that goes in. ``last_score`` is of the last check; None if it changed since or never ran."""
+    """A file that goes in. ``last_score`` is what the public checks give these bytes; None if nothing."""
 
     path: str
     sha256: str

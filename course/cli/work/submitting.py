@@ -1,13 +1,16 @@
-"""``course submit``: one zip with the student's work; the same files give the same bytes."""
+"""``course submit``: one zip with the student's work; the same files give the same bytes.
+
+What goes in is checked before it is written, from the very bytes that go in: what is said of a file here is
+what the public checks of a grading run find in it.
+"""
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import io
 import json
-import warnings
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,10 +18,9 @@ import typer
 
 from course.cli.frame.here import Here, cwd
 from course.cli.frame.terminal.console import Console, current
-from course.cli.work.chosen import work_of
+from course.cli.work.chosen import as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
-from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
 from course.scoring.numbers import format_points
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from course.cli.frame.replies import FileReply
     from course.cli.work.chosen import StudentWork
+    from course.scoring.verdict import Verdict
 
 __all__ = ["FORMAT_VERSION", "archive", "submit"]
 
@@ -49,24 +52,25 @@ def submit(
 ) -> int:
     """Write the file to hand in.
 
-    First shows what will go in. An exercise whose file is still the stub is left out; if you worked in its
-    notebook instead, the notebook is handed in, without its outputs. If the file to write exists, a copy of
-    it is kept.
+    First checks what will go in, just as it will be read when it is graded, and shows it. An exercise whose
+    file is still the stub is left out; if you worked in its notebook instead, the notebook is handed in,
+    without its outputs. If the file to write exists, a copy of it is kept.
     """
 
     console, here = current(), Here.load()
     target = _target(here, output)
     works, left_out = work_of(here, warm_ups=warm_ups)
-    files = tuple(_describe(here, work) for work in works)
     quiz = _quiz_records(here)
-    _show(console, here, files, left_out, quiz)
+    goes_in = _checked(console, here, works)
+    files = tuple(one.reply() for one in goes_in)
+    _show(console, here, goes_in, left_out, quiz)
     if not works and not quiz:
         raise UngradableError(
             "There is nothing to hand in yet.",
             help="Write an exercise first, or take the quiz.",
             code="nothing_to_submit",
         )
-    notes = [note for work in works for note in (*work.notes, _syntax_note(work)) if note]
+    notes = [note for one in goes_in for note in (*one.work.notes, *one.notes)]
     data = _packed(here, works, quiz)
     backup = _keep_old(here, target, data)
     write_atomically(target, data)
@@ -150,19 +154,57 @@ def _target(here: Here, output: Path | None) -> Path:
     return path
 
 
-def _describe(here: Here, work: StudentWork) -> SubmitFile:
+@dataclass(frozen=True)
+class _GoesIn:
+    """A file that is handed in, and what the public checks say of it.
+
+    Attributes:
+        verdict: None if it cannot be checked.
+        notes: what else there is to say of it, a sentence each.
+    """
+
+    work: StudentWork
+    verdict: Verdict | None
+    notes: tuple[str, ...]
+
+    def reply(self) -> SubmitFile:
+        graded = self.verdict is not None and self.verdict.state == "graded"
+        return SubmitFile(
+            path=self.work.path,
+            sha256=hashlib.sha256(self.work.data).hexdigest(),
+            bytes=len(self.work.data),
+            last_score=self.verdict.score if graded and self.verdict else None,
+            max_score=self.verdict.max_score if graded and self.verdict else None,
+        )
+
+
+def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list[_GoesIn]:
+    """The files, each checked from the bytes that are handed in."""
+    from course.isolation.keeping import kept_sandboxes
+
+    found = []
+    with kept_sandboxes():
+        for work in works:
+            with console.working(f"Checking {work.path} as it is handed in"):
+                found.append(_check(here, work))
+    return found
+
+
+def _check(here: Here, work: StudentWork) -> _GoesIn:
+    from course.cli.work.checking import open_session
+
     try:
-        last = here.history(work.exercise).last_graded
-    except CourseError:
-        last = None
-    current_one = last if last is not None and last.fingerprint == fingerprint(work.source) else None
-    return SubmitFile(
-        path=work.path,
-        sha256=hashlib.sha256(work.data).hexdigest(),
-        bytes=len(work.data),
-        last_score=current_one.score if current_one else None,
-        max_score=current_one.max_score if current_one else None,
-    )
+        submission = as_handed_in(work)
+        with open_session(work.exercise, here.catalog) as session:
+            verdict = session.grade(submission)
+    except CourseError as error:
+        return _GoesIn(work, None, (f"{work.path} could not be checked: {error.message} {error.help}",))
+    notes = [f"{work.path}: {note.removeprefix(f'{work.name}, ')}" for note in verdict.warnings]
+    if verdict.error is not None:
+        notes.insert(
+            0, f"{work.path} cannot be graded as it is: {verdict.error.message} {verdict.error.help}"
+        )
+    return _GoesIn(work, verdict, tuple(notes))
 
 
 def _quiz_records(here: Here) -> list[dict[str, object]]:
@@ -177,22 +219,15 @@ def _quiz_records(here: Here) -> list[dict[str, object]]:
 def _show(
     console: Console,
     here: Here,
-    files: tuple[SubmitFile, ...],
+    goes_in: list[_GoesIn],
     left_out: list[FileReply],
     quiz: Sequence[Mapping[str, Any]],
 ) -> None:
-    marks = {exercise.id: exercise.pass_mark for exercise in here.catalog.exercises()}
+    files = [one.work.path for one in goes_in]
     if files or quiz:
         console.line("This goes in:")
-    for file in files:
-        score = "not checked since its last change"
-        if file.last_score is not None and file.max_score is not None:
-            points = f"{format_points(file.last_score)}/{format_points(file.max_score)}"
-            score = f"{points} points from the public checks"
-            mark = marks.get(Path(file.path).parent.name)
-            if mark is not None:
-                score += f" (a pass is {mark:.0%} of all points, hidden checks included)"
-        console.line(f"{file.path}: {file.bytes:,} bytes, {score}", indent=2)
+    for one in goes_in:
+        console.line(f"{one.work.path}: {len(one.work.data):,} bytes, {_score(one)}", indent=2)
     if quiz:
         attempts = "1 attempt" if len(quiz) == 1 else f"{len(quiz)} attempts"
         best = max(quiz, key=lambda record: record["score"])
@@ -207,25 +242,22 @@ def _show(
         )
     for item in left_out:
         console.line(f"Left out: {item.path} ({item.action}).")
-    known = {Path(path).parent.name for path in (*(f.path for f in files), *(i.path for i in left_out))}
+    known = {Path(path).parent.name for path in (*files, *(item.path for item in left_out))}
     missing = [name for name in here.catalog.exercise_ids() if name not in known]
     if files and missing:
         console.line(f"Not started, so not in it: {', '.join(missing)}.")
 
 
-def _syntax_note(work: StudentWork) -> str:
-    """A warning about a file that Python cannot read; it goes in all the same."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            ast.parse(work.source)
-    except SyntaxError as error:
-        return (
-            f"{work.path} does not parse (line {error.lineno}: {error.msg}); it could not be graded as it is."
-        )
-    except (ValueError, RecursionError, MemoryError):
-        return f"{work.path} does not parse; it could not be graded as it is."
-    return ""
+def _score(one: _GoesIn) -> str:
+    """What the public checks say of a file."""
+    verdict, exercise = one.verdict, one.work.exercise
+    if verdict is None or verdict.state != "graded":
+        return "not checked" if verdict is None else "cannot be graded"
+    if exercise.is_warm_up:
+        return "passes" if verdict.all_pass else "does not pass its checks"
+    points = f"{format_points(verdict.score)}/{format_points(verdict.max_score)}"
+    mark = f"a pass is {exercise.pass_mark:.0%} of all points, hidden checks included"
+    return f"{points} points from the public checks ({mark})"
 
 
 def _keep_old(here: Here, target: Path, data: bytes) -> str | None:

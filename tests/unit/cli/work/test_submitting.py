@@ -71,10 +71,18 @@ def test_submit_with_nothing_written_writes_nothing(course, workspace):
     assert not list(workspace.glob("*.zip"))
 
 
-def test_submit_warns_about_a_file_that_does_not_parse(course, workspace):
-    (workspace / "doubling" / "doubling.py").write_text("def double(x:\n")
+def test_submit_says_what_the_checks_say_of_what_goes_in(course, workspace, write):
+    write("RIGHT", "wrong")
+    (file,) = course("submit", "--json").json["files"]
+    assert (file["last_score"], file["max_score"]) == (2.0, 4.0)
+    assert "2/4 points from the public checks" in course("submit").out
+
+
+def test_submit_warns_about_a_file_that_cannot_be_graded(course, workspace):
+    (workspace / "doubling" / "doubling.py").write_text("UNREADABLE\n")
     body = course("submit", "--json").json
-    assert "line 1" in body["warnings"][0]
+    assert body["files"][0]["last_score"] is None
+    assert "cannot be graded as it is: Line 1 cannot be read." in body["warnings"][0]
 
 
 @pytest.mark.parametrize("output", ["nowhere/mine.zip", "doubling/doubling.py"])

@@ -189,6 +189,8 @@ class Prover:
             self._judge_stub(proof, verdict)
         else:
             self._judge_correct(proof, verdict)
+        for warning in verdict.warnings if proof.mutant is None else ():
+            self._findings.add(proof.path, None, proof.role, warning, "Let the whole file load.")
         self._judge_words(verdict)
         for check in verdict.checks:
             self._fields.setdefault(check.task, set()).update(numbers_of(check))

@@ -42,6 +42,7 @@ class LocalSubmission:
         self.returned: tuple[str, Any] | None = None
         self.asked: set[str] = set()
         self.marched = None
+        self.faults, self.without = (), None
         self.used = 0.0
         self.heard: list[Any] = []
         self._module = types.ModuleType("submission")

@@ -33,7 +33,7 @@ from course.grading.intake.archives import (
     module_in,
     outline_of,
 )
-from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
+from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
 from course.handed_in.cells import MAX_CODE, MAX_NOTEBOOK
 from course.handed_in.notebook import notebook_source
@@ -240,7 +240,7 @@ def main() -> None:
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     limit_memory(memory)
     write_frame(sink, None)
-    while (frame := read_frame(source)) is not None:
+    for frame in served(source):
         limit_cpu(cpu_s)
         ask = msgspec.msgpack.decode(frame, type=_Request)
         try:

@@ -41,7 +41,7 @@ sys.path[:0] = [str(ROOT), str(HERE)]
 from attacks import ATTACKS, HONEST, WRONG  # noqa: E402
 from compare import nbgrader_cell, notebook  # noqa: E402
 
-from tests.e2e.processes import below, stored  # noqa: E402
+from tests.journeys.processes import below, stored  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.contracts.boundary.levels import require_level
-from tests.e2e.processes import left_running
+from tests.journeys.processes import left_running
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,13 +50,11 @@ BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "blank": (_write(b"\n \n"), "empty_file"),
     "syntax error": (_write(b"def explicit_euler_step(:\n"), "syntax_error"),
     "undeclared latin-1": (_write(b"# caf\xe9\n" + MODEL), "syntax_error"),
-    "NUL bytes": (_write(MODEL + b"\0"), "syntax_error"),
     "tabs and spaces": (_write(b"if True:\n\tx = 1\n        y = 2\n"), "syntax_error"),
     "a link": (_link, "symlink"),
     "a folder": (lambda place: (place / MODULE).mkdir(), "not_a_file"),
     "two files": (_ambiguous, "ambiguous_files"),
     "all missing": (_write(b"x = 1\n"), "no_declared_functions"),
-    "imports what is not there": (_write(b"import absent\nG = 2 * absent.G\n" + MODEL), "import_error"),
     "raises on import": (_write(b"1 / 0\n"), "import_error"),
     "too large": (_write(b"#" * (1 << 21)), "too_large"),
     "a zip that is none": (lambda place: (place / "mine.zip").write_bytes(b"PK"), "refused_archive"),
@@ -70,6 +68,10 @@ ODD: dict[str, bytes] = {
     "../../up": MODEL,
     "Ada\u202eevoL": MODEL,
     "new\nline": MODEL,
+    "NUL bytes": MODEL + b"\0",
+    "imports what is not there": b"import absent\nG = len(absent.G)\n" + MODEL,
+    "exits": MODEL + b"\nraise SystemExit\n",
+    "a line that is no Python": MODEL + b"\nx = = 1\n",
 }
 
 

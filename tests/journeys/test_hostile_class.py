@@ -1,6 +1,6 @@
 """A class in which every fifth file is hostile: the others get what they would have got without them.
 
-    COURSE_CLASS_OF=1000 pytest -m soak -n 0 -s tests/e2e/test_hostile_class.py
+    COURSE_CLASS_OF=1000 pytest -m soak -n 0 -s tests/journeys/test_hostile_class.py
 
 ``COURSE_CLASS_OF`` is the size of the class, 60 unless said otherwise; of 1,000, 800 are honest and every
 file of tests/attacks is handed in at least once. A smaller class gets as many of them as there is room for,
@@ -24,7 +24,7 @@ from typing import Any
 import pytest
 
 from tests.contracts.boundary.levels import require_level
-from tests.e2e.processes import below, left_running, stored
+from tests.journeys.processes import below, left_running, stored
 
 ROOT = Path(__file__).resolve().parents[2]
 ATTACKS = ROOT / "tests" / "attacks"

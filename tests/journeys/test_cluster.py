@@ -26,7 +26,7 @@ from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.graders import grader_version
 from course.scoring.judging.terms import Terms
-from tests.e2e.processes import below, left_running
+from tests.journeys.processes import below, left_running
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot
 

@@ -92,15 +92,17 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str | None]] = {
     "not UTF-8 in code": (lambda: in_text(b"q + h", b"q + \xff\xfe h"), "not_a_notebook"),
     "half a surrogate": (lambda: in_text(b"q + h", b"q + \\ud800 h"), "not_a_notebook"),
     "one id for all": (lambda: changed(same_ids), None),
-    "10000 cells": (lambda: with_cells(*(f"y{k} = {k}" for k in range(10_000))), None),
-    "a chain of 10000": (lambda: with_cells(*(f"y{k} = y{k + 1}" for k in range(10_000))), None),
+    "10000 cells": (lambda: with_cells(*(f"y{k} = {k}" for k in range(10_000))), "too_large"),
+    "1900 cells": (lambda: with_cells(*(f"y{k} = {k}" for k in range(1900))), None),
+    "a chain of 1900": (lambda: with_cells(*(f"y{k} = y{k + 1}" for k in range(1900))), None),
     "a million spaces": (lambda: with_cells(" " * 1_000_000 + "§"), None),
     "12 MB of code": (lambda: with_cells("1\n" * 6_000_000), "too_large"),
     "bash": (lambda: with_cells("%%bash\nrm -rf /", "!rm -rf ~\nz = 1"), None),
     "shell in a function's cell": (lambda: in_front("!rm -rf ~\n%time 1\nhelp?\n"), None),
     "magic written out": (lambda: in_front("get_ipython().system('rm -rf ~')\n"), None),
-    "get_ipython is needed": (lambda: in_front("shell = get_ipython()\n"), "import_error"),
-    "ends the process": (lambda: in_front("import os\nos._exit(3)\n"), "import_crash"),
+    "get_ipython is needed": (lambda: in_front("shell = get_ipython()\n"), None),
+    "ends the process": (lambda: in_front("import os\nos._exit(3)\n"), None),
+    "ends the process, and is used": (lambda: in_front("import os\nnp.left = os._exit(3)\n"), "import_crash"),
     "no code": (lambda: changed(lambda n: n.update(cells=n["cells"][:2])), "no_declared_functions"),
     "cells are words": (lambda: changed(lambda n: n.update(cells="none")), "not_a_notebook"),
 }
@@ -162,11 +164,8 @@ def test_what_is_hostile_is_graded_or_refused_with_a_reason(
         assert line["error"]["help"]
 
 
-@pytest.mark.parametrize("name", ["get_ipython is needed"])
-def test_a_refusal_names_the_cell_where_there_is_one(results: dict[str, dict[str, Any]], name: str) -> None:
-    assert "ell " in results[f"hostile {name}"]["error"]["message"]
-
-
-@pytest.mark.parametrize("name", ["bash", "shell in a function's cell", "magic written out"])
+@pytest.mark.parametrize(
+    "name", ["bash", "shell in a function's cell", "magic written out", "get_ipython is needed"]
+)
 def test_what_was_left_out_is_said_with_its_cell(results: dict[str, dict[str, Any]], name: str) -> None:
     assert any("left out" in note for note in results[f"hostile {name}"]["warnings"])

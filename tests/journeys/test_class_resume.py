@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 
 from course.grading.gradebook.book import Gradebook
-from tests.e2e.processes import below, left_running
+from tests.journeys.processes import below, left_running
 
 ROOT = Path(__file__).resolve().parents[2]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"

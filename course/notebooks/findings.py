@@ -87,7 +87,7 @@ class CheckTable:
         lines = [*self._printed]
         curve = self._curve.description if self._curve is not None else ""
         report = repr(self.report) if self.report is not None else ""
-        below = [text for text in (curve, self.note, report) if text]
+        below = [text for text in (curve, *self.verdict.warnings, self.note, report) if text]
         for check in self.checks:
             lines.append(f"{_MARKS.get(check.status, '✗')} {check.title}: {check.status}")
             lines += [f"    {text}" for text in _words(check)]
@@ -96,7 +96,8 @@ class CheckTable:
     def _repr_html_(self) -> str:
         rows = "".join(_row(check, scored=self._scored) for check in self.checks)
         table = f'<table class="course-checks">{rows}</table>' if rows else ""
-        note = f"<p>{escape(self.note)}</p>" if self.note else ""
+        notes = [note for note in (*self.verdict.warnings, self.note) if note]
+        note = "".join(f"<p>{_coded(text)}</p>" for text in notes)
         printed = f"<pre>{escape(chr(10).join(self._printed))}</pre>" if self._printed else ""
         report = self.report._repr_html_() if self.report is not None else ""
         return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{self._drawn()}{note}{report}"

@@ -65,7 +65,7 @@ class Runs:
     def _before(self, info: Any) -> None:
         now = time.time()
         if info.store_history:
-            number = self._shell.execution_count
+            number = len(self._shell.history_manager.input_hist_raw)  # it is put there next
             self._seen[number] = Run(number, info.raw_cell, str(getattr(info, "cell_id", None) or ""), now)
         with contextlib.suppress(Exception):  # what a program says beside a cell may have any form
             told = self._shell.get_parent().get("metadata", {}).get("deletedCells", ())
@@ -151,8 +151,8 @@ def _as_saved_now(
     notes = list(module.notes)
     if unsaved:
         notes.append(
-            f"{name} is not saved as you ran it ({_listed(unsaved)}). This check took the cells as you ran"
-            " them; what is handed in is the file, so save it."
+            f"{name} is not saved as you ran it: {_listed(unsaved)}. This check took what you ran. What is"
+            " handed in is the file, so save it."
         )
     if changed:
         notes.append(

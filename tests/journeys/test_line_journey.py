@@ -20,7 +20,7 @@ from course.progress.workspace import Workspace
 from tests.unit.cli.reading.test_each_fact_once import repeated
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
 pty = pytest.importorskip("pty")
@@ -35,14 +35,20 @@ ENDS = (PREDICT, "q stops: ", "Enter goes on: ")
 class Lines:
     """A program on a terminal that shows what arrives and nothing else."""
 
-    def __init__(self, folder: Path, *words: str) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        *words: str,
+        command: Sequence[str] = (sys.executable, "-m", "course"),
+        environment: Mapping[str, str] = os.environ,
+    ) -> None:
         self.said = b""
         self._from = 0
         self.pid, self._terminal = pty.fork()
         if self.pid == 0:
             os.chdir(folder)
-            os.environ.update(TERM="xterm-256color", LANG="C.UTF-8", LC_ALL="C.UTF-8", COLORTERM="truecolor")
-            os.execv(sys.executable, [sys.executable, "-m", "course", *words])
+            terminal = {"TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "COLORTERM": "truecolor"}
+            os.execve(command[0], [*command, *words], {**environment, "LANG": "C.UTF-8", **terminal})
 
     def wait(self, *ends: str) -> str:
         """What was said since the last wait, once it ends with one of these or the program has ended."""

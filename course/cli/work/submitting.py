@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import time
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,7 @@ from course.cli.frame.terminal.console import Console, current
 from course.cli.work.chosen import as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
+from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
 from course.scoring.numbers import format_points
@@ -191,12 +193,15 @@ def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list
 
 
 def _check(here: Here, work: StudentWork) -> _GoesIn:
-    from course.cli.work.checking import open_session
+    from course.cli.work.checking import open_session, record_verdict
 
     try:
-        submission = as_handed_in(work)
+        submission, begin = as_handed_in(work), time.perf_counter()
         with open_session(work.exercise, here.catalog) as session:
             verdict = session.grade(submission)
+        if not _is_known(here, work):
+            seconds = time.perf_counter() - begin
+            record_verdict(here, work.exercise, work.source, verdict, seconds, one_of_many=True)
     except CourseError as error:
         return _GoesIn(work, None, (f"{work.path} could not be checked: {error.message} {error.help}",))
     notes = [f"{work.path}: {note.removeprefix(f'{work.name}, ')}" for note in verdict.warnings]
@@ -205,6 +210,15 @@ def _check(here: Here, work: StudentWork) -> _GoesIn:
             0, f"{work.path} cannot be graded as it is: {verdict.error.message} {verdict.error.help}"
         )
     return _GoesIn(work, verdict, tuple(notes))
+
+
+def _is_known(here: Here, work: StudentWork) -> bool:
+    """Whether the record has a check of this very work."""
+    try:
+        last = here.history(work.exercise).last_graded
+    except CourseError:
+        return False
+    return last is not None and last.fingerprint == fingerprint(work.source)
 
 
 def _quiz_records(here: Here) -> list[dict[str, object]]:

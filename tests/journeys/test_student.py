@@ -1,0 +1,126 @@
+"""A student's whole way, from the wheel: each command as it is typed, each exercise from stub to zip."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from course.catalog.load import Catalog
+from tests.journeys.conftest import ROOT, in_turn
+from tests.journeys.test_line_journey import Lines
+
+if TYPE_CHECKING:
+    from tests.journeys.conftest import Way
+
+CATALOG = Catalog()
+EXERCISES = CATALOG.exercises()
+WARM_UPS = [CATALOG.exercise(name) for name in CATALOG.warm_up_ids()]
+
+
+def model(exercise_id: str) -> Path:
+    exercise = CATALOG.exercise(exercise_id)
+    return ROOT / "solutions" / exercise.place / exercise.module
+
+
+@pytest.fixture
+def workspace(student: Way, tmp_path: Path) -> Path:
+    student("init", "work")
+    return tmp_path / "work"
+
+
+def test_the_first_hour(student: Way, tmp_path: Path) -> None:
+    """The demonstration, a workspace, the first lesson read to its end with every prediction made."""
+    assert "7.32 times its initial value" in student("demo").stdout
+    assert "course go" in student("init", "work").stdout
+    work = tmp_path / "work"
+    first = CATALOG.lesson_ids()[0]
+    assert first in student(cwd=work).stdout
+    assert CATALOG.lesson(first).title in student("go", cwd=work).stdout
+    environment = {**student.environment, "TERM": "xterm-256color"}
+    lines = Lines(
+        work, "lesson", first, "--plain", "--page", command=student.command, environment=environment
+    )
+    predicted, said = 0, lines.wait("Your prediction; Enter skips it: ", "Enter goes on: ", "q stops: ")
+    while "Enter goes on" in said or "Your prediction" in said:
+        asked = said.endswith("Your prediction; Enter skips it: ")
+        predicted += asked
+        said = lines.type("1" if asked else "")
+    lines.close()
+    assert predicted, said
+    overview = json.loads(student("progress", "--json", cwd=work).stdout)
+    assert {lesson["id"]: lesson["read_at"] for lesson in overview["lessons"]}[first]
+
+
+def test_every_exercise_from_its_stub_to_the_zip(student: Way, workspace: Path) -> None:
+    assert len(EXERCISES) == 6
+    for exercise in EXERCISES:
+        student("start", exercise.id, cwd=workspace)
+        failed = json.loads(student("check", exercise.id, "--json", cwd=workspace, code=1).stdout)
+        assert failed["score"] == 0, exercise.id
+        shutil.copy(model(exercise.id), workspace / exercise.id)
+        passed = json.loads(student("check", exercise.id, "--json", cwd=workspace).stdout)
+        assert passed["score"] == passed["max_score"] > 0, exercise.id
+        assert (Path(exercise.folder) / "report.py").is_file() == bool(
+            report(student, workspace, exercise.id)
+        )
+    reply = json.loads(student("submit", "--json", cwd=workspace).stdout)
+    assert len(reply["files"]) == 6
+    assert all(file["last_score"] == file["max_score"] > 0 for file in reply["files"])
+    assert (reply["left_out"], reply["warnings"]) == ([], [])
+    with zipfile.ZipFile(workspace / "physics-sim-submission.zip") as packed:
+        for exercise in EXERCISES:
+            assert packed.read(f"{exercise.id}/{exercise.module}") == model(exercise.id).read_bytes()
+    done = json.loads(student("progress", "--json", cwd=workspace).stdout)["exercises"]
+    assert [one["state"] for one in done] == ["complete"] * 6
+
+
+def report(student: Way, workspace: Path, exercise: str) -> list[Path]:
+    """The figures of an exercise's report; none if it has no report."""
+    if not (ROOT / "exercises" / exercise / "report.py").is_file():
+        student("report", exercise, cwd=workspace, code=5)
+        return []
+    student("report", exercise, cwd=workspace)
+    return list((workspace / exercise / "report").glob("*.png"))
+
+
+def test_warm_ups_from_start_to_pass(student: Way, workspace: Path) -> None:
+    assert len(WARM_UPS) >= 32
+    for warm_up in in_turn(WARM_UPS, 3):
+        student("start", warm_up.id, cwd=workspace)
+        student("check", warm_up.id, cwd=workspace, code=1)
+        shutil.copy(model(warm_up.id), workspace / warm_up.place)
+        student("check", warm_up.id, cwd=workspace)
+    said = student("submit", "--warm-ups", cwd=workspace).stdout
+    assert said.count(": 1 ") or "passes" in said
+
+
+def test_the_sandbox_the_quiz_and_what_was_done(student: Way, workspace: Path) -> None:
+    played = student("sandbox", "play", "newtons-cradle", "--headless", "--duration", "2", cwd=workspace)
+    assert played.stdout
+    student("sandbox", "export", "unequal-masses", "--format", "mjcf", "-o", "world.xml", cwd=workspace)
+    assert "<mujoco" in (workspace / "world.xml").read_text("utf-8")
+    questions = student("quiz", "take", "--seed", "5", "--questions", cwd=workspace).stdout
+    form, right = questions[questions.index("format_version = 1") : questions.index("Then: ")], key(5)
+    for name, letter in right.items():
+        assert f'{name} = ""' in form
+        form = form.replace(f'{name} = ""', f'{name} = "{letter}"')
+    (workspace / "answers.toml").write_text(form, "utf-8")
+    result = json.loads(student("quiz", "take", "--answers", "answers.toml", "--json", cwd=workspace).stdout)
+    assert result["score"] == len(right) == 5
+    assert "5" in student("quiz", "history", cwd=workspace).stdout
+    assert student("progress", cwd=workspace).stdout
+    assert student("doctor", cwd=workspace).stdout
+
+
+def key(seed: int) -> dict[str, str]:
+    """The right letters of a drawing of the quiz, which only its bank knows."""
+    from course.quizzing.bank import Bank
+
+    posed = Bank.of(CATALOG).pose(seed)
+    letters = "abcdefgh"
+    return {one.question: letters[[choice.id for choice in one.choices].index(one.key.id)] for one in posed}

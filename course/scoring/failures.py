@@ -8,10 +8,12 @@ fault of the grader; any other exception from a check is.
 from __future__ import annotations
 
 import builtins
+import os
 import traceback
 from pathlib import Path
 from typing import Any
 
+from course.catalog.locate import PLACES, content
 from course.isolation.failures import FailureKind, StudentFailure
 from course.isolation.hanging import LOOP
 from course.printable import one_line
@@ -31,6 +33,8 @@ __all__ = [
     "StudentFailure",
     "broke_at",
     "finding_of",
+    "place_of",
+    "reason_of",
 ]
 
 
@@ -69,12 +73,35 @@ OURS = "In the check's own code: "
 
 def broke_at(error: BaseException) -> str:
     """An exception raised in a check, and the place it comes from, in one line for the check's author."""
-    frames = traceback.extract_tb(error.__traceback__)
+    place = place_of(error)
+    if place is None and (frames := traceback.extract_tb(error.__traceback__)):
+        place = Path(frames[-1].filename).name, frames[-1].lineno or 0
+    return f"{reason_of(error)} ({place[0]}, line {place[1]})" if place else reason_of(error)
+
+
+def reason_of(error: BaseException) -> str:
+    """The kind of an exception and its words, with a missing file as its author knows it."""
     try:
-        said = f"{type(error).__name__}: {one_line(str(error), 200)}"
+        said = one_line(str(error).partition("\n")[0], _SAID)
     except Exception:  # noqa: BLE001 - an exception may carry a value that cannot even be printed
-        said = type(error).__name__
-    return f"{said} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else said
+        said = ""
+    if isinstance(error, FileNotFoundError):
+        given = (one for one in (error.filename, *error.args) if isinstance(one, str | bytes | Path))
+        missing = next(given, None)
+        if missing is not None:
+            said = f"{content().shown(Path(os.path.normpath(os.fsdecode(missing))))} is not there"
+    return f"{type(error).__name__}: {said}" if said else type(error).__name__
+
+
+def place_of(error: BaseException) -> tuple[str, int] | None:
+    """The innermost of the course's own files that an exception went through, and the line there."""
+    here = content()
+    folders = [folder for folder in map(here.place, PLACES) if folder is not None]
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        path = Path(frame.filename)
+        if any(path.is_relative_to(folder) for folder in folders):
+            return here.shown(path), frame.lineno or 0
+    return None
 
 
 def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:

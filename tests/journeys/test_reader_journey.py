@@ -83,7 +83,7 @@ class Student:
         self.terminal.wait("a number with its")
         self.terminal.type("it grows")
         self.terminal.keys("Enter")
-        self.terminal.wait("Kept.")
+        self.terminal.wait_until_gone("a number with its")  # what says "Kept." is soon gone itself
         self.done.append("predicted")
 
     def run(self) -> None:

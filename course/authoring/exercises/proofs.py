@@ -210,26 +210,21 @@ class Prover:
                     )
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
-        """Report checks that broke instead of checking."""
+        """Report checks that broke instead of checking, each once."""
         if verdict.error is not None and verdict.error.code == "check_file":
             self._broken = True
             self._findings.add(*_fault_of_file(verdict.error, self._findings.root))
-        elif verdict.state == "grader_error" and verdict.error:
-            self._findings.add(
-                self.exercise.checks_path,
-                None,
-                "grader",
-                f"the checks break on {proof.path.name}: {verdict.error.message}",
-                verdict.error.help or "Correct the checks.",
-            )
-        for check in verdict.checks:
-            if check.status is Status.GRADER_ERROR:
-                self._findings.add(
-                    *self._place(check.id, self.exercise.checks_path),
-                    "grader",
-                    f"check {check.id} breaks on {proof.path.name}: {check.message}",
-                    "Correct the check; whatever a student returns must be a finding.",
-                )
+            return True
+        broken = [check for check in verdict.checks if check.status is Status.GRADER_ERROR]
+        for check in broken:
+            self._broken = True
+            fix = "Correct the check; whatever a student returns must be a finding."
+            problem, fix = _told(f"check {check.id} breaks: {check.message}", fix, self._findings.root)
+            self._findings.add(*self._place(check.id, self.exercise.checks_path), "grader", problem, fix)
+        if not broken and verdict.state == "grader_error" and verdict.error is not None:
+            words = f"the checks break on {proof.path.name}: {verdict.error.message}"
+            fix = verdict.error.help or "Correct the checks."
+            self._findings.add(self.exercise.checks_path, None, "grader", words, fix)
         return verdict.state == "grader_error"
 
     def _judge_stub(self, proof: Proof, verdict: Verdict) -> None:
@@ -301,19 +296,25 @@ class Prover:
 
 
 _CHECK_FILE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?: (?P<problem>.*)", re.DOTALL)
-_NOT_THERE = re.compile(r": (?P<file>[^:]+) is not there\)")
+_NOT_THERE = re.compile(r"FileNotFoundError: (?P<file>\S+) is not there")
 
 
 def _fault_of_file(error: Problem, root: Path) -> tuple[Path, int | None, str, str, str]:
     """A file that grader processes could not import, as a finding about it."""
     said = _CHECK_FILE.fullmatch(error.message)
     assert said is not None
-    problem, fix = said["problem"], error.help
-    absent = _NOT_THERE.search(problem)
-    if absent is not None and (root / absent["file"]).exists():
-        problem = f"a grader process does not have {absent['file']}, which this line reads."
-        fix = f"Move it: the files in {' and '.join(sorted(LEFT_OUT))} are not graded with, nor is prose."
+    problem, fix = _told(said["problem"], error.help, root)
     return root / said["file"], int(said["line"]) if said["line"] else None, "grader", problem, fix
+
+
+def _told(problem: str, fix: str, root: Path) -> tuple[str, str]:
+    """A problem and its fix, which are others where a file is missing in grader processes alone."""
+    absent = _NOT_THERE.search(problem)
+    if absent is None or not (root / absent["file"]).exists():
+        return problem, fix
+    where = f"a grader process does not have {absent['file']}, which is read here."
+    left_out = " and ".join(sorted(LEFT_OUT))
+    return where, f"Move it: what lies in {left_out} takes no part in grading, and no prose does."
 
 
 def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:

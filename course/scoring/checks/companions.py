@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import functools
 import importlib.util
-import os
 import sys
-import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
-from course.catalog.locate import PLACES, content
+from course.catalog.locate import content
 from course.errors import ContentError
-from course.printable import one_line
 from course.scoring.explain.table import FILE as TABLE
 from course.scoring.explain.table import read_table
 from course.scoring.explain.words import FILE as WORDS
 from course.scoring.explain.words import Words, read_words
+from course.scoring.failures import place_of, reason_of
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -95,23 +93,20 @@ def not_importable(error: BaseException, file: Path) -> ContentError:
     """
     while isinstance(error, pytest.Collector.CollectError) and error.__cause__ is not None:
         error = error.__cause__
-    here, line = content(), None
+    if isinstance(error, ContentError):
+        return error
+    line: int | None = None
     if isinstance(error, SyntaxError) and error.filename:
         file, line = Path(error.filename), error.lineno
     else:
-        for frame in traceback.extract_tb(error.__traceback__):  # the innermost of the course's own
-            path = Path(frame.filename)
-            if any(place and path.is_relative_to(place) for place in map(here.place, PLACES)):
-                file, line = path, frame.lineno
-    said = one_line(str(error).partition("\n")[0], 200)
-    if isinstance(error, FileNotFoundError) and (missing := error.filename or _first_path(error)):
-        said = f"{here.shown(Path(os.fsdecode(missing)))} is not there"
-    problem = f"it cannot be imported ({type(error).__name__}: {said})." if said else "it cannot be imported."
-    return ContentError(file, line, problem, help="Correct that line, or what it needs.")
+        place = place_of(error)
+        if place is not None:
+            name, line = place
+            file = content().root / name
+    return ContentError(file, line, f"it cannot be imported ({reason_of(error)}).", help=_CORRECT)
 
 
-def _first_path(error: FileNotFoundError) -> Path | None:
-    return next((one for one in error.args if isinstance(one, Path)), None)
+_CORRECT = "Correct that line, or what it needs."
 
 
 @functools.cache

@@ -60,7 +60,7 @@ CLEAN = "0 0 1"
 
 def test_a_scene_is_asked_about_run_compared_dragged_and_left(terminal: Terminal):
     start(terminal, "head-on")
-    terminal.wait("How fast does the right one go")
+    terminal.wait("How fast is the right puck")
     assert terminal.state()[0] == "1"
     terminal.keys("2", "Enter")
     screen = terminal.wait("Your guess is right")

@@ -87,15 +87,16 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
 )
 def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size):
     async def journey(app, pilot):
-        for name in catalog.lesson_ids():
+        for number, name in enumerate(catalog.lesson_ids(), 1):
             app.open(name)
             await settled(app, pilot)
             assert not app.progress.read
+            title = catalog.lesson(name).title.split(":")[0][:20]
             for _ in range(200):
                 if app.progress.read:
                     break
                 shown = screen(app)
-                assert catalog.lesson(name).title.split(":")[0][:20] in shown
+                assert title in shown or f"Lesson {number} of" in shown  # where the title is too long
                 await pilot.press("space")
             assert app.progress.read, name
             assert "You have read this lesson." in screen(app)

@@ -69,11 +69,11 @@ FAULTS: dict[str, tuple[Callable[[Path], None], str]] = {
     ),
     "an exit": (
         before_its_checks("raise SystemExit"),
-        "graders/halving/checks.py:1: it cannot be imported.",
+        "graders/halving/checks.py:1: it cannot be imported (SystemExit).",
     ),
     "a file that graders do not have": (
         before_its_checks("open(__file__[:-9] + '../../solutions/halving/accepted/by_hand.py')"),
-        "graders/halving/checks.py:1: it cannot be imported (FileNotFoundError: graders/halving/../../solut",
+        "graders/halving/checks.py:1: it cannot be imported (FileNotFoundError: solutions/halving/accepted/",
     ),
     "a name that no check has": (
         before_its_checks("from course.scoring import nothing_of_this_name"),

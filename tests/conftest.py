@@ -7,8 +7,11 @@ even if pytest itself was started in the background, where a shell has it ignore
 
 import gc
 import os
+import re
 import signal
+import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -79,11 +82,56 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """And all of them end with the same tests in the same order."""
+    """And all of them end with the same tests in the same order; of the long ones, those of the day."""
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: item.path)  # keeps the order within a file
+    if slice_ := os.environ.get("COURSE_SOAK"):
+        number, of = _slice(slice_)
+        units = sorted({_unit(item) for item in items if item.get_closest_marker("soak")})
+        mine = set(units[number::of])
+        later = [item for item in items if item.get_closest_marker("soak") and _unit(item) not in mine]
+        config.hook.pytest_deselected(items=later)
+        items[:] = [item for item in items if item not in set(later)]
+
+
+#: All of the long tests within three weeks, one slice a day.
+_SLICES = 20
+
+
+def _slice(asked: str) -> tuple[int, int]:
+    """``today``, or ``3/20`` for one of as many."""
+    number, _, of = f"{time.gmtime().tm_yday % _SLICES}/{_SLICES}".partition("/")
+    if asked != "today":
+        number, _, of = asked.partition("/")
+    return int(number), int(of)
+
+
+def _unit(item: pytest.Item) -> str:
+    """What is not cut in two: a test, or a file in which all of them look at what was made once."""
+    whole = item.get_closest_marker("xdist_group")
+    return str(whole.args[0]) if whole else item.nodeid
 
 
 def pytest_collection_finish() -> None:
     """What was collected is no garbage either."""
     gc.freeze()
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """What takes hours ran at some commit: says how much has changed since."""
+    if config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+        return
+    text = (config.rootpath / "docs" / "measured.md").read_text("utf-8")
+    commit = re.search(r"^\.ci/release at ([0-9a-f]{7,40})", text, re.MULTILINE)
+    proved = ["course", "exercises", "solutions", "quiz", "tests"]
+    if not commit:
+        terminalreporter.write_line("The long runs (.ci/release) have left no outcome yet.", yellow=True)
+        return
+    diff = ["git", "diff", "--name-only", commit[1], "--", *proved]
+    try:
+        changed = subprocess.run(diff, cwd=config.rootpath, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):  # no git here, or not that far back
+        return
+    if files := changed.stdout.split():
+        line = f"Since the long runs (.ci/release) at {commit[1]}, {len(files)} files have changed."
+        terminalreporter.write_line(line, yellow=True)

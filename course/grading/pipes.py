@@ -59,24 +59,30 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
     minutes: then the work is interrupted (``KeyboardInterrupt`` in the main thread), and a little later this
     process ends in any case.
     """
-    waiting: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
-    at_work = threading.Event()
+    waiting: queue.Queue[bytes | None] = queue.Queue()
     signal.signal(signal.SIGINT, signal.default_int_handler)  # also where it was started with that ignored
 
     def read() -> None:
         while (frame := read_frame(source)) is not None:
-            at_work.set()
             waiting.put(frame)
+        at_work = waiting.unfinished_tasks
         waiting.put(None)
-        if at_work.is_set():
-            _thread.interrupt_main()
+        if at_work:
+            _interrupt_main()
             time.sleep(_LAST_S)
             os._exit(1)
 
     threading.Thread(target=read, daemon=True).start()
     while (frame := waiting.get()) is not None:
         yield frame
-        at_work.clear()
+        waiting.task_done()
+
+
+def _interrupt_main() -> None:
+    if hasattr(signal, "pthread_kill"):  # which also ends a wait for a worker's answer
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
 
 
 def limit_memory(size: int) -> None:

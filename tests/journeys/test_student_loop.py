@@ -13,7 +13,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 import zipfile
 from functools import partial
 from pathlib import Path
@@ -171,25 +170,6 @@ def test_a_check_while_a_watch_runs_loses_nothing(course, workspace):
         runs = watch.stop()["runs"]
     body = json.loads(course("progress", "--json", cwd=workspace).stdout)
     assert body["exercises"][0]["checks_run"] == len(runs) + 3
-
-
-@pytest.mark.soak
-@pytest.mark.skipif(os.name == "nt", reason="needs SIGINT")
-def test_a_save_is_answered_within_a_quarter_second_of_the_checks_own_time(course, workspace):
-    module = workspace / "doubling" / "doubling.py"
-    took = []
-    with _watch(course, workspace) as watch:
-        for number in range(6):
-            time.sleep(0.3)
-            begin = time.monotonic()
-            module.write_text(RIGHT + f"a{number} = 1\n")
-            watch.wait_for("Score 5/5")
-            took.append(time.monotonic() - begin)
-        body = watch.stop()
-    assert watch.process.returncode == 130
-    checks = sum(check["duration_ms"] for check in body["last"]["checks"]) / 1000
-    # The middle one of six: a machine busy with something else may delay one, not most.
-    assert sorted(took)[2] - checks < 0.25
 
 
 class _watch:  # noqa: N801 - a context manager, used like a function

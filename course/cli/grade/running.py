@@ -204,12 +204,16 @@ def explain(
     catalog = load_catalog()
     with open_results(out) as results:
         found = next(results.all(student, exercise), None)
+        empty = found is None and next(results.all(), None) is None
         history = results.book.history(student, exercise)
         decisions = [one for one in results.book.journal(student, exercise) if one.student]
     if found is None:
         raise NotFoundError(
             f"The gradebook has no result of {student!r} for {exercise!r}.",
-            help=f"grades.csv in {out} lists all.",
+            help="It has none at all: the run was interrupted before it had read the class. The command that"
+            " began it, with --resume, goes on."
+            if empty
+            else f"grades.csv in {out} lists all.",
             code="result_not_found",
         )
     console = current()

@@ -20,7 +20,7 @@ import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import msgspec
 
@@ -239,7 +239,12 @@ def main() -> None:
     cpu_s, memory = int(sys.argv[1]), int(sys.argv[2])
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     limit_memory(memory)
-    write_frame(sink, None)
+    with contextlib.suppress(BrokenPipeError, KeyboardInterrupt):  # whoever asked is gone
+        write_frame(sink, None)
+        _serve(source, sink, cpu_s)
+
+
+def _serve(source: IO[bytes], sink: IO[bytes], cpu_s: int) -> None:
     for frame in served(source):
         limit_cpu(cpu_s)
         ask = msgspec.msgpack.decode(frame, type=_Request)

@@ -1,4 +1,4 @@
-"""A run that is interrupted by hand, by the system, or killed: it says nothing untrue, and nothing lives on."""
+"""A run that is stopped, by hand, by the system or by force: it says nothing untrue, and nothing lives on."""
 
 from __future__ import annotations
 

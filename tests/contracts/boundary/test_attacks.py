@@ -262,7 +262,7 @@ def _listed(value: str | list[str]) -> list[str]:
 
 
 def _expect_deadlines(verdict: Verdict, timeout: float, used: float) -> None:
-    """By the CPU time of all that was started. That the wall ends a check too, it shows by coming to an end."""
+    """By the CPU time of all that was started. That the wall ends a check too shows in that it ends."""
     assert used <= (len(verdict.checks) + 1) * timeout + GRACE_S, "it used more than its checks may"
 
 

@@ -1,7 +1,7 @@
 """A student's way through an exercise, as they walk it, with the real sandbox.
 
-One walk goes from init to submit with a process per command; elsewhere a command is a process where its
-terminal, its signals or a second program matter.
+A command is a process where its terminal, its signals or a second program matter; the walk with a process
+for each is test_student.py.
 """
 
 from __future__ import annotations
@@ -73,40 +73,40 @@ def workspace(course, tmp_path):
     return root
 
 
-def test_the_whole_way_from_init_to_submit(process, tmp_path):
+def test_the_whole_way_from_init_to_submit(course, tmp_path):
     root = tmp_path / "work"
-    assert _next(process("init", "work"), "Then: ") == ["go"]
-    step = _next(process(cwd=root))
-    assert process("go", cwd=root).returncode == 0
-    assert _next(process(cwd=root)) == step, "a print is no reading"
+    assert _next(course("init", "work"), "Then: ") == ["go"]
+    step = _next(course(cwd=root))
+    assert course("go", cwd=root).returncode == 0
+    assert _next(course(cwd=root)) == step, "a print is no reading"
     Store(root / ".course" / "progress.sqlite").append("lesson", "twice-as-much")  # as the reader notes it
-    step = _next(process(cwd=root))
+    step = _next(course(cwd=root))
     assert step == ["start", "doubling"]
-    step = _next(process(*step, cwd=root), "Then check it on every save: ")
+    step = _next(course(*step, cwd=root), "Then check it on every save: ")
     assert step[:2] == ["watch", "doubling"]
-    assert process("check", cwd=root).returncode == 1
+    assert course("check", cwd=root).returncode == 1
 
     module = root / "doubling" / "doubling.py"
     module.write_text(WRONG)
-    failed = process("check", cwd=root)
+    failed = course("check", cwd=root)
     assert failed.returncode == 1
     step = _next(failed)
     assert step == ["hint", "doubling"]
-    first = process(*step, cwd=root)
-    assert process(*step, cwd=root).stdout.splitlines()[1] == first.stdout.splitlines()[1]
+    first = course(*step, cwd=root)
+    assert course(*step, cwd=root).stdout.splitlines()[1] == first.stdout.splitlines()[1]
 
     module.write_text(RIGHT)
-    passed = process("check", cwd=root)
+    passed = course("check", cwd=root)
     assert passed.returncode == 0
     assert "All 2 public checks pass; 2 hidden checks run when it is graded." in passed.stdout
-    assert process("solution", cwd=root).returncode == 5
+    assert course("solution", cwd=root).returncode == 5
     step = _next(passed)
     assert step == ["submit"]
-    assert process(*step, cwd=root).returncode == 0
+    assert course(*step, cwd=root).returncode == 0
     with zipfile.ZipFile(root / "mini-submission.zip") as archive:
         assert archive.read("doubling/doubling.py").decode() == RIGHT
     assert module.read_text() == RIGHT
-    assert "every public check passes" in process("progress", cwd=root).stdout
+    assert "every public check passes" in course("progress", cwd=root).stdout
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ __all__ = ["PHASES", "cone", "phases", "rebounds", "rest"]
 _STEP_S, _G = 0.01, 9.81
 _STIFFNESS, _DAMPING = 1e4, 20.0  # N/m and N s/m under a ball of 1 kg
 #: Where in a step the ball arrives, as shares of it.
-PHASES = np.arange(80) / 80
+PHASES = (np.arange(80) + 0.5) / 80
 
 
 def rest() -> Figure:
@@ -84,21 +84,26 @@ def phases() -> Figure:
 
 
 def cone() -> Figure:
-    """Paths of a sliding block from above, with a friction cone and with a pyramid."""
+    """Paths of a sliding block from above, with a friction cone and with two pyramids."""
     figure, (axes,) = new_figure(4.2)
+    shapes = (
+        ("cone", "cone", "blue", "-", "o"),
+        ("outer", "pyramid around it", "vermillion", "--", "s"),
+        ("inner", "pyramid within it", "green", "-.", "^"),
+    )
     for degrees in (0, 20, 45, 70, 90):
-        for pyramid, color, line in ((False, "blue", "-"), (True, "vermillion", "--")):
-            path = slide_across(math.radians(degrees), 2.0, 0.3, 0.001, pyramid=pyramid)
-            label = ("pyramid" if pyramid else "cone") if degrees == 20 else None
+        for limit, name, color, line, mark in shapes:
+            path = slide_across(math.radians(degrees), 2.0, 0.3, 0.001, limit=limit)
+            label = name if degrees == 20 else None
             axes.plot(*path.T, color=PALETTE[color], linestyle=line, linewidth=1.8, label=label)
-            axes.plot(*path[-1], color=PALETTE[color], marker="s" if pyramid else "o", markersize=5)
+            axes.plot(*path[-1], color=PALETTE[color], marker=mark, markersize=5)
     turn = np.radians(np.arange(91))
     reach = 2.0**2 / (2 * 0.3 * _G)
     axes.plot(reach * np.cos(turn), reach * np.sin(turn), color=PALETTE["grey"], linewidth=0.8)
-    axes.text(0.70, 0.30, "v² / (2 μ g)", fontsize=8.5, color=PALETTE["grey"])
+    axes.text(0.70, 0.14, "v² / (2 μ g)", fontsize=8.5, color=PALETTE["grey"])
     axes.set(xlim=(-0.03, 1.15), ylim=(-0.03, 0.74), aspect="equal")
-    axes.legend(loc="upper right", handlelength=3.0, title="friction by")
+    axes.legend(loc="upper right", handlelength=3.0, title="friction by a")
     axes.set_xlabel("x, an axis of the pyramid (m)")
     axes.set_ylabel("y (m)")
-    title(figure, "A friction pyramid is stronger along its diagonal, and bends paths")
+    title(figure, "Along its diagonal a friction pyramid is too strong or too weak")
     return figure

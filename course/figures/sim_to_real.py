@@ -31,7 +31,7 @@ WORLDS = {
 
 
 def settles(gain: ArrayLike, delay: ArrayLike, strength: ArrayLike) -> Array:
-    """Time until a joint that is told to go to 1 rad stays within 2 % of it, s; 3 if it never does.
+    """Time until a joint that is told to go to 1 rad stays within 2 % of it, s; 3 if it takes longer.
 
     Args:
         gain: shape (K,), 1/s.
@@ -98,6 +98,6 @@ def settling() -> Figure:
     axes.set(xlim=(0, 20.6), ylim=(0, 3.15), xticks=range(0, 21, 5))
     axes.text(6.1, 0.06, "circles: the gain each world prefers, on the real joint", fontsize=8.5)
     axes.set_xlabel("gain (1/s)")
-    axes.set_ylabel("time to settle (s); 3 is never")
+    axes.set_ylabel("time to settle (s); the run ends at 3")
     title(figure, "What is best in a perfect simulation is worst on the real joint")
     return figure

@@ -24,11 +24,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ROTATION_STEPPERS",
+    "ByMomentum",
+    "ByQuaternion",
     "ExplicitEulerRotation",
     "RK4Rotation",
     "RotationStepper",
     "Spin",
     "SplitRotation",
+    "Turning",
     "angular_momentum",
     "cross",
     "kinetic_energy",
@@ -110,8 +113,12 @@ class RotationStepper(Protocol):
 def _slopes(inertia: Array, spin: Spin, torque: Array) -> tuple[Array, Array]:
     """Time derivatives of orientation and angular velocity."""
     w = spin.angular_velocity
-    pure = np.concatenate([np.zeros_like(w[..., :1]), w], axis=-1)
-    return 0.5 * product(spin.orientation, pure), (torque - cross(w, inertia * w)) / inertia
+    return 0.5 * product(spin.orientation, _pure(w)), (torque - cross(w, inertia * w)) / inertia
+
+
+def _pure(vector: Array) -> Array:
+    """A vector as a quaternion without a real part."""
+    return np.concatenate([np.zeros_like(vector[..., :1]), vector], axis=-1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +190,79 @@ def _about(axis: int, angle: Array, q: Array, momentum: Array) -> tuple[Array, A
     seen[..., j] = c * momentum[..., j] + s * momentum[..., k]
     seen[..., k] = c * momentum[..., k] - s * momentum[..., j]
     return turned, seen
+
+
+class Turning(Protocol):
+    """A rotation in the form of a position and a velocity, which any method for ``x'' = a`` can advance.
+
+    Args:
+        inertia: principal moments, shape (..., 3), kg m².
+        start: the rotation at the beginning of the motion.
+    """
+
+    def __init__(self, inertia: Array, start: Spin) -> None: ...
+
+    def state(self) -> tuple[Array, Array]:
+        """Position and velocity at the start."""
+        ...
+
+    def spin(self, after: float | Array, x: Array, v: Array) -> Spin:
+        """The rotation that belongs to a position and velocity, ``after`` seconds from the start."""
+        ...
+
+    def rate(self, torque: Array, x: Array, v: Array) -> Array:
+        """The acceleration of the position under a torque in the world's axes, shape (..., 3), N m."""
+        ...
+
+
+class ByMomentum(Turning):
+    """The velocity is the angular momentum in the world's axes, which changes by the torque alone.
+
+    So the momentum has the order of the method, and without a torque it is constant. The body turns freely
+    with the mean momentum of the motion (``SplitRotation``), which makes the orientation of order 2 or, about
+    a fixed axis, of the method's order.
+    """
+
+    def __init__(self, inertia: Array, start: Spin) -> None:
+        self._inertia, self._start = inertia, start
+
+    def state(self) -> tuple[Array, Array]:
+        momentum = angular_momentum(self._inertia, *self._start)
+        return np.zeros_like(momentum), momentum
+
+    def spin(self, after: float | Array, x: Array, v: Array) -> Spin:
+        q = self._start.orientation
+        span = np.asarray(after, dtype=float)
+        if np.any(span):
+            mean = turn_back(q, x / np.where(span == 0, 1.0, span)) / self._inertia
+            q, _ = SplitRotation().advance(self._inertia, Spin(q, mean), np.zeros_like(mean), after)
+        return Spin(q, turn_back(q, v) / self._inertia)
+
+    def rate(self, torque: Array, x: Array, v: Array) -> Array:  # noqa: ARG002
+        return torque
+
+
+class ByQuaternion(Turning):
+    """The position is the quaternion, the velocity its derivative: of the method's order about any axis.
+
+    The length of the quaternion is that of a rotation to the method's order only, and divided out.
+    """
+
+    def __init__(self, inertia: Array, start: Spin) -> None:
+        self._inertia, self._start = inertia, start
+
+    def state(self) -> tuple[Array, Array]:
+        return self._start.orientation, 0.5 * product(self._start.orientation, _pure(self._start[1]))
+
+    def spin(self, after: float | Array, x: Array, v: Array) -> Spin:  # noqa: ARG002
+        size = np.linalg.norm(x, axis=-1, keepdims=True)
+        inverse = x * np.array([1.0, -1.0, -1.0, -1.0]) / size**2
+        return Spin(x / size, 2.0 * product(inverse, v)[..., 1:])
+
+    def rate(self, torque: Array, x: Array, v: Array) -> Array:
+        q, w = self.spin(0.0, x, v)
+        faster = (turn_back(q, torque) - cross(w, self._inertia * w)) / self._inertia
+        return 0.5 * (product(v, _pure(w)) + product(x, _pure(faster)))
 
 
 #: The methods under the names that the command line and the lessons use.

@@ -19,8 +19,7 @@ States may hold many runs at once (leading axes), which are then advanced togeth
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from course.physics.contact.impulses import Impulses, Motion, normal_speed, solv
 from course.physics.contact.pairs import Pairs, in_any_run
 from course.physics.integrators import State, Stepper, VelocityVerlet
 from course.physics.recording import Recording
-from course.physics.rotation import Spin, SplitRotation, turn, turn_back
+from course.physics.rotation import ByMomentum, ByQuaternion, Spin, Turning, turn, turn_back
 from course.physics.state import RigidBodyState
 
 if TYPE_CHECKING:
@@ -52,6 +51,7 @@ _BLOWS = 64  # impacts that pass from pair to pair at one instant, as along a ro
 _REST = 1.5  # speeds below this many g h are what gravity adds in one step, no impact: they do not bounce
 _STILL = 0.01  # a speed below this share of g h is rest: the forces of the next step end it
 _NEAR = 1e-3  # a gap below this share of g h² is none
+_PATIENCE = (5, 10)  # contacts give way in so many of so many steps: the solver will not get there
 _ROUND_OFF = 1e-12  # m and m/s: what counts as zero without gravity
 
 
@@ -95,13 +95,16 @@ class Simulator:
         ground: the plane things fall on; None for none.
         surface: restitution and friction of every contact. What meets at less than 1.5 g h does not bounce.
         stepper: the method that integrates the motion.
-        laws: called as ``law(t, bodies)`` whenever forces are needed, to add theirs. While the method looks
-            ahead, the states of the bodies are the looked-at ones.
+        laws: called as ``law(t, bodies)`` whenever forces are needed, to add forces and torques. While the
+            method looks ahead, the states of the bodies are the looked-at ones. The time t (s) is a number;
+            with many runs at once, an array of shape (..., 1), for each may be at another instant. Forces and
+            torques act to the order of ``stepper``; a torque turns a body to order 4 at most.
         contacts: False lets bodies pass through each other; the ground stays.
 
     Raises:
         ValueError: the step is not positive, gravity is not finite, there is no body, or the leading axes do
-            not fit together; in ``step``, that a body touches something which is no sphere by its inertia.
+            not fit together; in ``step``, that a body touches something which is no sphere by its inertia,
+            that a law's force is not a finite number, or that a body is too heavy for what carries it.
     """
 
     def __init__(
@@ -133,6 +136,8 @@ class Simulator:
         falls = np.array([self.gravity if math.isfinite(body.mass) else 0.0 for body in bodies])
         self._falling = self._column(falls) * np.array([0.0, 0.0, -1.0])
         self._spinning = [i for i, body in enumerate(bodies) if body.spins]
+        inertia = np.array([bodies[i].inertia for i in self._spinning])
+        self._inertia: Array = inertia.reshape(-1, *([1] * len(self.batch)), 3)
         #: m/s and m: slower is at rest, nearer touches.
         self._still = max(_STILL * abs(self.gravity) * self.h, _ROUND_OFF)
         self._near = max(_NEAR * abs(self.gravity) * self.h**2, _ROUND_OFF)
@@ -142,6 +147,8 @@ class Simulator:
         #: Forces of the contacts in the last step, N: the solver's starting point in the next one.
         self._last = Impulses(np.zeros(shape), np.zeros((*shape, 3)))
         self._met_at: Array = np.full(shape, np.nan)
+        #: Numbers of the last steps in which contacts gave way.
+        self._gave_way: set[int] = set()
 
     def _column(self, values: Array) -> Array:
         """One number a body, ready to multiply vectors of shape (B, ..., 3)."""
@@ -186,7 +193,7 @@ class Simulator:
             resting = self._support(start.normal, touching, left, now)
             start = start._replace(velocity=np.array([body.state.velocity for body in self.bodies]))
             before = self._states()
-            self._fly(left)
+            self._fly(left, now)
             if instant == _INSTANTS:
                 break
             share = self._pairs.meetings(start, self._pairs.now(), left, self._near, resting)
@@ -196,7 +203,7 @@ class Simulator:
                 break
             self._restore(before)
             span = np.where(soonest <= 1.0, soonest, 1.0) * left
-            self._fly(span)
+            self._fly(span, now)
             left = left - span
             self._pairs.put_together(met)
         self._pairs.push_apart(self._near)
@@ -204,48 +211,44 @@ class Simulator:
 
     # -- motion ----------------------------------------------------------------------------------------
 
-    def _accelerations(self, t: Any, q: Array, v: Array) -> Array:
-        """Accelerations by gravity, laws and contacts at these positions and velocities; (B, ..., 3)."""
+    def _fly(self, span: Array, now: Array) -> None:
+        """Advance every body by ``span`` (s, one for every run) from ``now`` without further contacts."""
+        flight = _Flight(self, now[..., None])
+        flight.put(self.stepper.advance(flight, flight.start(), cast("float", span[..., None])))
+
+    def _forces(self, t: Array) -> tuple[Array, Array]:
+        """Accelerations and torques by gravity, laws and contacts on the bodies as they are now.
+
+        Returns:
+            m/s² and N m, in the world's axes, both of shape (B, ..., 3).
+        """
         a: Array = self._falling + self._held
+        torque = np.zeros_like(a)
+        torque[self._spinning] = self._inertia * self._held_spin[self._spinning]
         if self.laws:
-            for body, position, velocity in zip(self.bodies, q, v, strict=True):
-                body.state = RigidBodyState(
-                    position, velocity, body.state.orientation, body.state.angular_velocity
-                )
+            for body in self.bodies:
                 body.clear()
             for law in self.laws:
-                law(t, self.bodies)
+                law(t if self.batch else float(t[0]), self.bodies)
             for i, body in enumerate(self.bodies):
                 a[i] += body.acceleration()
-        return a
+                torque[i] += body.torque if body.spins else 0.0
+            if not (np.isfinite(a).all() and np.isfinite(torque).all()):
+                self._blame(t)
+        return a, torque
 
-    def _fly(self, span: Array) -> None:
-        """Advance every body by ``span`` (s, one for every run) without further contacts."""
-        h: Any = span[..., None]
-        q = np.array([body.state.position for body in self.bodies])
-        v = np.array([body.state.velocity for body in self.bodies])
-        spins = self._turned(h)
-        after = self.stepper.advance(_Accelerations(self), State(self.time, q, v), h)
-        for i, body in enumerate(self.bodies):
-            spin = spins.get(i) or Spin(body.state.orientation, body.state.angular_velocity)
-            body.state = RigidBodyState(after.q[i], after.v[i], *spin)
-
-    def _turned(self, h: Any) -> dict[int, Spin]:
-        """The rotations after h of the bodies that can turn, under the torques of laws and contacts."""
-        if not self._spinning:
-            return {}
-        bodies = [self.bodies[i] for i in self._spinning]
-        q = np.array([body.state.orientation for body in bodies])
-        w = np.array([body.state.angular_velocity for body in bodies])
-        torque = np.empty_like(w)
-        for k, body in enumerate(bodies):
-            torque[k] = body.torque
-        inertia = np.array([body.inertia for body in bodies]).reshape(-1, *([1] * len(self.batch)), 3)
-        # Half of what contacts do before and half after, for their torque does not turn with the body.
-        half = 0.5 * h * self._held_spin[self._spinning]
-        q, w = SplitRotation().advance(inertia, Spin(q, w + turn_back(q, half)), turn_back(q, torque), h)
-        w = w + turn_back(q, half)
-        return {i: Spin(q[k], w[k]) for k, i in enumerate(self._spinning)}
+    def _blame(self, t: Array) -> None:
+        """Say which law has given what is no force."""
+        for law in self.laws:
+            for body in self.bodies:
+                body.clear()
+            law(t if self.batch else float(t[0]), self.bodies)
+            for number, body in enumerate(self.bodies):
+                if not (np.isfinite(body.force).all() and np.isfinite(body.torque).all()):
+                    raise ValueError(
+                        f"The law {getattr(law, '__name__', law)!r} gives body {number} no finite force at"
+                        f" t = {float(np.min(t)):g} s: {body.force.tolist()} N, {body.torque.tolist()} N m."
+                    )
 
     # -- contact ---------------------------------------------------------------------------------------
 
@@ -309,17 +312,41 @@ class Simulator:
             self._last = Impulses(np.zeros_like(self._last.push), np.zeros_like(self._last.rub))
             return resting
         start = self._states()
-        self._fly(left)
+        self._fly(left, now)
         free = self._motion()
         motion = free.copy()
         self._restore(start)
         span = np.where(left > 0, left, 1.0)
         impulses = Impulses(self._last.push * span * resting, self._last.rub * (span * resting)[..., None])
         self._solve(normal, motion, resting, now, impulses)
+        approach = np.where(resting, -normal_speed(self._pairs.ends, normal, motion.velocity), 0.0)
+        if approach.max() > self._still:
+            self._give_way(approach)
         self._last = Impulses(impulses.push / span, impulses.rub / span[..., None])
         velocity, spin = self._difference(motion, free)
         self._held, self._held_spin = velocity / span[..., None], spin / span[..., None]
         return resting
+
+    def _give_way(self, approach: Array) -> None:
+        """Bear it for some steps that contacts approach each other at these speeds (m/s), and then refuse.
+
+        A body that carries a thousand times its mass gets its support a thousandth at a time: it would sink
+        into what is below, and nobody would know.
+        """
+        most, of = _PATIENCE
+        self._gave_way = {*(step for step in self._gave_way if step > self._steps - of), self._steps}
+        if len(self._gave_way) < most:
+            return
+        pair = int(np.argmax(approach.reshape(len(approach), -1).max(axis=1)))
+        known = dict(enumerate(f"body {k} ({body.mass:g} kg)" for k, body in enumerate(self.bodies)))
+        light, heavy = sorted(self._pairs.numbers[pair], key=lambda k: self._pairs.give[k], reverse=True)
+        into = known.get(heavy)
+        what = f"{into} sinks into {known[light]}" if into else f"{known[light]} sinks into the ground"
+        masses = [body.mass for body in self.bodies if math.isfinite(body.mass)]
+        raise ValueError(
+            f"At t = {self.time:g} s {what}: the solver cannot carry {max(masses):g} kg on {min(masses):g} kg"
+            " in so many contacts. Make the masses more alike."
+        )
 
     def _solve(
         self,
@@ -365,14 +392,59 @@ class Simulator:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Accelerations:
-    """The engine's forces in the form that steppers take."""
+class _Flight:
+    """A motion between contacts, in the form that steppers take: positions and velocities of everything.
 
-    engine: Simulator
+    To those of the centres come, for bodies that can turn, those of their rotation.
+    """
 
-    def __call__(self, t: float, q: Any, v: Any) -> Array:
-        return self.engine._accelerations(t, q, v)
+    def __init__(self, engine: Simulator, start: Array) -> None:
+        self._engine, self._t = engine, start
+        states = engine._states()
+        self._spins = [Spin(state.orientation, state.angular_velocity) for state in states]
+        self._turns = engine._spinning
+        if self._turns:
+            q, w = (np.array([self._spins[i][part] for i in self._turns]) for part in (0, 1))
+            # What any law twists is of the method's order; what turns freely keeps its momentum.
+            form = ByQuaternion if engine.laws and engine.stepper.order > 2 else ByMomentum
+            self._turning: Turning = form(engine._inertia, Spin(q, w))
+
+    def start(self) -> State:
+        """Where the motion begins; q and v have shape (B, ..., 3) or, with rotations, (B, ..., 6 or 7)."""
+        states = self._engine._states()
+        x = np.array([state.position for state in states])
+        v = np.array([state.velocity for state in states])
+        if self._turns:
+            x, v = (self._joined(*parts) for parts in zip((x, v), self._turning.state(), strict=True))
+        return State(cast("float", self._t), x, v)
+
+    def _joined(self, of_centres: Array, of_rotations: Array) -> Array:
+        rest = np.zeros((*of_centres.shape[:-1], of_rotations.shape[-1]))
+        rest[self._turns] = of_rotations
+        return np.concatenate([of_centres, rest], axis=-1)
+
+    def put(self, state: State) -> None:
+        """Give the bodies the states at some instant of the motion."""
+        spins = self._spins
+        if self._turns:
+            turned = self._turning.spin(
+                state.t - self._t, state.q[self._turns, ..., 3:], state.v[self._turns, ..., 3:]
+            )
+            spins = spins.copy()
+            for k, i in enumerate(self._turns):
+                spins[i] = Spin(turned.orientation[k], turned.angular_velocity[k])
+        for body, x, v, spin in zip(self._engine.bodies, state.q, state.v, spins, strict=True):
+            body.state = RigidBodyState(x[..., :3], v[..., :3], *spin)
+
+    def __call__(self, t: Any, q: Any, v: Any) -> Array:
+        """Accelerations of everything, of the shape of q."""
+        if self._engine.laws:
+            self.put(State(t, q, v))
+        a, torque = self._engine._forces(t)
+        if not self._turns:
+            return a
+        rotations = q[self._turns, ..., 3:], v[self._turns, ..., 3:]
+        return self._joined(a, self._turning.rate(torque[self._turns], *rotations))
 
     def params(self) -> dict[str, Any]:
-        return {"h": self.engine.h, "gravity": self.engine.gravity}
+        return {"h": self._engine.h, "gravity": self._engine.gravity}

@@ -335,7 +335,13 @@ def build(
     instructors(catalog)
     every = (*catalog.exercises(), *catalog.warm_ups())
     chosen = every if name is None else (catalog.exercise(name),)
-    made = [step(catalog, exercise) for exercise in chosen for step in (write_points, desk.build)]
+    made: list[Path | None] = []
+    for exercise in chosen:
+        try:
+            made += [write_points(catalog, exercise), desk.build(catalog, exercise)]
+        except ContentError:
+            _say_blanks(catalog, exercise)
+            raise
     read_table.cache_clear()  # it was just written, and what is slow is told with it
     made += [write_slow(catalog, exercise) for exercise in chosen]
     written = [shown(path, catalog) for path in made if path]
@@ -355,6 +361,22 @@ def build(
         console.note("All of it is up to date.")
     console.emit(AuthorBuild(files=tuple(written)))
     return 0
+
+
+def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
+    """A file with blanks is often no TOML either, and not for that reason."""
+    from course.authoring.exercises.files import find_blanks
+    from course.authoring.report import Findings
+
+    findings = Findings(catalog.content.root)
+    if find_blanks(catalog, exercise.id, findings):
+        first = findings.problems[0]
+        raise UsageError(
+            f"{exercise.id} has {len(findings.problems)} blanks to fill in first, such as"
+            f" {first.file}:{first.line}.",
+            help=f"`course author check {exercise.id}` lists them.",
+            code="unfinished_content",
+        )
 
 
 @app.command(epilog="Example: course author mutants integrators")

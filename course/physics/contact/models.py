@@ -157,20 +157,46 @@ def drop(model: ContactModel, gap: float, v: float, h: float, n: int, g: float =
     return np.array(gaps), np.array(speeds)
 
 
-def slide_across(angle: float, speed: float, mu: float, h: float, *, pyramid: bool, g: float = 9.81) -> Array:
+def slide_across(
+    angle: float, speed: float, mu: float, h: float, *, limit: str = "cone", g: float = 9.81
+) -> Array:
     """The positions of a block that slides over a level floor until it stops; shape (n, 2), m.
+
+    Of the friction that ``limit`` allows, each step applies what takes most energy.
 
     Args:
         angle: of its velocity, rad, from the x axis; speed: m/s.
-        mu: friction.
-        pyramid: limit the friction along x and along y each by ``mu`` times the weight, as an engine does
-            that solves two rows of friction a contact; otherwise limit the vector (the cone).
+        mu: friction; ``mu`` times the weight is its limit along x and along y.
+        limit: between the axes: "cone" limits the length of the vector (Coulomb); "outer" each of the two
+            alone, a pyramid around the cone, as in ODE; "inner" their sum, a pyramid within it, MuJoCo's.
+
+    Raises:
+        ValueError: another limit.
     """
+    if limit not in _LIMITS:
+        raise ValueError(f"Friction is limited by one of {', '.join(_LIMITS)}, not {limit!r}.")
     v = speed * np.array([math.cos(angle), math.sin(angle)])
-    most = mu * g * h
     places = [np.zeros(2)]
     while np.any(v != 0):
-        size = np.abs(v) if pyramid else np.linalg.norm(v)
-        v = v - v * np.minimum(1.0, most / np.where(size > 0, size, 1.0))
+        v = v - _LIMITS[limit](v, mu * g * h)
         places.append(places[-1] + h * v)
     return np.array(places)
+
+
+def _to_cone(v: Array, most: float) -> Array:
+    return v * min(1.0, most / float(np.linalg.norm(v)))
+
+
+def _to_outer(v: Array, most: float) -> Array:
+    return np.asarray(np.clip(v, -most, most))
+
+
+def _to_inner(v: Array, most: float) -> Array:
+    """The nearest vector with ``|x| + |y|`` of at most ``most``."""
+    size = np.abs(v)
+    over = min(max(0.0, 0.5 * (size.sum() - most)), float(size.min()))
+    return np.asarray(np.sign(v) * np.minimum(size - over, most))
+
+
+#: What each allows of the friction that would stop the block in a step, N s/kg.
+_LIMITS = {"cone": _to_cone, "outer": _to_outer, "inner": _to_inner}

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["SIMULATION"]
 
-_PHASES = 40  # starts that differ by parts of a step
+_PHASES = 40  # starts that differ by parts of a step, each in the middle of its part
 
 
 def _run(p: Mapping[str, Any]) -> Result:
     h, g, e, erp = p["step"], p["gravity"], p["restitution"], p["erp"]
-    phases = np.arange(_PHASES) / _PHASES
+    phases = (np.arange(_PHASES) + 0.5) / _PHASES
     heights = p["height"] + phases * h * math.sqrt(2 * g * p["height"])
     models = _models(e, erp)
     rebound = {

@@ -20,14 +20,14 @@ def _spring(radians_a_step, damping_ratio):
 
 STIFF = {"solref": f"{2 * measures.STEP!r} 1", "solimp": "0.99 0.99 0.001"}
 WELL_SET = {
-    "bounce": {"integrator": "RK4", **_spring(0.5, HALF_BACK)},
+    "bounce": {"integrator": "RK4", **_spring(0.7, HALF_BACK)},
     "small-drop": {"integrator": "RK4", **_spring(0.7, HALF_BACK)},
     "clash": _spring(0.1, 0.0),
     "slide": {"cone": "elliptic", "impratio": 100},
     "mass-ratio": STIFF,
 }
 EXTRA = {
-    "damping ratio of a spring that may pull": ("bounce", {"integrator": "RK4", **_spring(0.5, 0.2155)}),
+    "damping ratio of a spring that may pull": ("bounce", {"integrator": "RK4", **_spring(0.7, 0.2155)}),
     "elliptic cone alone": ("slide", {"cone": "elliptic"}),
 }
 

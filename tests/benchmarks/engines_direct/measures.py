@@ -16,7 +16,7 @@ import statistics
 
 STEP = 1.0 / 240.0
 G = 9.81
-PHASES = 8
+PHASES = 64
 STARTS = 5
 
 
@@ -33,7 +33,7 @@ def rebound(make, settings, height=1.0):
 
     A phase is a start so much further down the same fall: the energy is the same, the landing is earlier.
     """
-    return [_rebound(make, settings, height, k / PHASES * STEP) for k in range(PHASES)]
+    return [_rebound(make, settings, height, (k + 0.5) / PHASES * STEP) for k in range(PHASES)]
 
 
 def _rebound(make, settings, height, late):
@@ -61,7 +61,7 @@ def clash(make, settings):
     """By how many per cent an elastic collision of 1 kg at 1 m/s with 3 kg at rest changes the energy."""
     found = []
     for k in range(PHASES):
-        light = ("ball", 0.1, 1.0, (-0.5 - k / PHASES * STEP, 0, 1), (1, 0, 0))
+        light = ("ball", 0.1, 1.0, (-0.5 - (k + 0.5) / PHASES * STEP, 0, 1), (1, 0, 0))
         heavy = ("ball", 0.1, 3.0, (0, 0, 1), (0, 0, 0))
         step, read = make([light, heavy], settings, (0, 0, 0), 0.0, 1.0, False)
         for _ in range(240):

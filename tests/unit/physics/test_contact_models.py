@@ -94,16 +94,32 @@ def test_below_the_threshold_nothing_bounces() -> None:
 
 @given(st.floats(0.0, 0.5 * math.pi))
 def test_the_cone_stops_a_block_equally_far_in_every_direction(angle: float) -> None:
-    end = slide_across(angle, 2.0, 0.3, 1e-3, pyramid=False)[-1]
+    end = slide_across(angle, 2.0, 0.3, 1e-3, limit="cone")[-1]
     assert np.linalg.norm(end) == pytest.approx(4 / (2 * 0.3 * G) - 2.0 * 1e-3 / 2, abs=5e-6)
     assert math.atan2(end[1], end[0]) == pytest.approx(angle, abs=1e-9)
 
 
-def test_the_pyramid_is_the_cone_along_its_axes_and_stops_sooner_between_them() -> None:
-    along, between, diagonal = (
-        np.linalg.norm(slide_across(angle, 2.0, 0.3, 1e-4, pyramid=True)[-1])
+@pytest.mark.parametrize(("limit", "diagonal"), [("outer", math.sqrt(0.5)), ("inner", math.sqrt(2.0))])
+def test_a_pyramid_is_the_cone_along_its_axes_and_another_floor_between_them(
+    limit: str, diagonal: float
+) -> None:
+    along, between, across = (
+        np.linalg.norm(slide_across(angle, 2.0, 0.3, 1e-4, limit=limit)[-1])
         for angle in (0.0, math.radians(20), 0.25 * math.pi)
     )
     assert along == pytest.approx(0.6796, abs=2e-4)
-    assert diagonal == pytest.approx(along / math.sqrt(2), rel=1e-3)
-    assert diagonal < between < along
+    assert across == pytest.approx(along * diagonal, rel=1e-3)
+    assert min(along, across) < between < max(along, across)
+
+
+def test_the_inner_pyramid_is_mujocos() -> None:
+    """Where MuJoCo 3.3 took a box with its default cone at 2 m/s and mu = 0.3; angles in degrees."""
+    for start, far, bent in ((0, 0.679, 0.0), (20, 0.807, 32.7), (45, 0.960, 45.0)):
+        end = slide_across(math.radians(start), 2.0, 0.3, 1e-3, limit="inner")[-1]
+        assert np.linalg.norm(end) == pytest.approx(far, abs=1e-3)
+        assert math.degrees(math.atan2(end[1], end[0])) == pytest.approx(bent, abs=0.05)
+
+
+def test_a_limit_that_is_none_is_refused() -> None:
+    with pytest.raises(ValueError, match="cone, outer, inner"):
+        slide_across(0.0, 2.0, 0.3, 1e-3, limit="square")

@@ -72,10 +72,12 @@ def account(receipt: Receipt) -> list[str]:
         + f"; now {_joule(receipt.kinetic)} of motion and {_joule(receipt.potential)} of height.",
     ]
     scale = max(abs(had), abs(receipt.kinetic), abs(receipt.contacts), abs(receipt.friction), 1e-12)
-    contacts, friction = (
-        part if abs(part) > 1e-9 * scale else 0.0 for part in (receipt.contacts, receipt.friction)
+    contacts, friction, rods = (
+        part if abs(part) > 1e-9 * scale else 0.0
+        for part in (receipt.contacts, receipt.friction, receipt.rods)
     )
-    lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}.")
+    in_rods = f", lost in rods {_joule(rods)}" if rods else ""
+    lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}{in_rods}.")
     share = abs(receipt.residual) / scale
     if share < 1e-9:
         lines.append("Nothing is unaccounted for.")

@@ -41,6 +41,7 @@ class History:
     potential: Floats
     contacts: Floats
     friction: Floats
+    rods: Floats
     residual: Floats
     px: Floats
     py: Floats
@@ -100,7 +101,11 @@ class Accounts:
         self._history: deque[list[float]] = deque(maxlen=_KEPT)
         #: By row of the block to come: velocities after a push, energy given by it, energy rubbed off.
         self._pushes: dict[int, tuple[Floats, float, float]] = {}
-        self._remember(np.zeros(1), self.base[None], np.zeros((1, 3)))
+        #: By row of the block to come: the body that a hand held, and the impulses of the hand.
+        self._held: dict[int, tuple[int, tuple[float, float, float]]] = {}
+        #: What joints will take in the next step, in J.
+        self._to_rods = space.stopped_by_joints()
+        self._remember(np.zeros(1), self.base[None], np.zeros((1, 4)))
 
     # -- reading ---------------------------------------------------------------------------------
 
@@ -108,7 +113,7 @@ class Accounts:
         """Where the energy is; call ``close`` first."""
         ledger = self.ledger
         kinetic, potential = ledger.kinetic(self.base), ledger.potential(self.base)
-        spent = kinetic + potential + ledger.contacts + ledger.friction
+        spent = kinetic + potential + ledger.contacts + ledger.friction + ledger.rods
         return Receipt(
             start=ledger.start,
             given=ledger.given,
@@ -116,13 +121,14 @@ class Accounts:
             potential=potential,
             contacts=ledger.contacts,
             friction=ledger.friction,
+            rods=ledger.rods,
             residual=ledger.start + ledger.given - spent,
             integrator=ledger.integrator,
         )
 
     def history(self) -> History:
         """The last minute; call ``close`` first."""
-        return History(*np.array(self._history).reshape(-1, 9).T)
+        return History(*np.array(self._history).reshape(-1, 10).T)
 
     # -- booking ---------------------------------------------------------------------------------
 
@@ -141,23 +147,32 @@ class Accounts:
             contacts=contacts,
         )
         given, rubbed = np.zeros(count), np.zeros(count)
+        impulses = np.zeros(block.before.shape)
+        for row, (body, pulled) in self._held.items():
+            impulses[row, body] = pulled
+        by_hand = self.ledger.work(block, impulses) if self._held else given.copy()
+        self._held.clear()
         for row, push in self._pushes.items():
             block.before[row], given[row], rubbed[row] = push
         self._pushes.clear()
-        self._book(block, given, rubbed)
+        self._book(block, given, by_hand, rubbed)
         self.base = states[-1].copy()
         return block
 
-    def _book(self, block: Block, given: Floats, rubbed: Floats) -> None:
+    def _book(self, block: Block, given: Floats, by_hand: Floats, rubbed: Floats) -> None:
         """Book a block and what was pushed during it, and sample it for the history."""
         ledger = self.ledger
-        had = ledger.given, ledger.contacts, ledger.friction
-        across, along = ledger.settle(block, self.clock.size)
+        had = ledger.given, ledger.contacts, ledger.friction, ledger.rods
+        across, along = ledger.settle(block, self.clock.size, by_hand)
+        given = given + by_hand
+        stopped = np.zeros(len(given))
+        stopped[0], self._to_rods = self._to_rods, 0.0
         ledger.given += float(given.sum())
         ledger.friction += float(rubbed.sum())
+        ledger.rods += float(stopped[0])
         every = max(1, round(_SAMPLE / self.clock.size))
         rows = slice((-block.first_step) % every, None, every)
-        changes = (np.cumsum([given, across, along + rubbed], axis=1).T + had)[rows]
+        changes = (np.cumsum([given, across, along + rubbed, stopped], axis=1).T + had)[rows]
         self._remember(block.times[rows], block.states[rows], changes)
 
     def gave(self) -> None:
@@ -165,6 +180,7 @@ class Accounts:
         had = self._energy()
         self.base = self.space.state()
         self.ledger.given += self._energy() - had
+        self._to_rods = self.space.stopped_by_joints()
 
     def recast(self, gravity: tuple[float, float]) -> None:
         """Bodies came or went, or gravity changed: book the energy it brought as given."""
@@ -178,12 +194,12 @@ class Accounts:
     ) -> None:
         """Let hand, wheels and floor act before a step."""
         ledger, size, count = self.ledger, self.clock.size, len(self.recorder)
-        had = ledger.kinetic(self.space.state())
-        given = work = 0.0
         if hand is not None:
-            hand.pull(self.space.body(hand.name), size)
-            now = ledger.kinetic(self.space.state())
-            given, had = now - had, now
+            self._held[count] = self.space.index[hand.name], hand.pull(self.space.body(hand.name), size)
+        if not wheeled and floor is None:
+            return
+        had = ledger.kinetic(self.space.state())
+        work = 0.0
         for part in wheeled:
             if part.wheels is not None:
                 pressing = floor.gravity if floor else _WEIGHT
@@ -194,8 +210,7 @@ class Accounts:
                     gyration = math.sqrt(part.moment / part.mass) if math.isfinite(part.moment) else 0.0
                     brake(self.space.body(part.name), floor, size, gyration)
         state = self.space.state()
-        rubbed = work - (ledger.kinetic(state) - had) if wheeled or floor is not None else 0.0
-        self._pushes[count] = state[:, 3:], given + work, rubbed
+        self._pushes[count] = state[:, 3:], work, work - (ledger.kinetic(state) - had)
 
     def _energy(self) -> float:
         return self.ledger.kinetic(self.base) + self.ledger.potential(self.base)
@@ -206,11 +221,11 @@ class Accounts:
         Args:
             times: (k,), in s.
             states: (k, n, 6).
-            changes: given, and lost in contacts and to friction until then; (k, 3), in J.
+            changes: given, and lost in contacts, to friction and in rods until then; (k, 4), in J.
         """
         if not len(times):
             return
         table = self.ledger.table(states)
-        rest = self.ledger.start + changes[:, 0] - table[:, 0] - table[:, 1] - changes[:, 1] - changes[:, 2]
+        rest = self.ledger.start + changes[:, 0] - table[:, :2].sum(axis=1) - changes[:, 1:].sum(axis=1)
         rows = np.column_stack([times, table[:, :2], changes[:, 1:], rest, table[:, 2:]])
         self._history.extend(rows.tolist())

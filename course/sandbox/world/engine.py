@@ -175,6 +175,31 @@ class Space:
             ends.append((float(a.x), float(a.y), float(b.x), float(b.y)))
         return ends
 
+    def stopped_by_joints(self) -> float:
+        """The energy that joints take from bodies that move against them, in J.
+
+        An ideal joint takes what of the velocities it does not allow, at once, with the least impulse that
+        does. With conditions ``J v = 0`` and inverse masses ``W`` that is ``(J v)' (J W J')^-1 (J v) / 2``.
+        """
+        if not self.joints:
+            return 0.0
+        rows: list[Floats] = []
+        for joint, (ax, ay, bx, by) in zip(self.joints, self.ends_of_joints(), strict=True):
+            along = np.array([bx - ax, by - ay])
+            rod = isinstance(joint, pymunk.PinJoint) and bool(along.any())
+            for nx, ny in [along / np.hypot(*along)] if rod else np.eye(2):
+                row = np.zeros((len(self.parts), 3))
+                for body, x, y, sign in ((joint.a, ax, ay, -1.0), (joint.b, bx, by, 1.0)):
+                    part = self._bodies[body.id][0]
+                    turn = (x - body.position.x) * ny - (y - body.position.y) * nx
+                    row[self.index[part.name]] += sign * np.array([nx, ny, turn])
+                rows.append(row.ravel())
+        conditions = np.array(rows)
+        masses = [(0.0,) * 3 if p.fixed else (1 / p.mass, 1 / p.mass, 1 / p.moment) for p in self.parts]
+        wrong = conditions @ self.state()[:, 3:].ravel()
+        least = np.linalg.lstsq(conditions * np.ravel(masses) @ conditions.T, wrong, rcond=None)[0]
+        return float(wrong @ least) / 2
+
     # -- everything at once ----------------------------------------------------------------------
 
     def state(self) -> Floats:

@@ -65,6 +65,7 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
         kinetic, potential: now; potential energy is zero at y = 0 (x = 0).
         contacts: lost across contacts, along their normals.
         friction: lost along surfaces, and to the floor of a scene seen from above.
+        rods: lost in joints that stopped a body which was thrown against them.
         residual: missing without a known loss. Below zero: the solver made energy.
         integrator: the part of ``residual`` that comes from moving bodies before accelerating them: half a
             step's worth of gravity's power, -m g (v - v at the start) h/2. It comes back with the velocity.
@@ -76,5 +77,6 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
     potential: float
     contacts: float
     friction: float
+    rods: float
     residual: float
     integrator: float

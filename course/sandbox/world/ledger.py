@@ -81,12 +81,13 @@ class Ledger:
     Args:
         parts: the bodies, in the order of the rows of every state.
         gravity: in m/s².
-        joints: whether joints do work as well; what they lose then goes to the residual.
+        joints: whether joints do work as well; their errors then go to the residual.
     """
 
     def __init__(self, parts: Sequence[Part], gravity: tuple[float, float], *, joints: bool) -> None:
         self.contacts = 0.0
         self.friction = 0.0
+        self.rods = 0.0
         self.integrator = 0.0
         self.given = 0.0
         self.start = 0.0
@@ -123,12 +124,13 @@ class Ledger:
 
     # -- of many steps ---------------------------------------------------------------------------
 
-    def settle(self, block: Block, step: float) -> tuple[Floats, Floats]:
+    def settle(self, block: Block, step: float, given: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Book the losses of a block.
 
         Args:
             block: the steps.
             step: their size, in s.
+            given: what a hand gave in each step, (k,), in J.
 
         Returns:
             what each step lost at contacts, (k,), and by friction, (k,), in J.
@@ -140,7 +142,7 @@ class Ledger:
         contacts, friction = self._of_contacts(block, mean, count)
         if not self.joints and len(block.contacts.row):
             gained = self.energies(after) - self.energies(before)
-            contacts = from_gravity - gained - friction
+            contacts = from_gravity + given - gained - friction
         self.contacts += float(contacts.sum())
         self.friction += float(friction.sum())
         self.integrator += float((before[0] - after[-1]).ravel() @ self._weight_force) * step / 2
@@ -159,6 +161,16 @@ class Ledger:
         return np.column_stack(
             [self.energies(states[:, :, 3:]), heights, vx @ self.mass, vy @ self.mass, angular]
         )
+
+    def work(self, block: Block, impulses: Floats) -> Floats:
+        """What impulses gave that acted inside the steps, (k,), in J.
+
+        Args:
+            block: the steps.
+            impulses: (k, n, 3), in N s and N m s.
+        """
+        work: Floats = ((block.before + block.states[:, :, 3:]) * impulses).sum(axis=(1, 2)) / 2
+        return work
 
     def _of_contacts(self, block: Block, mean: Floats, count: int) -> tuple[Floats, Floats]:
         """Energy that impulses took along normals and along surfaces, by step.

@@ -1,6 +1,7 @@
 """Pushes from outside the contacts: a hand that drags, wheels that drive, a floor that rubs.
 
-Each is an impulse before a step, sized for that step, so the account of energy knows exactly what it did.
+Wheels and floor are impulses before a step, sized for that step. A hand is a force inside it, because rods
+and contacts answer it there. So the account of energy knows exactly what each did.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ class Hand:
     x: float
     y: float
 
-    def pull(self, body: pymunk.Body, step: float) -> None:
-        """Push the body for one step."""
+    def pull(self, body: pymunk.Body, step: float) -> tuple[float, float, float]:
+        """Put the hand's force on the body for one step, and return its impulses: in N s, N s and N m s."""
         place = body.local_to_world(self.anchor)
         velocity = body.velocity_at_local_point(self.anchor)
         eager = min(_EAGERNESS, 0.5 / step)
@@ -52,8 +53,12 @@ class Hand:
         size, most = math.hypot(jx, jy), body.mass * _STRENGTH * step
         if size > most:
             jx, jy = jx * most / size, jy * most / size
-        body.apply_impulse_at_world_point((jx, jy), place)
-        body.angular_velocity *= math.exp(-_CALM * step)
+        turn = rx * jy - ry * jx
+        if not math.isinf(body.moment):
+            turn -= body.moment * body.angular_velocity * (1.0 - math.exp(-_CALM * step))
+        body.force += jx / step, jy / step
+        body.torque += turn / step
+        return jx, jy, turn
 
 
 def brake(body: pymunk.Body, floor: Floor, step: float, gyration: float) -> None:

@@ -96,7 +96,7 @@ def test_json_is_one_object_with_everything(tmp_path: Path) -> None:
     assert data["prediction"]["simulation"] == pytest.approx(1.0)
     assert data["momentum"]["before"] == pytest.approx(data["momentum"]["after"])
     parts = data["receipt"]
-    whole = sum(parts[k] for k in ("kinetic", "potential", "contacts", "friction", "residual"))
+    whole = sum(parts[k] for k in ("kinetic", "potential", "contacts", "friction", "rods", "residual"))
     assert whole == pytest.approx(parts["start"] + parts["given"])
     assert [event["kind"] for event in data["events"]] == ["contact", "rest"]
 

@@ -43,13 +43,23 @@ def test_a_long_run_is_cut_and_says_so() -> None:
 
 
 def test_the_account_names_what_the_solver_did() -> None:
-    base = {"start": 10.0, "given": 0.0, "kinetic": 4.0, "potential": 2.0, "contacts": 3.0, "friction": 1.0}
+    base = {
+        "start": 10.0,
+        "given": 0.0,
+        "kinetic": 4.0,
+        "potential": 2.0,
+        "contacts": 3.0,
+        "friction": 1.0,
+        "rods": 0.0,
+    }
     assert "unaccounted" in account(Receipt(**base, residual=0.0, integrator=0.0))[-1]
     lost = account(Receipt(**{**base, "kinetic": 3.5}, residual=0.5, integrator=0.0))[-1]
     assert "missing" in lost
     made = account(Receipt(**{**base, "kinetic": 4.5}, residual=-0.5, integrator=0.0))[-1]
     assert "has no physical source" in made
     assert "5 %" in made
+    caught = account(Receipt(**{**base, "kinetic": 3.5, "rods": 0.5}, residual=0.0, integrator=0.0))
+    assert "lost in rods 0.5" in caught[1]
 
 
 def test_a_whole_scene_reads_as_a_story() -> None:

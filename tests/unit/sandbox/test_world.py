@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -47,7 +48,7 @@ def puck(name: str, x: float, vx: float, mass: float = 1.0, y: float = 0.0, vy: 
 
 def imbalance(world: World) -> float:
     r = world.receipt
-    return r.start + r.given - r.kinetic - r.potential - r.contacts - r.friction - r.residual
+    return r.start + r.given - r.kinetic - r.potential - r.contacts - r.friction - r.rods - r.residual
 
 
 def play_about(world: World, chance: random.Random, turns: int) -> None:
@@ -242,6 +243,52 @@ def test_whatever_hands_do_the_books_balance(seed: int) -> None:
 
 
 # -- hands -----------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=25)
+@given(data=st.data(), aside=st.tuples(st.floats(-0.4, 0.4), st.floats(-0.4, 0.4)))
+def test_holding_a_body_still_costs_nothing(data, aside) -> None:
+    """Whatever answers the hand: a rod, the floor. Yesterday the hand booked what they undid in the same step."""
+    name = data.draw(st.sampled_from(["newtons-cradle", "pendulum-wall", "free-fall", "box-stack"]))
+    world = World(choose(name).scene)
+    world.run_until(0.3)
+    part = data.draw(st.sampled_from([part for part in world.parts if not part.fixed]))
+    x, y = (float(c) for c in world.state()[world._space.index[part.name], :2])
+    assert world.grab(x, y, 0.05) == part.name
+    world.drag(x + aside[0], y + aside[1])
+    world.run_until(6.0)
+    before = world.receipt
+    world.run_until(8.0)
+    after = world.receipt
+    row = world._space.index[part.name]
+    assert np.abs(world.state()[row, 3:5]).max() < 1e-2
+    size = float(np.ptp(np.array(part.outline), axis=0).max()) if part.outline else 2 * part.radius
+    worth = 0.01 * part.mass * 9.81 * size
+    assert abs(after.given - before.given) < worth
+    assert abs(after.residual - before.residual) < worth
+
+
+@pytest.mark.parametrize(("scene_name", "body"), [("newtons-cradle", "ball-2"), ("pendulum-wall", "ball")])
+def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name: str, body: str) -> None:
+    world = World(choose(scene_name).scene)
+    world.run_until(0.3)
+    row = world._space.index[body]
+    x, y = (float(c) for c in world.state()[row, :2])
+    (ends,) = [
+        e
+        for e in world.snapshot().joints
+        if min(np.hypot(*(e[2:] - (x, y))), np.hypot(*(e[:2] - (x, y)))) < 1e-6
+    ]
+    rod = (ends[2:] - ends[:2]) / np.hypot(*(ends[2:] - ends[:2]))
+    mass, before = world.parts[row].mass, world.receipt
+    world.throw(x, y, 5.0 * rod[0], 5.0 * rod[1])
+    assert world.receipt.rods == 0.0
+    world.step(1)
+    after = world.receipt
+    assert after.rods == pytest.approx(mass * 25 / 2, rel=1e-6)
+    assert abs(after.residual - before.residual) < 0.01 * after.rods
+    assert imbalance(world) == pytest.approx(0, abs=1e-9)
+    assert world.history.rods[-1] in {0.0, after.rods}
 
 
 def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:

@@ -39,6 +39,7 @@ _ENERGIES = (
     ("potential", "height", "#ccbb44"),
     ("contacts", "contacts", "#ee6677"),
     ("friction", "friction", "#dd88bb"),
+    ("rods", "rods", "#ee99aa"),
     ("residual", "solver", "#b0b6bf"),
 )
 _MOMENTA = (("px", "along x", "#66ccee"), ("py", "along y", "#ccbb44"), ("angular", "turning", "#b0b6bf"))
@@ -151,20 +152,26 @@ def panel(world: World, width: int, height: int) -> list[Line]:
     lines = [*_energy(history, receipt, width, tall), *_momentum(history, momentum, width, tall)]
     # Where there is little room, blank lines go first, then a heading and angular momentum.
     if len(lines) + len(settings) + 2 <= height:
-        split = 2 + len(_ENERGIES) * tall
+        split = 2 + len(_drawn(receipt)) * tall
         return [*lines[:split], ((" ", ""),), *lines[split:], ((" ", ""),), *settings]
     if len(lines) + len(settings) > height:
         lines, settings = lines[:-1], settings[1:]
     return [*lines, *settings][:height]
 
 
+def _drawn(receipt: Receipt) -> list[tuple[str, str, str]]:
+    """The curves of energy: most scenes have no rods, and most rods take nothing."""
+    return [one for one in _ENERGIES if one[0] != "rods" or receipt.rods]
+
+
 def _energy(history: History, receipt: Receipt, width: int, tall: int) -> list[Line]:
-    series = {name: getattr(history, name) for name, _, _ in _ENERGIES}
+    drawn = _drawn(receipt)
+    series = {name: getattr(history, name) for name, _, _ in drawn}
     had = receipt.start + receipt.given
     scale = max(abs(had), *(abs(getattr(receipt, name)) for name in series), 1e-12)
     span = max(max((float(np.ptp(v)) for v in series.values() if len(v)), default=0.0), 1e-9 * scale)
     lines: list[Line] = [(("Energy in J", "bold"),)]
-    for name, label, colour in _ENERGIES:
+    for name, label, colour in drawn:
         values = series[name]
         lines += _curve(label, values, getattr(receipt, name), scale, span, width, tall, colour)
     total = shown(had, scale)

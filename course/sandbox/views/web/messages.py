@@ -21,9 +21,9 @@ MAX_REQUEST = 1024
 #: each of its frames, and slider moves on top.
 _RATE, _BURST = 200.0, 300.0
 #: float32 numbers in front of the bodies; ``world.js`` reads them by the same names.
-FRAME_HEAD = 20
+FRAME_HEAD = 21
 #: Columns of the past: time, five energies, two momenta.
-_PAST = ("t", "kinetic", "potential", "contacts", "friction", "residual", "px", "py")
+_PAST = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py")
 
 Number = float
 Name = Annotated[str, Meta(max_length=60)]
@@ -170,8 +170,8 @@ def frame(world: World, pace: float) -> bytes:
     """Where everything is, as little-endian float32.
 
     ``FRAME_HEAD`` numbers: 1, version, t, pace, bodies, joints, whether a body is held, the four of
-    the hand, kinetic, potential, contacts, friction, residual, momentum x and y, angular momentum, row of the
-    body that is held or -1. Then x, y, angle, vx, vy of each body, then the two ends of each joint.
+    the hand, kinetic, potential, contacts, friction, rods, residual, momentum x and y, angular momentum, row
+    of the body that is held or -1. Then x, y, angle, vx, vy of each body, then the two ends of each joint.
 
     Args:
         pace: simulated seconds per second that were really made, as a part of those asked for.
@@ -182,7 +182,14 @@ def frame(world: World, pace: float) -> bytes:
     head = [
         *(1.0, shot.version, shot.t, pace, len(shot.x), len(shot.joints), shot.hand is not None),
         *(shot.hand or (0.0, 0.0, 0.0, 0.0)),
-        *(receipt.kinetic, receipt.potential, receipt.contacts, receipt.friction, receipt.residual),
+        *(
+            receipt.kinetic,
+            receipt.potential,
+            receipt.contacts,
+            receipt.friction,
+            receipt.rods,
+            receipt.residual,
+        ),
         *(px, py, angular, row),
     ]
     bodies = np.stack([shot.x, shot.y, shot.angle, shot.vx, shot.vy], axis=1)
@@ -192,7 +199,8 @@ def frame(world: World, pace: float) -> bytes:
 def past(world: World, most: int = 900) -> bytes:
     """The past, for plots in a page that opened later.
 
-    3, version, rows, columns, and then rows of t, kinetic, potential, contacts, friction, residual, px, py.
+    3, version, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
+    and py.
 
     Args:
         most: rows at most; the last ones, about 60 of them a second.

@@ -3,7 +3,7 @@
 // is told the scene's title.
 // Nothing is fetched, and nothing outside the element is touched, so a notebook can use this file as it is.
 
-const HEAD = 20; // numbers in front of the bodies of a frame
+const HEAD = 21; // numbers in front of the bodies of a frame
 const PER_BODY = 5; // x, y, angle, vx, vy
 const FLASH = 350; // ms that a contact glows
 const CALM = 2500; // ms between sentences that are spoken
@@ -13,6 +13,7 @@ const ENERGY = [
   ["potential", "of height", "--potential"],
   ["contacts", "lost in contacts", "--contacts"],
   ["friction", "lost to friction", "--friction"],
+  ["rods", "lost in rods", "--rods"],
   ["residual", "solver's error", "--residual"],
 ];
 const MOMENTUM = [
@@ -171,7 +172,10 @@ class Plot {
       }
     }
     const scale = Math.max(-low, high);
+    // Most scenes have no rods, and most rods take nothing.
+    const drawn = this.series.filter((s) => s.colour !== "--rods" || rows.some((row) => row[s.at]));
     this.series.forEach((s, i) => {
+      this.values[i].parentElement.hidden = !drawn.includes(s);
       this.values[i].textContent = short(now[s.at], scale);
     });
     if (scale < 1e-12) high = 1;
@@ -180,7 +184,7 @@ class Plot {
     const x = (t) => left + ((t - end + span) / span) * (width - left - 2);
     const y = (v) => height - 4 - ((v - low + pad) / (high - low + 2 * pad)) * (height - 8);
     this.axes(c, { low, high, x, y, width, left, colour });
-    for (const s of this.series) this.line(c, rows, s, x, y, colour);
+    for (const s of drawn) this.line(c, rows, s, x, y, colour);
   }
 
   axes(c, { low, high, y, width, left, colour }) {
@@ -400,7 +404,7 @@ class View {
       const [, , t, pace, count, joints] = numbers;
       if (count !== this.bodies.length) return;
       this.frame = { t, pace, count, joints, n: numbers };
-      this.past.add([t, ...numbers.slice(11, 18)]);
+      this.past.add([t, ...numbers.slice(11, 19)]);
       this.changed = true;
     }
   }

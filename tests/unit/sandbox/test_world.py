@@ -248,7 +248,7 @@ def test_whatever_hands_do_the_books_balance(seed: int) -> None:
 @settings(max_examples=25)
 @given(data=st.data(), aside=st.tuples(st.floats(-0.4, 0.4), st.floats(-0.4, 0.4)))
 def test_holding_a_body_still_costs_nothing(data, aside) -> None:
-    """Whatever answers the hand: a rod, the floor. Yesterday the hand booked what they undid in the same step."""
+    """Whatever answers the hand: a rod, the floor. Else the hand books what they undo in the same step."""
     name = data.draw(st.sampled_from(["newtons-cradle", "pendulum-wall", "free-fall", "box-stack"]))
     world = World(choose(name).scene)
     world.run_until(0.3)

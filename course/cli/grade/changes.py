@@ -24,13 +24,14 @@ _SHOWN, _FEW, _MOST = 200, 5, 20
 
 def show_change(console: Console, change: Change) -> None:
     """Scores and states before and after, and the checks with another outcome."""
-    scores = f"{points(change.raw_before)} -> {points(change.raw_after)}"
+    old, new = change.max_before, change.max_after
+    scores = f"{points(change.raw_before, old)} -> {points(change.raw_after, new)}"
     if change.state_before != change.state_after:
         scores += f", {change.state_before} -> {change.state_after}"
     if change.overridden:
-        scores += f"; the override stands at {points(change.score_after)}"
+        scores += f"; the override stands at {points(change.score_after, new)}"
     elif (change.score_before, change.score_after) != (change.raw_before, change.raw_after):
-        scores += f"; counting {points(change.score_before)} -> {points(change.score_after)}"
+        scores += f"; counting {points(change.score_before, old)} -> {points(change.score_after, new)}"
     console.item(f"{one_line(change.student)} {change.exercise}", scores)
     if change.raw_before is None or change.raw_after is None:
         return  # of what no check judged, none has changed
@@ -44,7 +45,8 @@ def show_change(console: Console, change: Change) -> None:
 def moved_scores(moved: Sequence[ScoreChange]) -> Iterator[str]:
     """Whose score changes, and how, one line each."""
     for one in moved[:_MOST]:
-        yield f"{one_line(one.student)} {one.exercise}: {points(one.before)} -> {points(one.after)}"
+        scores = f"{points(one.before, one.max_before)} -> {points(one.after, one.max_after)}"
+        yield f"{one_line(one.student)} {one.exercise}: {scores}"
     if len(moved) > _MOST:
         yield f"and {len(moved) - _MOST} more"
 
@@ -66,9 +68,11 @@ def show_roster(console: Console, file: str, moved: Sequence[ScoreChange], dropp
         console.line(f"{leave} the roster: {', '.join(map(one_line, dropped[:_MOST]))}{more}")
 
 
-def points(score: float | None) -> str:
-    """A score in words; None is none."""
-    return "no score" if score is None else format_points(score)
+def points(score: float | None, most: float | None = None) -> str:
+    """A score in words, beside the points there are where that is known; None is none."""
+    if score is None:
+        return "no score"
+    return format_points(score) + ("" if most is None else f" of {format_points(most)}")
 
 
 def in_words(text: str) -> str:
@@ -80,7 +84,7 @@ def in_words(text: str) -> str:
     if isinstance(kept, dict):
         score = kept.get("score")
         why = kept.get("reason") or (kept.get("state") if score is None else "")
-        words = (points(score), str(why or ""), str(kept.get("file", "")))
+        words = (points(score, kept.get("of")), str(why or ""), str(kept.get("file", "")))
         return one_line(", ".join(filter(None, words)))
     if isinstance(kept, list):  # of a class: student, exercise, score
         shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in kept[:_FEW]]

@@ -20,16 +20,20 @@ if TYPE_CHECKING:
 
 __all__ = ["Recording", "ScoreChange", "counted", "counting", "moved", "recorded", "replacing"]
 
-Scores = dict[tuple[str, str], float | None]
+#: By student and exercise: the score that counts, and the points there are.
+Scores = dict[tuple[str, str], tuple[float | None, float | None]]
+_NONE = (None, None)
 
 
 class ScoreChange(msgspec.Struct, frozen=True):
-    """A change of the score that counts; None where there is no score."""
+    """A change of the score that counts, and of the points there are; None where there is no score."""
 
     student: str
     exercise: str
     before: float | None
     after: float | None
+    max_before: float | None = None
+    max_after: float | None = None
 
 
 @dataclass
@@ -40,16 +44,17 @@ class Recording:
 
 
 def counting(results: Results) -> Scores:
-    """The effective scores, by student and exercise."""
-    return {(item.student, item.exercise): item.score for item in results.all()}
+    """The effective scores."""
+    return {(item.student, item.exercise): (item.score, item.max_score) for item in results.all()}
 
 
 def moved(before: Scores, after: Scores) -> list[ScoreChange]:
     """The scores that are not the same, by student."""
     return [
-        ScoreChange(*key, before.get(key), after.get(key))
+        ScoreChange(*key, was, now, most_before, most_after)
         for key in sorted({*before, *after})
-        if before.get(key) != after.get(key)
+        for (was, most_before), (now, most_after) in [(before.get(key, _NONE), after.get(key, _NONE))]
+        if was != now
     ]
 
 
@@ -91,7 +96,7 @@ def counted(counts: Effective | None, file: str = "") -> str:
     """
     if counts is None:
         return msgspec.json.encode({"state": "missing", "score": None}).decode()
-    told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score}
+    told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score, "of": counts.max_score}
     told |= {"submission": counts.result.key.submission_sha256}
     if counts.verdict.error is not None:
         told["reason"] = counts.verdict.error.code

@@ -74,7 +74,7 @@ class CheckChange(msgspec.Struct, frozen=True):
 
 
 class Change(msgspec.Struct, frozen=True):
-    """A student whose result has changed. Scores are the effective ones."""
+    """A student whose result has changed: counting scores, scores of the checks, and the points there are."""
 
     student: str
     exercise: str
@@ -86,6 +86,8 @@ class Change(msgspec.Struct, frozen=True):
     state_after: str
     checks: tuple[CheckChange, ...]
     overridden: bool
+    max_before: float = 0.0
+    max_after: float = 0.0
 
 
 class Regraded(msgspec.Struct, frozen=True):
@@ -301,4 +303,5 @@ def _change(before: Effective, after: Effective) -> Change | None:
     return Change(
         after.student, after.exercise, before.score, after.score, before.raw_score, after.raw_score,
         before.verdict.state, after.verdict.state, tuple(checks), after.override is not None,
+        before.max_score, after.max_score,
     )  # fmt: skip

@@ -192,8 +192,8 @@ def test_a_regrading_is_told_change_by_change(course, out: Path, monkeypatch: py
     before = (out / "gradebook.sqlite").read_bytes()
     ran = course("grade", "rerun", "out", "--dry-run")
     assert ran.code == 0, ran.err
-    assert "bob doubling: 5 -> 10\n    kept_back: fail -> pass, +5 points\n" in ran.out
-    assert "dan doubling: no score -> 0, grader_error -> graded" in ran.out
+    assert "bob doubling: 5 of 10 -> 10 of 10\n    kept_back: fail -> pass, +5 points\n" in ran.out
+    assert "dan doubling: no score -> 0 of 10, grader_error -> graded" in ran.out
     assert "Nothing was changed." in ran.out
     assert (out / "gradebook.sqlite").read_bytes() == before
     ran = course("grade", "rerun", "out", "--json")

@@ -76,8 +76,8 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert change["who"]
     logged = course("grade", "log", "out", "bob").out
     assert "by mail" in logged
-    assert "0, no_file -> 10, hw.py" in logged
-    assert "by mail; before: 0, no_file" in course("grade", "explain", "out", "bob", "doubling").out
+    assert "0 of 10, no_file -> 10 of 10, hw.py" in logged
+    assert "by mail; before: 0 of 10, no_file" in course("grade", "explain", "out", "bob", "doubling").out
     for words, code in (
         (("bob",), "usage"), (("bob", "x.py", "--accept-names"), "usage"),
         (("bob", "class/bob/hw.py"), "no_reason"),
@@ -152,7 +152,16 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) ->
     (here / "times.csv").write_text("student,exercise,submitted_at\nada,doubling,2026-01-01T12:00:00Z\n")
     words = ("grade", "late", "out", "--policy", "late.toml", "--times", "times.csv")
     told = course(*words, "--dry-run", "--json").json
-    assert told["moved"] == [{"student": "ada", "exercise": "doubling", "before": 10.0, "after": 9.0}]
+    assert told["moved"] == [
+        {
+            "student": "ada",
+            "exercise": "doubling",
+            "before": 10.0,
+            "after": 9.0,
+            "max_before": 10.0,
+            "max_after": 10.0,
+        }
+    ]
     assert book(here) == before
     assert "1 score changed." in course(*words, "--reason", "the rules").out
     (change,) = course("grade", "log", "out", "--json").json["changes"]

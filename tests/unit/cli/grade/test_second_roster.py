@@ -77,20 +77,20 @@ def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out: 
     assert course("grade", "late", "out", "--policy", "late.toml", "--roster", "first.csv").code == 0
     write(out.parent, "next.csv", "student,canvas_id,extension_days\nada,101,\nbob,102,0\n")
     told = (
-        "With next.csv, 1 score changes:\n  bob doubling: 10 -> 8\n"
+        "With next.csv, 1 score changes:\n  bob doubling: 10 of 10 -> 8 of 10\n"
         "1 student is not in next.csv and leaves the roster: gus\n"
     )
     lines = course(
         "grade", "export", "out", "--format", "jsonl", "--roster", "next.csv", "--partial", "--json"
     )
-    assert "With next.csv, a score changes: bob doubling: 10 -> 8" in lines.err
+    assert "With next.csv, a score changes: bob doubling: 10 of 10 -> 8 of 10" in lines.err
     assert "leaves the roster: gus" in lines.err
     ran = course(*TO_CANVAS, "next.csv", "-o", "a.csv")
     assert (ran.code, ran.out) == (0, f"{told}Wrote a.csv.\n")
     assert "bob doubling 10 -> bob doubling 8" in course("grade", "log", "out").out
     ran = course("grade", "export", "out", "--roster", "first.csv", "-o", "b.csv", "--json")
     assert (ran.json["moved"], ran.json["dropped"]) == (
-        [{"student": "bob", "exercise": "doubling", "before": 8.0, "after": 10.0}], [],
+        [{"student": "bob", "exercise": "doubling", "before": 8.0, "after": 10.0, "max_before": 10.0, "max_after": 10.0}], [],
     )  # fmt: skip
 
 
@@ -100,13 +100,16 @@ def test_late_and_a_resumed_run_say_the_same(course, out: Path, monkeypatch: pyt
     write(out.parent, "next.csv", "student,extension_days\nada,\nbob,0\n")
     ran = course("grade", "late", "out", "--roster", "next.csv", "--dry-run")
     assert "1 student is not in next.csv and leaves the roster: gus" in ran.out
-    assert "bob doubling: 10 -> 8" in ran.out
+    assert "bob doubling: 10 of 10 -> 8 of 10" in ran.out
     ran = course("grade", "late", "out", "--roster", "next.csv", "--dry-run", "--json")
     assert ran.json["dropped"] == ["gus"]
     write(out.parent, "class/ada/doubling.py", "def double(x):\n    return x + x\n")
     run = ("grade", "run", "class", "--out", "out", "--resume", "--exercise", "doubling", "--roster")
     ran = course(*run, "next.csv")
-    assert ("bob doubling: 10 -> 8" in ran.out, "leaves the roster: gus" in ran.out) == (True, True), ran.err
+    assert ("bob doubling: 10 of 10 -> 8 of 10" in ran.out, "leaves the roster: gus" in ran.out) == (
+        True,
+        True,
+    ), ran.err
     with open_results(out) as results:
         assert results.person("ada").email == "ada@x.org"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path  # noqa: TC003 - typer reads the annotations
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -13,6 +13,7 @@ from course.cli.grade.changes import moved_scores, show_roster
 from course.cli.grade.options import Exercises, Missing, one_of
 from course.errors import CourseError, UsageError
 from course.grading.container.packing import write_autograder
+from course.grading.exports.cells import STDOUT
 from course.grading.exports.formats import AUTOGRADER, FORMATS
 from course.grading.exports.formats import export as write
 from course.grading.exports.lines import grade_line
@@ -42,7 +43,10 @@ def export(
         one_of("--format", *FORMATS, AUTOGRADER),
     ] = "csv",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="PATH", help="File to write; in OUT if left out.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="PATH", help="File to write; in OUT if left out. - is standard output."
+        ),
     ] = None,
     roster: Annotated[
         Path | None,
@@ -82,6 +86,11 @@ def export(
     unless it has a score by hand or --accept-zeros makes it 0.
     """
     console = current()
+    if output == Path("/dev/stdout"):
+        output = STDOUT
+    if output == STDOUT and (console.json or format in {"gradescope", "html"}):
+        answer = "The answer of --json and the file do not" if console.json else f"--format {format} does not"
+        raise UsageError(f"{answer} fit on standard output.", help="Name a place with -o PATH.")
     exercises = tuple(exercise or ())
     found = Merged(Roster(()))
     if format == AUTOGRADER:
@@ -96,7 +105,8 @@ def export(
             raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
         sheet = roster if format == "moodle-worksheet" else None
         given = _assignments(assignment or [])
-        options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet, overwrite)
+        columns = people.assignments if people else {}
+        options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet, overwrite, columns)
         written, found = _from_gradebook(console, out, format, output, people, options)
     if written is not None:
         _show(console, format, written, out, found)
@@ -120,7 +130,7 @@ def _from_gradebook(
             found = merged(opened, people)
             results = Results(opened.book, found.roster)
             found.moved = moved(counting(opened), counting(results))
-        if not console.json:
+        if not console.json and output != STDOUT:
             show_roster(console, found.roster.file, found.moved, found.dropped)
         if console.json and name == "jsonl" and output is None:
             for line in moved_scores(found.moved):
@@ -199,6 +209,13 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
                 dropped=tuple(found.dropped),
             )
         )
+        return
+    if STDOUT in written.paths:  # what else there is to say must not get into the file
+        for text in (
+            *written.notes,
+            *(f"Left out, not in the roster: {one_line(one)}" for one in written.unmatched),
+        ):
+            console.warn(text)
         return
     for path in written.paths:
         console.line((f"Wrote {path}.", "bold"))

@@ -7,6 +7,8 @@ import csv
 import io
 import os
 import re
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError, UsageError
@@ -14,14 +16,16 @@ from course.printable import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
     from typing import IO
 
-__all__ = ["csv_bytes", "for_moodle", "is_safe", "number", "replacing", "safe_cell", "write_bytes"]
+__all__ = ["STDOUT", "csv_bytes", "for_moodle", "is_safe", "number", "replacing", "safe_cell", "write_bytes"]
 
 #: A spreadsheet takes a cell that begins with one of these for a formula; with a full-width one in some
 #: languages. The apostrophe that disarms them is itself doubled, so that no two texts become one.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "'", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+
+#: ``-o -``: to standard output.
+STDOUT = Path("-")
 
 #: How every SQLite file begins.
 _DATABASE = b"SQLite format 3\0"
@@ -82,6 +86,16 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
         UsageError: a database has that name: a gradebook, most likely.
         MissingCapabilityError: there is no room, or it cannot be written there.
     """
+    if path == STDOUT or (path.exists() and not path.is_file()):
+        # A pipe or a device has nothing to keep and no second name; its reader may leave when it has enough.
+        whole = io.BytesIO()
+        yield whole
+        with contextlib.suppress(BrokenPipeError):
+            sys.stdout.flush()
+            target = os.dup(1) if path == STDOUT else os.open(path, os.O_WRONLY)
+            with os.fdopen(target, "wb") as handle:
+                handle.write(whole.getvalue())
+        return
     with contextlib.suppress(OSError), path.open("rb") as handle:
         if handle.read(len(_DATABASE)) == _DATABASE:
             raise UsageError(

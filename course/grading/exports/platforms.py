@@ -18,8 +18,10 @@ from course.grading.exports.selection import (
     check_settled,
     select,
 )
+from course.grading.results.roster import Column
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from course.grading.results.effective import Results
@@ -65,12 +67,36 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
                 help="It is the number at the end of the assignment's address in Canvas.",
                 code="needs_assignment",
             )
+        if options.columns and assignment not in options.columns:
+            named = ", ".join(column.heading for column in options.columns.values())
+            raise UsageError(
+                f"Canvas' gradebook has no assignment {assignment}, which was given for {name}. Nothing was"
+                " written.",
+                help=f"It has {named}.",
+                code="needs_assignment",
+            )
     check_settled(selection, options)
-    titles = [f"{results.title(name)} ({options.assignments[name]})" for name in selection.exercises]
-    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
-    rows = [["    Points Possible", "", "", "", "", *(number(most[name]) for name in selection.exercises)]]
-    for student, scores in _table(selection).items():
+    titles, possible, notes = [], [], selection.written.notes
+    for name in selection.exercises:
+        assignment = options.assignments[name]
+        column = options.columns.get(assignment, Column(f"{results.title(name)} ({assignment})", None))
+        titles.append(column.heading)
+        possible.append(column.points or most[name])
+        if possible[-1] != most[name]:
+            notes.append(
+                f"{name} has {number(most[name])} points here and {number(possible[-1])} in Canvas: its"
+                " scores are written on Canvas' scale."
+            )
+    if not options.columns:
+        notes.append(
+            "Canvas takes a score as points of its own assignment. Give its gradebook with --roster, and the"
+            " scores are written on its scale."
+        )
+    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
+    rows = [["    Points Possible", "", "", "", "", *map(number, possible)]]
+    scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
+    for student, scores in _table(selection, scales).items():
         person = selection.people[student]
         rows.append(
             [person.name or student, person.canvas_id, person.sis_user_id, "", person.section, *scores]
@@ -129,11 +155,18 @@ def _has_moodle_key(person: Person) -> bool:
     return bool(key) and is_safe(key) and for_moodle(key) == key
 
 
-def _table(selection: Selection) -> dict[str, list[str]]:
-    """Scores by student, in the order of the exercises; empty where there is none."""
+def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> dict[str, list[str]]:
+    """Scores by student, in the order of the exercises; empty where there is none.
+
+    Args:
+        scales: what a point of an exercise is worth on the platform; 1 if None.
+    """
     table: dict[str, list[str]] = {}
     columns = {name: column for column, name in enumerate(selection.exercises)}
     for effective in selection.each():
         row = table.setdefault(effective.student, [""] * len(columns))
-        row[columns[effective.exercise]] = number(effective.score)
+        scale = scales[effective.exercise] if scales else 1.0
+        row[columns[effective.exercise]] = number(
+            None if effective.score is None else effective.score * scale
+        )
     return table

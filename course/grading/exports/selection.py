@@ -6,14 +6,15 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
+from course.grading.results.roster import FOR_TESTS
 from course.printable import command
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from course.grading.results.effective import Effective, Results
-    from course.grading.results.roster import Person, Roster
+    from course.grading.results.roster import Column, Person, Roster
 
 __all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_settled", "is_part", "select", "some"]
 
@@ -32,6 +33,7 @@ class ExportOptions:
         zeros: work that could not be graded may be written as 0, although the instructor has not looked at
             it.
         worksheet: Moodle's file to fill in.
+        columns: of the platform's file, by the id of the assignment; empty if it was not given.
         overwrite: a grade or feedback that is in it already gives way to ours.
     """
 
@@ -42,6 +44,7 @@ class ExportOptions:
     zeros: bool = False
     worksheet: Path | None = None
     overwrite: bool = False
+    columns: Mapping[str, Column] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -160,8 +163,12 @@ def select(
             keyless = [student for student, person in people.items() if not usable(person)]
             unmatched |= dict.fromkeys(keyless, f"No usable {key}")
             people = {student: person for student, person in people.items() if usable(person)}
-        if unmatched and not options.partial:
-            raise _unmatched(results, unmatched, key)
+        tests = [student for student, why in unmatched.items() if why == FOR_TESTS]
+        blocking = {student: why for student, why in unmatched.items() if why != FOR_TESTS}
+        if blocking and not options.partial:
+            raise _unmatched(results, blocking, key)
+        if tests and usable is not None:
+            written.notes.append(f"{some(tests)} is {FOR_TESTS} and was left out.")
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     return Selection(results, exercises, people, written, options.missing == "zero")

@@ -21,7 +21,7 @@ from course.errors import UsageError
 from course.grading.exports.cells import for_moodle, number, safe_cell, write_bytes
 from course.grading.exports.handout import problem_for_student
 from course.grading.exports.selection import ExportOptions, Needs, Written, check_settled, select, some
-from course.grading.results.roster import moodle_key, read_text
+from course.grading.results.roster import in_english, moodle_key, read_text
 from course.scoring.numbers import in_points
 
 if TYPE_CHECKING:
@@ -57,14 +57,15 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
             code="needs_exercise",
         )
     check_settled(selection, options)
-    headings, rows = _read(options.worksheet)
+    as_given, rows = _read(options.worksheet)
+    headings = in_english(as_given)
     mine = {selection.people[one.student].moodle_key: one for one in selection.each()}
     locked, kept, filled = [], [], 0
     for row in rows:
         effective = mine.get(moodle_key(row[headings.index(_KEY)]) or "")
         if effective is None or effective.score is None:
             continue
-        if _OPEN in headings and row[headings.index(_OPEN)].strip().casefold() == "no":
+        if _OPEN in headings and row[headings.index(_OPEN)].strip().casefold() in {"no", "nein"}:
             locked.append(effective.student)
             continue
         ours = {_GRADE: _grade(options.worksheet, effective, _most(headings, row))}
@@ -77,7 +78,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
             row[headings.index(name)] = cell
         filled += 1
     text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\r\n").writerows([headings, *rows])
+    csv.writer(text, lineterminator="\r\n").writerows([as_given, *rows])
     write_bytes(path, text.getvalue().encode("utf-8"))
     written = selection.written
     written.paths.append(path)
@@ -112,7 +113,7 @@ def _read(path: Path) -> tuple[list[str], list[list[str]]]:
         headings, *rows = csv.reader(io.StringIO(read_text(path), newline=""), strict=True)
     except (csv.Error, ValueError) as error:
         raise _wrong(path, str(error)) from None
-    missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in headings]
+    missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
     if missing:
         raise _wrong(path, f"it has no column {missing[0]!r}, without which Moodle does not take it back")
     if any(len(row) != len(headings) for row in rows):

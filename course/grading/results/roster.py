@@ -18,6 +18,7 @@ are listed.
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import re
@@ -37,7 +38,10 @@ if TYPE_CHECKING:
 
     from course.grading.gradebook.records import PlatformIdentity
 
-__all__ = ["COLUMNS", "Person", "Roster", "moodle_key", "read_roster", "read_text"]
+__all__ = [
+    "COLUMNS", "FOR_TESTS", "Column", "Person", "Roster", "decoded", "in_english", "moodle_key",
+    "read_roster", "read_text",
+]  # fmt: skip
 
 COLUMNS = (
     "student", "name", "email", "login", "canvas_id", "sis_user_id", "section", "moodle_key",
@@ -57,7 +61,21 @@ _MOODLE = {
     "moodle_key": "Identifier", "name": "Full name", "email": "Email address",
     "sis_user_id": "ID number", "login": "Username",
 }  # fmt: skip
+#: Moodle's worksheet in German, known by a heading that nothing else has.
+_GERMAN_SIGN = "Zuletzt geändert (Bewertung)"
+_GERMAN = {
+    "ID": "Identifier", "Vollständiger Name": "Full name", "E-Mail-Adresse": "Email address",
+    "ID-Nummer": "ID number", "Anmeldename": "Username", "Bewertung": "Grade", "Bestwertung": "Maximum Grade",
+    "Bewertung kann geändert werden": "Grade can be changed",
+    "Zuletzt geändert (Abgabe)": "Last modified (submission)", _GERMAN_SIGN: "Last modified (grade)",
+    "Feedback als Kommentar": "Feedback comments",
+}  # fmt: skip
 _GRADESCOPE = {"sis_user_id": "SID", "email": "Email", "name": "Name"}
+#: Canvas' own student, with whom a teacher tries an assignment: "Student, Test" in its gradebook.
+_TEST_STUDENT = re.compile(r"studenttest(_[0-9]+)?")
+FOR_TESTS = "Canvas' student for tests"
+#: Points as Canvas writes them.
+_POINTS = re.compile(r"[0-9]{1,9}(\.[0-9]{1,9})?")
 #: Columns of a file that are named: a Canvas gradebook has one for each assignment.
 _NAMED = 8
 
@@ -76,6 +94,14 @@ class Person(msgspec.Struct, frozen=True, omit_defaults=True):
     login: str = ""
 
 
+@dataclass(frozen=True)
+class Column:
+    """An assignment's column in Canvas' gradebook: its heading, and its points if the file says them."""
+
+    heading: str
+    points: float | None
+
+
 @dataclass
 class Roster:
     """A class list.
@@ -85,12 +111,14 @@ class Roster:
         file: where it was read; empty if it is the one in a gradebook.
         headings: of that file, if it is known.
         columns: the heading of each of our columns that it has.
+        assignments: the columns of Canvas' gradebook, by the id of the assignment.
     """
 
     people: tuple[Person, ...]
     file: str = ""
     headings: tuple[str, ...] = ()
     columns: dict[str, str] = field(default_factory=dict)
+    assignments: dict[str, Column] = field(default_factory=dict)
     _by: dict[tuple[str, str], list[Person]] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
@@ -135,7 +163,9 @@ class Roster:
         unmatched: dict[str, str] = {}
         for student in students:
             rows = self.rows(student, downloads.get(student))
-            if len(rows) == 1:
+            if _TEST_STUDENT.fullmatch(student):
+                unmatched[student] = FOR_TESTS
+            elif len(rows) == 1:
                 found[student] = rows[0]
             else:
                 unmatched[student] = f"In {len(rows)} rows" if rows else "In no row"
@@ -217,16 +247,17 @@ def read_roster(path: Path) -> Roster:
     delimiter = ";" if first.count(";") > first.count(",") else ","
     reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     try:
-        headings = [str(name).strip() for name in reader.fieldnames or ()]
+        headings = in_english([str(name).strip() for name in reader.fieldnames or ()])
         reader.fieldnames = headings
         kind, columns = _kind(path, headings)
-        rows = (_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values())))
+        rows = [_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values()))]
         people = tuple(person for row, line in rows if (person := kind(path, line, row)) is not None)
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num}: {error}") from None
     _check_unique(path, people)
     there = {name: heading for name, heading in columns.items() if heading in headings}
-    return Roster(people, path.name, tuple(headings), there)
+    assignments = _assignments(headings, [row for row, _ in rows]) if kind is _from_canvas else {}
+    return Roster(people, path.name, tuple(headings), there, assignments)
 
 
 def read_text(path: Path) -> str:
@@ -239,11 +270,31 @@ def read_text(path: Path) -> str:
         raw = path.read_bytes()
         if len(raw) > _MAX_BYTES:
             raise _wrong(path, "it is larger than 20 MB")
-        return raw.decode("utf-8-sig")
+        return decoded(raw)
     except OSError as error:
         raise _wrong(path, f"it cannot be read ({error.strerror})") from None
     except UnicodeError:
-        raise _wrong(path, "it is not UTF-8; save it as 'CSV UTF-8'") from None
+        raise _wrong(path, "it is not text; save it as 'CSV UTF-8'") from None
+
+
+def decoded(raw: bytes) -> str:
+    """The text of a CSV file: UTF-8, UTF-16 with its mark, or Windows' western code page, as Excel saves it.
+
+    Raises:
+        UnicodeError: it is not text.
+    """
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return raw.decode("utf-16")
+    with contextlib.suppress(UnicodeDecodeError):
+        return raw.decode("utf-8-sig")
+    if b"\0" in raw:
+        raise UnicodeError
+    return raw.decode("cp1252")
+
+
+def in_english(headings: list[str]) -> list[str]:
+    """The headings of Moodle's worksheet as they are in English; others unchanged."""
+    return [_GERMAN.get(name, name) for name in headings] if _GERMAN_SIGN in headings else headings
 
 
 #: Turns a row into a person, or None if the row is not about a person.
@@ -320,6 +371,20 @@ def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
         section=cells.get("Section", ""),
         login=cells.get("SIS Login ID", ""),
     )
+
+
+def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, Column]:
+    """The assignments of Canvas' gradebook: "Title (id)", and their points in a row without an ID."""
+    found = {}
+    for heading in headings:
+        if id_ := re.search(r"\(([0-9]+)\)$", heading):
+            points = [
+                float(p)
+                for row in rows
+                if not row["ID"].strip() and _POINTS.fullmatch(p := row[heading].strip())
+            ]
+            found[id_[1]] = Column(heading, points[0] if points else None)
+    return found
 
 
 def _from_moodle(path: Path, line: int, row: dict[str, str]) -> Person:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import csv
+import io
+import shlex
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -16,9 +21,6 @@ from tests.unit.cli.grade.test_grade_after import grades
 from tests.unit.grading.made import HALF, RIGHT, digest, make_book
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_results import DAY, DUE, POLICY
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 FIRST = """student,name,email,extension_days
 ada,Ada Lovelace,ada@x.org,
@@ -86,11 +88,13 @@ def test_whose_score_a_roster_changes_is_said_before_it_is_written(course, out: 
     assert "With next.csv, a score changes: bob doubling: 10 of 10 -> 8 of 10" in lines.err
     assert "leaves the roster: gus" in lines.err
     ran = course(*TO_CANVAS, "next.csv", "-o", "a.csv")
-    assert (ran.code, ran.out) == (0, f"{told}Wrote a.csv.\n")
+    assert ran.code == 0
+    assert ran.out.startswith(f"{told}Wrote a.csv.\nCanvas takes a score as points of its own")
     assert "bob doubling 10 -> bob doubling 8" in course("grade", "log", "out").out
     ran = course("grade", "export", "out", "--roster", "first.csv", "-o", "b.csv", "--json")
     assert (ran.json["moved"], ran.json["dropped"]) == (
-        [{"student": "bob", "exercise": "doubling", "before": 8.0, "after": 10.0, "max_before": 10.0, "max_after": 10.0}], [],
+        [{"student": "bob", "exercise": "doubling", "before": 8.0, "after": 10.0, "max_before": 10.0,
+          "max_after": 10.0}], [],
     )  # fmt: skip
 
 
@@ -194,3 +198,82 @@ def test_a_roster_without_the_column_is_refused_for_that(course, out: Path, name
 def test_the_files_for_gradescope_say_what_they_are_for(course, out: Path) -> None:
     ran = course("grade", "export", "out", "--format", "gradescope")
     assert "/autograder/results/results.json" in ran.out
+
+
+def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: Path) -> None:
+    """Canvas would rescale what it gets: its own file says how many points an assignment has there."""
+    text = CANVAS.replace("Doubling (4711)", "Doubling, first try (4711)").replace(",,10\n", ",,5\n")
+    write(
+        out.parent, "canvas.csv", text.replace("Doubling, first try (4711)", '"Doubling, first try (4711)"')
+    )
+    ran = course(*TO_CANVAS, "canvas.csv")
+    assert ran.code == 0, ran.err
+    assert "doubling has 10 points here and 5 in Canvas" in ran.out
+    head, possible, *rows = (out / "canvas.csv").read_text().splitlines()
+    assert head.endswith('"Section","Doubling, first try (4711)"')
+    assert possible.endswith('"5"')
+    assert '"Lovelace, Ada","101","S1","","A","5"' in rows
+    wrong = tuple(word.replace("4711", "9999") for word in TO_CANVAS)
+    ran = course(*wrong, "canvas.csv", "-o", "wrong.csv")
+    assert (ran.code, (out.parent / "wrong.csv").exists()) == (2, False)
+    assert "has no assignment 9999" in ran.err
+    assert "Doubling, first try (4711)" in ran.err
+
+
+def test_the_student_for_tests_stops_no_export(course, tmp_path: Path) -> None:
+    with make_book(tmp_path / "out", {"lovelaceada_101": RIGHT, "studenttest_999": RIGHT}):
+        pass
+    write(tmp_path, "canvas.csv", CANVAS + '"Student, Test",999,,x,A,\n')
+    ran = course(*TO_CANVAS, "canvas.csv")
+    assert ran.code == 0, ran.err
+    assert "studenttest_999 is Canvas' student for tests and was left out." in ran.out.replace("\n", " ")
+    assert "999" not in (tmp_path / "out" / "canvas.csv").read_text()
+    write(tmp_path, "canvas.csv", CANVAS)
+    assert course(*TO_CANVAS, "canvas.csv").code == 0
+
+
+def test_an_export_goes_to_standard_output_or_a_pipe(out: Path) -> None:
+    base = [sys.executable, "-m", "course", "grade", "export", str(out)]
+    there = subprocess.run([*base, "-o", "-"], capture_output=True, timeout=60, check=True)
+    assert course_grades(there.stdout) == ["ada", "bob"]
+    piped = subprocess.run([*base, "-o", "/dev/stdout"], capture_output=True, timeout=60, check=True)
+    assert piped.stdout == there.stdout
+    shell = f"{shlex.join(base)} -o /dev/stdout | head -c 10; {shlex.join(base)} -o - | head -c 10"
+    cut = subprocess.run(["sh", "-c", shell], capture_output=True, timeout=60, check=True)
+    assert (len(cut.stdout), cut.stderr) == (20, b"")
+    assert Path("/dev/stdout").is_symlink() or not Path("/dev/stdout").is_file()
+    both = subprocess.run([*base, "-o", "-", "--json"], capture_output=True, timeout=60, check=False)
+    assert both.returncode == 2
+
+
+def course_grades(content: bytes) -> list[str]:
+    return [row["student"] for row in csv.DictReader(io.StringIO(content.decode("utf-8-sig")))]
+
+
+def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course, out: Path) -> None:
+    (out.parent / "latin.csv").write_bytes("student,name\nada,Ada Müller\nbob,Bob\n".encode("latin-1"))
+    assert course("grade", "export", "out", "--roster", "latin.csv").code == 0
+    assert grades(out / "grades.csv")["ada"]["name"] == "Ada Müller"
+    sheet = (
+        'ID,"Vollständiger Name",E-Mail-Adresse,Status,Bewertung,Bestwertung,'
+        '"Bewertung kann geändert werden","Zuletzt geändert (Abgabe)","Zuletzt geändert (Bewertung)","Feedback als Kommentar"\n'
+        'Teilnehmer/in101,Ada,ada@x.org,Abgegeben,,"20,00",Ja,-,-,\n'
+        'Teilnehmer/in102,bob,bob@x.org,Abgegeben,,"20,00",Nein,-,-,\n'
+    )
+    write(out.parent, "german.csv", sheet)
+    ran = course(
+        "grade",
+        "export",
+        "out",
+        "--format",
+        "moodle-worksheet",
+        "--exercise",
+        "doubling",
+        "--roster",
+        "german.csv",
+    )
+    assert ran.code == 0, ran.err
+    head, ada, bob = (out / "moodle-worksheet.csv").read_text("utf-8").splitlines()
+    assert head.startswith("ID,Vollständiger Name")
+    assert ',"20","20,00",' in ada or ',20,"20,00",' in ada
+    assert ',,"20,00",Nein' in bob

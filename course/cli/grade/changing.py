@@ -143,6 +143,7 @@ def override(
         )
     console = current()
     with previewed(out) if dry_run else open_results(out, writing=True) as results:
+        student = results.called(student)
         if score is None:
             now = overriding.lift(results, student, exercise, reason)
         else:

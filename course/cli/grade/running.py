@@ -203,10 +203,13 @@ def explain(
 
     catalog = load_catalog()
     with open_results(out) as results:
+        results.verify()
+        student = results.called(student)
         found = next(results.all(student, exercise), None)
         empty = found is None and next(results.all(), None) is None
         history = results.book.history(student, exercise)
         decisions = [one for one in results.book.journal(student, exercise) if one.student]
+        whose = results.named(student)
     if found is None:
         raise NotFoundError(
             f"The gradebook has no result of {student!r} for {exercise!r}.",
@@ -220,7 +223,7 @@ def explain(
     if console.json:
         console.emit(grade_line(found, results.course))
     else:
-        _show_result(console, catalog, found, history, decisions)
+        _show_result(console, catalog, whose, found, history, decisions)
     return 0
 
 
@@ -397,6 +400,7 @@ def _unjudged(summary: Summary) -> Iterator[str]:
 def _show_result(
     console: Console,
     catalog: Catalog,
+    whose: str,
     found: Effective,
     history: list[Result],
     decisions: list[Decision],
@@ -404,7 +408,7 @@ def _show_result(
     verdict, result = found.verdict, found.result
     passed = "passed" if found.passed else "not passed"
     score = "none" if found.score is None else format_points(found.score)
-    console.heading(f"{one_line(found.student)}, {found.exercise}", verdict.state)
+    console.heading(f"{whose}, {found.exercise}", verdict.state)
     console.item("score", f"{score} of {format_points(found.max_score)}, {passed}", width=10)
     if found.override is not None:
         at = found.override.at

@@ -180,6 +180,8 @@ def log(
 
     console = current()
     with open_results(out) as results:
+        results.verify()
+        student = None if student is None else results.called(student)
         runs = results.book.runs()
         decisions = results.book.journal(student, exercise)
     if console.json:

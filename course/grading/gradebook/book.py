@@ -256,6 +256,18 @@ class Gradebook:
         newest = f"number IN (SELECT max(number) FROM results{where} GROUP BY student, exercise)"
         yield from self._results(f" WHERE {newest}", arguments)
 
+    def verify(self) -> None:
+        """Look at every page and every decision.
+
+        Raises:
+            IntegrityError: the file is damaged.
+        """
+        with explained(self.path):
+            told = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
+            if told != "ok":
+                raise sqlite3.DatabaseError(told)
+        self.overrides()
+
     def history(self, student: str, exercise: str) -> list[Result]:
         """Every result of a student and exercise, oldest first."""
         return list(self._results(*_about(student, exercise)))

@@ -23,6 +23,7 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.results.late import Policy, lateness, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
+from course.printable import one_line
 from course.scoring.verdict import Problem, Verdict, not_graded
 
 if TYPE_CHECKING:
@@ -170,6 +171,35 @@ class Results:
     def students(self) -> list[str]:
         """All students with a result, an override, a row in the roster or a folder, by name."""
         return sorted({*self.present(), *self.absent()})
+
+    def called(self, name: str) -> str:
+        """The student who is called so: a name in the gradebook, or what the roster knows about one alone.
+
+        Anything else is given back as it is, for whoever asks to refuse.
+        """
+        if self.roster is None or name in self.students():
+            return name
+        meant = {person.student for person in self.roster.rows(name)}
+        found = self.roster.match(self.present(), self.downloads)[0]
+        ids = {student for student, person in found.items() if person.student in meant}
+        ids |= meant & set(self.absent())
+        return ids.pop() if len(ids) == 1 else name
+
+    def named(self, student: str) -> str:
+        """A student's name in the gradebook, and in brackets the one in the roster if that is another."""
+        person = self.person(student)
+        known = one_line(person.name) if person is not None and person.name != student else ""
+        return one_line(student) + (f" ({known})" if known else "")
+
+    def verify(self) -> None:
+        """Read every row there is, so that a damaged gradebook answers nothing.
+
+        Raises:
+            IntegrityError: something is not what was written.
+        """
+        self.book.verify()
+        for _ in self.all():
+            pass
 
     def absent(self) -> list[str]:
         """The students without work: of the roster, in its order, or those whose folder held none."""

@@ -111,6 +111,7 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
         NotFoundError: no such student, exercise or file.
         UsageError: the exercise is not clear.
     """
+    student = results.called(student)
     if student not in results.students():
         raise NotFoundError(
             f"The gradebook has no student {student!r}.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import shlex
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -256,7 +257,8 @@ def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course,
     assert grades(out / "grades.csv")["ada"]["name"] == "Ada Müller"
     sheet = (
         'ID,"Vollständiger Name",E-Mail-Adresse,Status,Bewertung,Bestwertung,'
-        '"Bewertung kann geändert werden","Zuletzt geändert (Abgabe)","Zuletzt geändert (Bewertung)","Feedback als Kommentar"\n'
+        '"Bewertung kann geändert werden","Zuletzt geändert (Abgabe)","Zuletzt geändert (Bewertung)",'
+        '"Feedback als Kommentar"\n'
         'Teilnehmer/in101,Ada,ada@x.org,Abgegeben,,"20,00",Ja,-,-,\n'
         'Teilnehmer/in102,bob,bob@x.org,Abgegeben,,"20,00",Nein,-,-,\n'
     )
@@ -277,3 +279,27 @@ def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course,
     assert head.startswith("ID,Vollständiger Name")
     assert ',"20","20,00",' in ada or ',20,"20,00",' in ada
     assert ',,"20,00",Nein' in bob
+
+
+def test_a_student_is_called_as_the_roster_calls_her(course, out: Path) -> None:
+    write(out.parent, "canvas.csv", CANVAS)
+    assert course(*TO_CANVAS, "canvas.csv").code == 0
+    for name in ("Lovelace, Ada", "ada lovelace", "101", "S1", "ada"):
+        ran = course("grade", "explain", "out", name, "doubling")
+        assert ran.out.startswith("ada (Lovelace, Ada), doubling"), (name, ran.err)
+    set_by_hand = ("grade", "override", "out", "Byrne, Bob", "doubling", "--score", "9", "--reason", "oral")
+    assert "bob doubling: 9 of 10 counts" in course(*set_by_hand).out
+    assert "bob doubling: oral" in course("grade", "log", "out", "Byrne, Bob").out
+    assert course("grade", "explain", "out", "Nobody", "doubling").code == 5
+
+
+@pytest.mark.parametrize("words", [("log", "out"), ("explain", "out", "ada", "doubling")])
+def test_a_damaged_gradebook_answers_nothing(course, out: Path, words: tuple[str, ...]) -> None:
+    """Whichever row is damaged, and whichever is asked for."""
+    book = sqlite3.connect(out / "gradebook.sqlite")
+    book.execute("UPDATE results SET verdict = x'00' WHERE student = 'bob'")
+    book.commit()
+    book.close()
+    ran = course("grade", *words)
+    assert (ran.code, ran.out) == (7, "")
+    assert "damaged" in ran.err or "checksum" in ran.err

@@ -24,7 +24,7 @@ from course.grading.results.effective import Results
 from course.grading.results.late import in_days, read_policy, unknown_names
 from course.grading.results.merge import merged
 from course.grading.results.roster import read_roster
-from course.grading.results.times import read_times
+from course.grading.results.times import Worksheet, read_times, worksheet_times
 from course.grading.similar.page import page
 from course.printable import one_line
 from course.scoring.numbers import format_points, in_points
@@ -172,7 +172,12 @@ def late(
     ] = None,
     times: Annotated[
         Path | None,
-        typer.Option("--times", metavar="FILE", help="CSV: student, exercise, submitted_at (ISO 8601)."),
+        typer.Option(
+            "--times", metavar="FILE", help="CSV: student, exercise, submitted_at; or Moodle's worksheet."
+        ),
+    ] = None,
+    exercise: Annotated[
+        str | None, typer.Option("--exercise", metavar="ID", help="The exercise of Moodle's worksheet.")
     ] = None,
     roster: Annotated[
         Path | None,
@@ -198,15 +203,18 @@ def late(
     console = current()
     text = read_policy(policy)[1] if policy else None
     people = read_roster(roster) if roster else None
-    known = read_times(times) if times else []
-    changes = bool(policy or people or known or clear)
+    listed = read_times(times) if times else []
+    changes = bool(policy or people or listed or clear)
     why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
     with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
         book = opened.book
         with recorded(book, "late", why) if changes else nullcontext(Recording()) as told:
             if text is not None or clear:
                 book.set_meta(late_policy=text)
-            dropped = _take_in(book, people, known)
+            dropped = _take_in(book, people)
+            known = _times(Results(book), listed, exercise)
+            if known:
+                book.add_times(known, replace=True)
         results = Results(book)
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
         unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
@@ -238,15 +246,47 @@ def _show_moved(console: Console, moved: list[ScoreChange], *, dry_run: bool) ->
         console.line((f"{len(moved)} {'score' if len(moved) == 1 else 'scores'} {would}.", "bold"))
 
 
-def _take_in(book: Gradebook, people: Roster | None, times: list[SubmittedAt]) -> list[str]:
-    """Keep a roster and times; the students who leave the roster."""
+def _times(
+    results: Results, listed: list[SubmittedAt] | Worksheet, exercise: str | None
+) -> list[SubmittedAt]:
+    """The times in a list; those of a worksheet need an exercise and its deadline."""
+    if not isinstance(listed, Worksheet):
+        return listed
+    ids = [item.id for item in results.exercises() if item.id != "quiz"]
+    name = exercise or (ids[0] if len(ids) == 1 else "")
+    if name not in ids:
+        raise UsageError(
+            f"{listed.path} is Moodle's worksheet of one assignment; which exercise is it?",
+            help=f"Add --exercise, one of {', '.join(ids)}.",
+            code="needs_exercise",
+        )
+    due = next(
+        (
+            one.due
+            for wanted in (name, "*")
+            for one in (results.policy.deadline if results.policy else ())
+            if one.exercise == wanted
+        ),
+        None,
+    )
+    if due is None or due.tzinfo is None:
+        raise UsageError(
+            f"{listed.path} says no time zone, and there is no deadline for {name} to take it from.",
+            help="Add --policy FILE.",
+        )
+    people = read_roster(listed.path)
+    found = people.match(results.students(), results.downloads)[0]
+    students = {person.moodle_key: student for student, person in found.items()}
+    return worksheet_times(listed, students, name, due.tzinfo)
+
+
+def _take_in(book: Gradebook, people: Roster | None) -> list[str]:
+    """Keep a roster; the students who leave it."""
     dropped = []
     if people is not None:
         found = merged(Results(book), people)
         book.set_meta(roster=found.roster.dump())
         dropped = found.dropped
-    if times:
-        book.add_times(times, replace=True)
     return dropped
 
 
@@ -298,7 +338,10 @@ def _show_late(
         count = sum(item.late is not None for item in found)
         console.line((f"{count} {'is' if count == 1 else 'are'} late.", "bold"))
         if unknown_time:
-            console.note(f"{unknown_time} have no trusted submission time; they count as on time.")
+            console.note(
+                f"{unknown_time} have no trusted submission time; they count as on time. --times takes a"
+                " list, or Moodle's grading worksheet."
+            )
     for name in unknown:
         console.warn(f"The gradebook has no {name}.")
 

@@ -8,7 +8,7 @@ import re
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from course.grading.exports.cells import csv_bytes, write_bytes
+from course.grading.exports.cells import csv_bytes, number, write_bytes
 from course.grading.exports.html_report.class_page import class_page
 from course.grading.exports.html_report.index_page import index_page, index_row
 from course.grading.exports.html_report.rendering import MARKER
@@ -70,19 +70,25 @@ def write_pages(
     folder = path.parent / "students"
     tally = Tally(noted[name] for name in exercises)
     rows = {}
+    scores: dict[str, list[str]] = {}
     for student, group in _by_student(results, found):
         mine = sorted(group, key=lambda effective: order[effective.exercise])
         tally.take(mine)
         place = numbers[student]
         write_bytes(folder / f"{place}.html", _encoded(student_page(results, student, mine)))
         by_exercise = {effective.exercise: effective for effective in mine}
+        scores[student] = [
+            number(by_exercise[name].score) if name in by_exercise else "" for name in exercises
+        ]
         rows[student] = index_row(results, student, place, links[student], by_exercise, exercises)
     written = sorted(rows, key=numbers.__getitem__)
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]
     shown = [rows[student] for student in written]
     write_bytes(listed, _encoded(index_page(results, shown, chosen, quote(path.name))))
-    write_bytes(table, csv_bytes(("page", "student", "name", "email"), _table(results, written, links)))
+    headings = ("page", "student", "name", "email", *exercises)
+    rows_of = _table(results, written, links)
+    write_bytes(table, csv_bytes(headings, ([*row, *scores[row[1]]] for row in rows_of)))
     write_bytes(path, _encoded(class_page(results, tally, links, quote(listed.name))))
     _remove_others(folder, {f"{numbers[student]}.html" for student in written})
     return [path, listed, table, folder]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import datetime as dt
 import io
 import shlex
 import sqlite3
@@ -303,3 +304,31 @@ def test_a_damaged_gradebook_answers_nothing(course, out: Path, words: tuple[str
     ran = course("grade", *words)
     assert (ran.code, ran.out) == (7, "")
     assert "damaged" in ran.err or "checksum" in ran.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "Thursday, {0.day} {0:%B} {0.year}, {0:%I}:{0:%M} {0:%p}",
+        "Thursday, {0:%B} {0.day}, {0.year}, {0.hour}:{0:%M}",
+    ],
+)
+def test_moodles_worksheet_says_when_work_was_handed_in(course, tmp_path: Path, words: str) -> None:
+    with make_book(tmp_path / "out", {"Ada_101": RIGHT, "Bob_102": RIGHT}):
+        pass
+    write(tmp_path, "late.toml", POLICY[: POLICY.index("[[extension]]")])
+    at = DUE + dt.timedelta(days=1, hours=1)
+    sheet = (
+        'Identifier,"Full name","Email address",Status,Grade,"Last modified (submission)",'
+        f'"Last modified (grade)"\nParticipant 101,Ada,a@x.org,Submitted,,"{words.format(at)}",-\n'
+        "Participant 102,Bob,b@x.org,No,,-,-\n"
+    )
+    write(tmp_path, "sheet.csv", sheet)
+    told = ("grade", "late", "out", "--times", "sheet.csv", "--exercise", "doubling")
+    assert "no deadline for doubling" in course(*told).err
+    ran = course(*told, "--policy", "late.toml")
+    assert "Ada_101 doubling: 1 d 1 h late" in ran.out, ran
+    assert "1 have no trusted" in ran.out or "1 has no trusted" in ran.out
+    write(tmp_path, "sheet.csv", sheet.replace(words.format(at), "gestern"))
+    ran = course(*told)
+    assert (ran.code, "'gestern' is not a time" in ran.err) == (2, True)

@@ -1,7 +1,7 @@
 """Grades a class: N grader processes, one coordinator, results as they come.
 
 A grader that dies takes one submission with it at most: that one is tried again, and after the third grader
-it kills it is reported as our fault. A grader that hangs is ended at a deadline no submission can reach.
+it kills it is reported as our fault. A grader that hangs is ended at a deadline beyond those of a submission.
 """
 
 from __future__ import annotations

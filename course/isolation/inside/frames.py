@@ -17,7 +17,7 @@ MAX_FRAME = MAX_VALUE_BYTES + MAX_ARRAY_BYTES
 MAX_DEPTH = 32
 MAX_DIMENSIONS = 8
 RHS_DEPTH = 4  # of the parameters of a right-hand side
-MAX_VALUES = 200_000  # decoding one costs about half a microsecond: a hostile frame costs at most 0.1 s
+MAX_VALUES = 200_000  # 60,000 arrays of one number, the dearest frame tried, took 0.08 s of CPU to decode
 
 HEADER = struct.Struct("<IB")
 U32 = struct.Struct("<I")

@@ -177,7 +177,13 @@ def late(
         ),
     ] = None,
     exercise: Annotated[
-        str | None, typer.Option("--exercise", metavar="ID", help="The exercise of Moodle's worksheet.")
+        str | None,
+        typer.Option(
+            "--exercise",
+            metavar="ID",
+            help="The exercise of Moodle's worksheet.",
+            autocompletion=exercise_ids,
+        ),
     ] = None,
     roster: Annotated[
         Path | None,

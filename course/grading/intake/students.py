@@ -16,8 +16,10 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import io
 import os
 import stat
+import tokenize
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +29,7 @@ from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import MAX_FILE, ArchiveContent, RefusedError
 from course.grading.intake.reading import reader
 from course.grading.intake.triage import Candidate, Found, described, found_for, survey
+from course.grading.results.roster import decoded
 from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
@@ -290,7 +293,20 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
         content = reader.member(path, member)
     else:
         content = _read_regular(path, path.name, MAX_NOTEBOOK if notebook else MAX_FILE)
-    return _submission(exercise, "named.ipynb" if notebook else "named.py", content)
+    return _submission(
+        exercise, "named.ipynb" if notebook else "named.py", content if notebook else _utf8(content)
+    )
+
+
+def _utf8(source: bytes) -> bytes:
+    """Source as Python reads it, where it is UTF-16 or Windows' western code page without saying so."""
+    with contextlib.suppress(SyntaxError, UnicodeDecodeError, LookupError):
+        source.decode(tokenize.detect_encoding(io.BytesIO(source).readline)[0])
+        if b"\0" not in source:
+            return source
+    with contextlib.suppress(UnicodeDecodeError):
+        return decoded(source).encode("utf-8")
+    return source
 
 
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:

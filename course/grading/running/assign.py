@@ -104,7 +104,8 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
     """The assignment that an instructor means.
 
     Args:
-        file: a name in the list of unsettled cases, or a path; a slash leads into an archive.
+        file: a name in the list of unsettled cases or in the student's folder, or a path; a slash leads
+            into an archive.
         exercise: None where the unsettled case has one, or the course has only one.
 
     Raises:
@@ -148,7 +149,13 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
                     return Assignment(
                         student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times
                     )
-    return Assignment(student, exercise, file, *_on_disk(file, results.folder), times)
+    handed_in = Path(results.book.run_options().get("folder", "")) / student / file
+    place = (
+        (handed_in, "")
+        if handed_in.is_file() and not os.path.lexists(file)
+        else _on_disk(file, results.folder)
+    )
+    return Assignment(student, exercise, file, *place, times)
 
 
 def _on_disk(file: str, out: Path) -> tuple[Path, str]:

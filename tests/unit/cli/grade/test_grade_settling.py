@@ -209,3 +209,21 @@ def test_the_summary_says_what_passes_and_whose_files_there_are(course, here: Pa
     assert listed in " ".join(ran.out.split())
     ran = course("grade", "override", "again", "cy", "doubling", "--score", "0", "--reason", "x", "--dry-run")
     assert "0 of 10 would count; no check ran." in ran.out
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "utf-16"])
+def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name(
+    course, here: Path, monkeypatch: pytest.MonkeyPatch, encoding: str
+) -> None:
+    graded: list[bytes] = []
+
+    def kept(entries: Iterable[Entry], terms: Terms, graders: int) -> Iterator[Graded]:
+        given = list(entries)
+        graded.extend(source for entry in given for source in entry.submission.files.values())
+        return right(given, terms)
+
+    monkeypatch.setattr(batch, "grade_all", kept)
+    (here / "class" / "bob" / "hw.py").write_bytes(("# ça va – très bien\n" + SOURCE).encode(encoding))
+    ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
+    assert ran.code == 0, ran.err
+    assert [source.decode() for source in graded[-1:]] == ["# ça va – très bien\n" + SOURCE]

@@ -27,6 +27,7 @@ __all__ = [
     "remove_tree",
     "removing",
     "sweep",
+    "sweep_after_the_dead",
     "tidy",
 ]
 
@@ -57,17 +58,19 @@ def keep_private() -> None:
 
 
 def private_folder() -> Path:
-    """A new folder for one session, named after this process.
+    """A new folder for one session, named after this process."""
+    sweep_after_the_dead()
+    return Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-"))
 
-    A killed process leaves its folder behind, so folders whose process is gone are deleted here.
-    """
+
+def sweep_after_the_dead() -> None:
+    """Delete what killed processes left behind: the folders whose process is gone."""
     if hasattr(os, "getuid"):  # on Windows, asking whether a process lives would end it
         for old in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
             owner = old.name.removeprefix(_PREFIX).partition("-")[0]
             with contextlib.suppress(OSError):
                 if owner.isdigit() and old.lstat().st_uid == os.getuid() and not _is_alive(int(owner)):
                     sweep(old)
-    return Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-"))
 
 
 def _is_alive(pid: int) -> bool:

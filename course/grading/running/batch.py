@@ -24,7 +24,7 @@ from course.grading.pipes import read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.deadline import WALL
-from course.isolation.launch import keep_private
+from course.isolation.launch import keep_private, sweep_after_the_dead
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded
 
@@ -185,6 +185,7 @@ class Graders:
             if grader.process.stdout:
                 grader.process.stdout.close()
         self._selector.close()
+        sweep_after_the_dead()  # nobody comes after the last grader, should that one have been killed
 
     # -- work -----------------------------------------------------------------------------------------
 
